@@ -1,0 +1,56 @@
+# How every target of the project is compiled, and the helpers that make one.
+include(GNUInstallDirs)
+find_package(Threads REQUIRED)
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Kind of build" FORCE)
+endif()
+
+find_program(MARTI_CCACHE ccache)
+if(MARTI_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${MARTI_CCACHE}")
+endif()
+
+# Warnings and floating-point rules. -ffp-contract=off: a fused multiply-add in an edge function changes
+# the sign of near-zero areas, and watertightness rests on those signs.
+add_library(marti_options INTERFACE)
+target_compile_options(marti_options INTERFACE
+  -Wall -Wextra -Wshadow -Wconversion -Wnon-virtual-dtor -Wold-style-cast -Wno-psabi -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # GCC bug 105329: false warnings about operator+ of std::string.
+  target_compile_options(marti_options INTERFACE -Wno-restrict)
+endif()
+if(MARTI_SANITIZE)
+  target_compile_options(marti_options INTERFACE
+    -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(marti_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+# marti_add_library(<folder> SOURCES ... [PUBLIC libs...] [PRIVATE libs...]): the static library of one
+# folder, target marti_<folder>, alias marti::<folder>. Headers are included from the project's root.
+function(marti_add_library folder)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(marti_${folder} STATIC ${ARG_SOURCES})
+  add_library(marti::${folder} ALIAS marti_${folder})
+  set_target_properties(marti_${folder} PROPERTIES EXPORT_NAME ${folder})
+  target_include_directories(marti_${folder} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/marti>)
+  target_compile_features(marti_${folder} PUBLIC cxx_std_20)
+  target_link_libraries(marti_${folder} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:marti_options>)
+endfunction()
+
+# marti_add_test(<name> SOURCES ... [LIBS ...] [TIMEOUT seconds]): one GoogleTest program; each of its
+# tests is a CTest test.
+function(marti_add_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 120)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBS} marti_options GTest::gtest_main)
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${ARG_TIMEOUT})
+endfunction()

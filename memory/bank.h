@@ -1,0 +1,57 @@
+// Memory banks: interleaved by line, each serves one access at a time in order of arrival.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "memory/record_kind.h"
+#include "memory/wait_statistics.h"
+#include "sim/time.h"
+
+namespace marti::memory {
+
+/// `access_cycles` pass from the start of an access until its data are there; the bank can start the next
+/// one `busy_cycles` after the start of the last.
+struct BankConfig {
+  std::uint32_t count = 4;
+  std::uint32_t interleave = 32;  ///< bytes in a row that share a bank; a power of two
+  sim::Clock clock = sim::Clock::from_hertz(33e6);
+  std::int64_t access_cycles = 4;
+  std::int64_t busy_cycles = 6;
+};
+
+struct BankStatistics {
+  std::int64_t accesses = 0;
+  sim::Ticks busy = 0;
+  WaitStatistics waits;  ///< from an access's arrival to its start
+};
+
+/// When one access starts and when its data are ready.
+struct BankAccess {
+  sim::Ticks start = 0;
+  sim::Ticks ready = 0;
+};
+
+class Banks {
+ public:
+  explicit Banks(const BankConfig& config);
+
+  [[nodiscard]] std::uint32_t bank_of(Address address) const {
+    return static_cast<std::uint32_t>((address >> interleave_shift_) % count_);
+  }
+  /// Queues an access that arrives at `arrival`. Accesses to one bank must come in order of arrival.
+  BankAccess access(std::uint32_t bank, sim::Ticks arrival);
+
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+  [[nodiscard]] const std::vector<BankStatistics>& statistics() const { return statistics_; }
+
+ private:
+  std::uint32_t count_;
+  std::uint32_t interleave_shift_;
+  sim::Ticks access_ticks_;
+  sim::Ticks busy_ticks_;
+  std::vector<sim::Ticks> free_at_;
+  std::vector<BankStatistics> statistics_;
+};
+
+}  // namespace marti::memory

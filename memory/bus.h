@@ -1,0 +1,46 @@
+// One bus for a cluster: one transfer at a time, first come first served.
+#pragma once
+
+#include "memory/interconnect.h"
+#include "memory/link.h"
+
+namespace marti::memory {
+
+/// A read sends its address, waits for its bank, and receives its data; a write sends address and data in
+/// one tenure and leaves the bank to work on its own. In `held` mode the bus stays with a read for its
+/// whole course; in `split` mode the data ask for the bus again when they are ready.
+class Bus final : public Interconnect {
+ public:
+  Bus(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site);
+
+  void read(const Transaction& transaction) override;
+  void write(const Transaction& transaction) override;
+  void reply(std::uint32_t port) override;
+  [[nodiscard]] const InterconnectStatistics& statistics() const override { return statistics_; }
+  [[nodiscard]] const std::vector<BankStatistics>& bank_statistics() const override {
+    return banks_.statistics();
+  }
+  [[nodiscard]] sim::Ticks unloaded_read(std::uint32_t bytes) const override;
+
+ private:
+  // A split read between its address and its data.
+  struct Pending {
+    Service service;
+    std::uint32_t bytes = 0;
+  };
+
+  // Grants the bus to a tenure of `length` that arrives now; returns when it starts.
+  sim::Ticks take(sim::Ticks length);
+
+  InterconnectSite site_;
+  BusMode mode_;
+  BeatTime beats_;
+  sim::Ticks address_;
+  sim::Ticks bank_access_;
+  Banks banks_;
+  Link link_;
+  std::vector<Pending> pending_;
+  InterconnectStatistics statistics_;
+};
+
+}  // namespace marti::memory

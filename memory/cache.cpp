@@ -1,0 +1,52 @@
+#include "memory/cache.h"
+
+#include "memory/tags.h"
+#include "sim/error.h"
+
+namespace marti::memory {
+
+struct Cache::TagStore {
+  virtual ~TagStore() = default;
+  virtual bool access(std::uint32_t line) = 0;
+};
+
+namespace {
+
+template <class Tags>
+struct TagStoreOf final : Cache::TagStore {
+  TagStoreOf(const CacheShape& shape, std::uint64_t seed) : tags(shape, 1, seed) {}
+  bool access(std::uint32_t line) override { return tags.access(0, line); }
+  Tags tags;
+};
+
+}  // namespace
+
+Cache::Cache(const CacheConfig& config) : shape_(shape_of(config)) {
+  tags_ = with_tag_store(config.replacement, shape_, [&]<class Tags>() -> std::unique_ptr<TagStore> {
+    return std::make_unique<TagStoreOf<Tags>>(shape_, config.seed);
+  });
+}
+
+Cache::~Cache() = default;
+Cache::Cache(Cache&&) noexcept = default;
+Cache& Cache::operator=(Cache&&) noexcept = default;
+
+std::int64_t Cache::read(Address address, std::uint64_t bytes) {
+  if (bytes == 0 || address > ~Address{0} - bytes) {
+    throw sim::UserError("a read of 0 bytes or beyond the last address");
+  }
+  const Address first = address >> shape_.line_shift;
+  const Address last = (address + bytes - 1) >> shape_.line_shift;
+  if (last >= no_line) {
+    throw sim::UserError("an address beyond 2^32 - 1 cache lines");
+  }
+  std::int64_t missed = 0;
+  for (Address line = first; line <= last; ++line) {
+    missed += tags_->access(static_cast<std::uint32_t>(line)) ? 0 : 1;
+  }
+  counters_.misses += missed;
+  counters_.hits += static_cast<std::int64_t>(last - first + 1) - missed;
+  return missed;
+}
+
+}  // namespace marti::memory

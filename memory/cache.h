@@ -1,0 +1,47 @@
+// One cache on its own, for those who want the cache model without the rest of the simulator.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "memory/cache_config.h"
+#include "memory/record_kind.h"
+
+namespace marti::memory {
+
+/// Hits and misses count lines touched: an access that spans two lines is two references.
+struct CacheCounters {
+  std::int64_t hits = 0;
+  std::int64_t misses = 0;
+
+  [[nodiscard]] std::int64_t references() const { return hits + misses; }
+};
+
+/// A cache of tags, the same model that the simulated nodes use.
+class Cache {
+ public:
+  /// Throws UserError when the configuration describes no cache.
+  explicit Cache(const CacheConfig& config);
+  ~Cache();
+  Cache(Cache&&) noexcept;
+  Cache& operator=(Cache&&) noexcept;
+  Cache(const Cache&) = delete;
+  Cache& operator=(const Cache&) = delete;
+
+  /// Reads `bytes` (at least 1) from `address`, line by line; returns the number of lines that missed.
+  /// Addresses reach up to 2^32 - 1 lines; beyond that it throws UserError.
+  std::int64_t read(Address address, std::uint64_t bytes);
+
+  [[nodiscard]] const CacheCounters& counters() const { return counters_; }
+  [[nodiscard]] const CacheShape& shape() const { return shape_; }
+
+  /// The look-up behind the interface; defined in cache.cpp.
+  struct TagStore;
+
+ private:
+  CacheShape shape_;
+  CacheCounters counters_;
+  std::unique_ptr<TagStore> tags_;
+};
+
+}  // namespace marti::memory

@@ -1,0 +1,33 @@
+#include "memory/cache_config.h"
+
+#include <bit>
+#include <limits>
+#include <string>
+
+#include "sim/error.h"
+
+namespace marti::memory {
+
+CacheShape shape_of(const CacheConfig& config) {
+  if (!std::has_single_bit(config.line)) {
+    throw sim::UserError("a cache line must be a power of two in bytes, not " + std::to_string(config.line));
+  }
+  if (config.size < config.line || config.size % config.line != 0) {
+    throw sim::UserError("a cache of " + std::to_string(config.size) +
+                         " bytes is not a whole number of lines of " + std::to_string(config.line) +
+                         " bytes");
+  }
+  const std::uint64_t lines = config.size / config.line;
+  if (lines > std::numeric_limits<std::uint32_t>::max() / 2) {
+    throw sim::UserError("a cache of more than 2^31 lines");
+  }
+  const std::uint64_t ways = config.ways == full_ways ? lines : config.ways;
+  if (ways > lines || lines % ways != 0) {
+    throw sim::UserError("a cache of " + std::to_string(lines) + " lines cannot be divided into sets of " +
+                         std::to_string(ways) + " ways");
+  }
+  return {static_cast<std::uint32_t>(lines / ways), static_cast<std::uint32_t>(ways),
+          static_cast<std::uint32_t>(std::countr_zero(config.line))};
+}
+
+}  // namespace marti::memory

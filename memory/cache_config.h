@@ -1,0 +1,57 @@
+// What a cache is, before it is built.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace marti::memory {
+
+enum class Replacement : std::uint8_t { lru, fifo, random };
+inline constexpr std::array<std::string_view, 3> replacement_names = {"lru", "fifo", "random"};
+
+/// The size that means "one set": as many ways as there are lines.
+inline constexpr std::uint32_t full_ways = 0;
+
+/// Geometry of one cache. Data are not simulated, only tags: reads allocate, writes never reach it.
+struct CacheConfig {
+  std::uint64_t size = 16 * 1024;  ///< bytes; a whole number of sets of lines
+  std::uint32_t line = 32;         ///< bytes; a power of two
+  std::uint32_t ways = 4;          ///< lines in a set; full_ways for a fully associative cache
+  Replacement replacement = Replacement::lru;
+  std::uint64_t seed = 1;  ///< of random replacement
+};
+
+/// Sets and ways of a checked cache. Sets need not be a power of two: the set of a line is its number
+/// modulo the number of sets.
+struct CacheShape {
+  std::uint32_t sets = 0;
+  std::uint32_t ways = 0;
+  std::uint32_t line_shift = 0;
+
+  [[nodiscard]] std::uint64_t lines() const { return std::uint64_t{sets} * ways; }
+};
+
+/// Throws UserError with the reason when no such cache can be built.
+[[nodiscard]] CacheShape shape_of(const CacheConfig& config);
+
+/// The state of random replacement: one stream of victims per set, the same wherever it is asked. Each
+/// call gives the next way, uniform over 0 .. ways - 1 up to 2^-32 (SplitMix64, Steele et al. 2014, scaled
+/// by the high half of a product).
+class VictimStream {
+ public:
+  VictimStream(std::uint64_t seed, std::uint64_t set) : state_(seed + set * 0xd1342543de82ef95ULL) {}
+  std::uint32_t next(std::uint32_t ways) {
+    state_ += 0x9e3779b97f4a7c15ULL;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
+    z ^= z >> 31U;
+    return static_cast<std::uint32_t>(((z >> 32U) * ways) >> 32U);
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+}  // namespace marti::memory

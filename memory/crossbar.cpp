@@ -1,0 +1,51 @@
+#include "memory/crossbar.h"
+
+namespace marti::memory {
+
+using sim::add_ticks;
+using sim::Ticks;
+
+Crossbar::Crossbar(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site)
+    : site_(site),
+      beats_(config),
+      latency_(config.clock.cycles(config.latency_cycles)),
+      bank_access_(banks.clock.cycles(banks.access_cycles)),
+      banks_(banks),
+      links_(banks.count) {
+  statistics_.links = std::int64_t{2} * banks.count;
+}
+
+Ticks Crossbar::unloaded_read(std::uint32_t bytes) const {
+  return add_ticks(add_ticks(add_ticks(latency_, bank_access_), beats_(bytes)), latency_);
+}
+
+void Crossbar::read(const Transaction& transaction) {
+  ++statistics_.reads;
+  statistics_.bytes += transaction.bytes;
+  const std::uint32_t bank = banks_.bank_of(transaction.address);
+  const Ticks arrival = add_ticks(site_.engine.now(), latency_);
+  const BankAccess access = banks_.access(bank, arrival);
+  const Ticks data = beats_(transaction.bytes);
+  const Ticks start = links_[bank].begin(access.ready);
+  const Ticks sent = add_ticks(start, data);
+  links_[bank].hold_until(sent);
+  statistics_.busy = add_ticks(statistics_.busy, data);
+  statistics_.waits.add(start - access.ready);
+  const Ticks way = add_ticks(latency_, latency_);
+  site_.client.read_done(transaction.port,
+                         {add_ticks(sent, latency_), start - access.ready, add_ticks(way, data),
+                          access.start - arrival, access.ready - access.start});
+}
+
+void Crossbar::write(const Transaction& transaction) {
+  ++statistics_.writes;
+  statistics_.bytes += transaction.bytes;
+  const Ticks data = beats_(transaction.bytes);
+  statistics_.busy = add_ticks(statistics_.busy, data);
+  statistics_.waits.add(0);
+  const Ticks arrival = add_ticks(site_.engine.now(), latency_);
+  const BankAccess access = banks_.access(banks_.bank_of(transaction.address), arrival);
+  site_.client.write_done(transaction.port, add_ticks(access.ready, data));
+}
+
+}  // namespace marti::memory

@@ -1,0 +1,150 @@
+// Tags of caches with many ways (up to fully associative): each set has a hash table from line to way
+// and, for LRU and FIFO, a list of its ways from the newest to the oldest. A look-up costs the same
+// whatever the number of ways.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "memory/cache_config.h"
+#include "memory/set_tags.h"
+
+namespace marti::memory {
+
+template <Replacement Policy>
+class HashedTags {
+ public:
+  HashedTags(const CacheShape& shape, std::uint32_t caches, std::uint64_t seed)
+      : index_(shape.sets),
+        sets_(shape.sets),
+        ways_(shape.ways),
+        slots_(slots_for(shape.ways)),
+        ways_of_sets_(std::size_t{caches} * shape.lines()),
+        table_(std::size_t{caches} * shape.sets * slots_, empty),
+        state_(std::size_t{caches} * shape.sets) {
+    if constexpr (Policy == Replacement::random) {
+      victims_.reserve(state_.size());
+      for (std::uint64_t set = 0; set < state_.size(); ++set) {
+        victims_.emplace_back(seed, set);
+      }
+    }
+  }
+
+  /// As SetTags::access.
+  bool access(std::uint32_t cache, std::uint32_t line) {
+    const std::size_t set = std::size_t{cache} * sets_ + index_(line);
+    Set& state = state_[set];
+    Way* ways = ways_of_sets_.data() + set * ways_;
+    std::uint32_t* table = table_.data() + set * slots_;
+    std::uint32_t slot = home(line);
+    while (table[slot] != empty) {
+      if (ways[table[slot]].line == line) {
+        if constexpr (Policy == Replacement::lru) {
+          move_to_front(state, ways, table[slot]);
+        }
+        return true;
+      }
+      slot = next(slot);
+    }
+    const std::uint32_t way = free_way(state, ways, table, set);
+    ways[way].line = line;
+    insert(table, ways, way);
+    if constexpr (Policy != Replacement::random) {
+      push_front(state, ways, way);
+    }
+    return false;
+  }
+
+ private:
+  static constexpr std::uint32_t empty = 0xffffffffU;
+  struct Way {
+    std::uint32_t line = no_line;
+    std::uint32_t newer = empty;
+    std::uint32_t older = empty;
+  };
+  struct Set {
+    std::uint32_t used = 0;
+    std::uint32_t newest = empty;
+    std::uint32_t oldest = empty;
+  };
+
+  // A power of two at least twice the ways keeps the probes short.
+  static std::uint32_t slots_for(std::uint32_t ways) {
+    std::uint32_t slots = 4;
+    while (slots < 2 * std::uint64_t{ways}) {
+      slots *= 2;
+    }
+    return slots;
+  }
+  [[nodiscard]] std::uint32_t home(std::uint32_t line) const {
+    return ((line * 0x9e3779b1U) ^ (line >> 15U)) & (slots_ - 1);
+  }
+  [[nodiscard]] std::uint32_t next(std::uint32_t slot) const { return (slot + 1) & (slots_ - 1); }
+
+  void insert(std::uint32_t* table, const Way* ways, std::uint32_t way) const {
+    std::uint32_t slot = home(ways[way].line);
+    while (table[slot] != empty) {
+      slot = next(slot);
+    }
+    table[slot] = way;
+  }
+
+  // Linear probing with backward shift: entries behind the hole move up unless that is before their home.
+  void erase(std::uint32_t* table, const Way* ways, std::uint32_t line) const {
+    std::uint32_t hole = home(line);
+    while (ways[table[hole]].line != line) {
+      hole = next(hole);
+    }
+    for (std::uint32_t slot = next(hole); table[slot] != empty; slot = next(slot)) {
+      const std::uint32_t wanted = home(ways[table[slot]].line);
+      if (((slot - wanted) & (slots_ - 1)) >= ((slot - hole) & (slots_ - 1))) {
+        table[hole] = table[slot];
+        hole = slot;
+      }
+    }
+    table[hole] = empty;
+  }
+
+  std::uint32_t free_way(Set& state, Way* ways, std::uint32_t* table, std::size_t set) {
+    if (state.used < ways_) {
+      return state.used++;
+    }
+    std::uint32_t victim = state.oldest;
+    if constexpr (Policy == Replacement::random) {
+      victim = victims_[set].next(ways_);
+    } else {
+      unlink(state, ways, victim);
+    }
+    erase(table, ways, ways[victim].line);
+    return victim;
+  }
+
+  static void unlink(Set& state, Way* ways, std::uint32_t way) {
+    const Way& gone = ways[way];
+    (gone.newer == empty ? state.newest : ways[gone.newer].older) = gone.older;
+    (gone.older == empty ? state.oldest : ways[gone.older].newer) = gone.newer;
+  }
+  static void push_front(Set& state, Way* ways, std::uint32_t way) {
+    ways[way].newer = empty;
+    ways[way].older = state.newest;
+    (state.newest == empty ? state.oldest : ways[state.newest].newer) = way;
+    state.newest = way;
+  }
+  static void move_to_front(Set& state, Way* ways, std::uint32_t way) {
+    if (state.newest != way) {
+      unlink(state, ways, way);
+      push_front(state, ways, way);
+    }
+  }
+
+  SetIndex index_;
+  std::uint32_t sets_;
+  std::uint32_t ways_;
+  std::uint32_t slots_;
+  std::vector<Way> ways_of_sets_;
+  std::vector<std::uint32_t> table_;
+  std::vector<Set> state_;
+  std::vector<VictimStream> victims_;
+};
+
+}  // namespace marti::memory

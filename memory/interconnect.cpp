@@ -1,0 +1,30 @@
+#include "memory/interconnect.h"
+
+#include "memory/bus.h"
+#include "memory/crossbar.h"
+#include "memory/ideal.h"
+#include "sim/error.h"
+
+namespace marti::memory {
+
+void Interconnect::reply(std::uint32_t /*port*/) {
+  throw sim::InternalError("a reply event for an interconnect that posts none");
+}
+
+std::unique_ptr<Interconnect> make_interconnect(const InterconnectConfig& config, const BankConfig& banks,
+                                                const InterconnectSite& site) {
+  if (config.width == 0) {
+    throw sim::UserError("an interconnect must be at least one byte wide");
+  }
+  switch (config.kind) {
+    case InterconnectKind::ideal:
+      return std::make_unique<Ideal>(config, site);
+    case InterconnectKind::crossbar:
+      return std::make_unique<Crossbar>(config, banks, site);
+    case InterconnectKind::bus:
+      break;
+  }
+  return std::make_unique<Bus>(config, banks, site);
+}
+
+}  // namespace marti::memory

@@ -1,0 +1,106 @@
+// The interconnect between the nodes of a cluster and the cluster's shared memory.
+//
+// Requests arrive in the order of simulated time. Service is first come, first served, so an
+// interconnect may compute a transaction's whole course when it arrives; where a later phase competes
+// with transactions that have not arrived yet (a split bus's reply), it posts an event of its own.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "memory/bank.h"
+#include "memory/record_kind.h"
+#include "memory/wait_statistics.h"
+#include "sim/engine.h"
+#include "sim/time.h"
+
+namespace marti::memory {
+
+enum class InterconnectKind : std::uint8_t { ideal, bus, crossbar };
+
+/// held: a read keeps the bus from its address to its last data. split: it gives the bus back while the
+/// bank works, and its data compete for the bus like a request.
+enum class BusMode : std::uint8_t { held, split };
+
+struct InterconnectConfig {
+  InterconnectKind kind = InterconnectKind::bus;
+  BusMode mode = BusMode::split;
+  sim::Clock clock = sim::Clock::from_hertz(33e6);
+  std::uint32_t width = 8;           ///< bytes a beat
+  std::int64_t cycles_per_beat = 1;  ///< cycles to move one beat of data
+  std::int64_t address_cycles = 1;   ///< bus: cycles to send an address
+  std::int64_t latency_cycles = 10;  ///< ideal: a whole read or write; crossbar: one way through it
+};
+
+/// One transaction of a port (a node of the cluster, counted from 0).
+struct Transaction {
+  std::uint32_t port = 0;
+  Address address = 0;
+  std::uint32_t bytes = 0;  ///< at least 1
+};
+
+/// How a read's time divides. The four parts add up to `done` minus the time of the request.
+struct Service {
+  sim::Ticks done = 0;
+  sim::Ticks wait_interconnect = 0;
+  sim::Ticks transfer = 0;
+  sim::Ticks wait_bank = 0;
+  sim::Ticks bank = 0;
+};
+
+/// Who issues transactions. Both calls may come during the request itself and may name a future time.
+class InterconnectClient {
+ public:
+  virtual ~InterconnectClient() = default;
+  virtual void read_done(std::uint32_t port, const Service& service) = 0;
+  /// The posted write has left the port's write buffer for good at `done`.
+  virtual void write_done(std::uint32_t port, sim::Ticks done) = 0;
+};
+
+/// What went through an interconnect. `busy` sums the transfers of all its links; `links` is how many can
+/// transfer at the same time.
+struct InterconnectStatistics {
+  std::int64_t reads = 0;
+  std::int64_t writes = 0;
+  std::int64_t bytes = 0;
+  std::int64_t links = 0;
+  sim::Ticks busy = 0;
+  WaitStatistics waits;
+};
+
+class Interconnect {
+ public:
+  virtual ~Interconnect() = default;
+
+  /// A read at the engine's current time. A port has at most one read outstanding.
+  virtual void read(const Transaction& transaction) = 0;
+  /// A posted write at the engine's current time.
+  virtual void write(const Transaction& transaction) = 0;
+  /// The event of the site's reply class for `port` has come up; only an interconnect that posts such
+  /// events is ever called.
+  virtual void reply(std::uint32_t port);
+
+  [[nodiscard]] virtual const InterconnectStatistics& statistics() const = 0;
+  /// Statistics of the banks behind it; empty where no banks are modelled.
+  [[nodiscard]] virtual const std::vector<BankStatistics>& bank_statistics() const = 0;
+  /// Time of a read of `bytes` that meets no other transaction.
+  [[nodiscard]] virtual sim::Ticks unloaded_read(std::uint32_t bytes) const = 0;
+};
+
+/// Where an interconnect is plugged in. Whoever handles the engine's events of `reply_class` passes each on
+/// to `reply` of the interconnect whose ports the event's component lies among.
+struct InterconnectSite {
+  sim::Engine& engine;
+  InterconnectClient& client;
+  std::uint8_t reply_class = 0;
+  std::uint32_t first_component = 0;  ///< port p's events carry component first_component + p
+  std::uint32_t ports = 0;
+};
+
+/// Builds the interconnect that the configuration names. Engine and client must outlive it.
+[[nodiscard]] std::unique_ptr<Interconnect> make_interconnect(const InterconnectConfig& config,
+                                                              const BankConfig& banks,
+                                                              const InterconnectSite& site);
+
+}  // namespace marti::memory

@@ -1,0 +1,73 @@
+// The database layout: where each record lives, computed from record sizes and an alignment.
+//
+// The sections lie one behind the other from address 0: nodes, object lists, primitives, materials,
+// texels, frame buffer. Records of a section are a stride apart: the record's size rounded up to the
+// record alignment (object lists and texels are packed arrays of entries, so they are not padded).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "memory/record_kind.h"
+
+namespace marti::memory {
+
+enum class NodeOrder : std::uint8_t { breadth_first, depth_first };
+
+/// Record sizes in bytes, each at least 1.
+struct LayoutConfig {
+  std::uint32_t node_bytes = 8;   ///< kind and count in one word, first child or first entry in the other
+  std::uint32_t entry_bytes = 4;  ///< one object reference of a leaf's list
+  std::uint32_t primitive_bytes = 48;  ///< three vertices of three 4-byte coordinates, material, padding
+  std::uint32_t material_bytes = 64;
+  std::uint32_t texel_bytes = 4;
+  std::uint32_t pixel_bytes = 4;
+  std::uint32_t record_alignment = 4;      ///< a power of two
+  std::uint32_t section_alignment = 4096;  ///< a power of two; every section starts on a multiple of it
+  NodeOrder node_order = NodeOrder::breadth_first;
+};
+
+/// Number of records in each section.
+using RecordCounts = std::array<std::uint64_t, record_kinds>;
+
+/// The layout of one database. Throws UserError for a size of zero, an alignment that is not a power of
+/// two, or a database beyond 2^48 bytes.
+class Layout {
+ public:
+  Layout(const LayoutConfig& config, const RecordCounts& counts);
+
+  /// Address of record `index` of a section.
+  [[nodiscard]] Address address(RecordKind kind, std::uint64_t index) const {
+    const Section& section = sections_[static_cast<std::size_t>(kind)];
+    return section.base + index * section.stride;
+  }
+  [[nodiscard]] std::uint32_t record_bytes(RecordKind kind) const {
+    return sections_[static_cast<std::size_t>(kind)].bytes;
+  }
+  [[nodiscard]] Address base(RecordKind kind) const { return sections_[static_cast<std::size_t>(kind)].base; }
+  [[nodiscard]] std::uint32_t stride(RecordKind kind) const {
+    return sections_[static_cast<std::size_t>(kind)].stride;
+  }
+  /// Bytes of one section's records, without the gap behind it.
+  [[nodiscard]] std::uint64_t section_bytes(RecordKind kind) const {
+    const Section& section = sections_[static_cast<std::size_t>(kind)];
+    return section.count * section.stride;
+  }
+  /// One past the last address, frame buffer included.
+  [[nodiscard]] Address end() const { return end_; }
+  /// Bytes of all sections but the frame buffer: what a node or a cluster keeps a copy of.
+  [[nodiscard]] std::uint64_t database_bytes() const;
+
+ private:
+  struct Section {
+    Address base = 0;
+    std::uint64_t count = 0;
+    std::uint32_t stride = 0;
+    std::uint32_t bytes = 0;
+  };
+  std::array<Section, record_kinds> sections_{};
+  Address end_ = 0;
+};
+
+}  // namespace marti::memory

@@ -1,0 +1,36 @@
+// A shared wire: how long data take on it, and its queue, first come first served.
+#pragma once
+
+#include <algorithm>
+
+#include "memory/interconnect.h"
+
+namespace marti::memory {
+
+/// Time of `bytes` on a link of the configured width, in whole beats.
+class BeatTime {
+ public:
+  explicit BeatTime(const InterconnectConfig& config)
+      : width_(config.width), beat_(config.clock.cycles(config.cycles_per_beat)) {}
+  [[nodiscard]] sim::Ticks operator()(std::uint32_t bytes) const {
+    return sim::multiply_ticks(beat_, (std::int64_t{bytes} + width_ - 1) / width_);
+  }
+
+ private:
+  std::int64_t width_;
+  sim::Ticks beat_;
+};
+
+/// One server with a queue. Calls must come in the order of their arrivals.
+class Link {
+ public:
+  /// When a tenure that asks at `arrival` begins.
+  [[nodiscard]] sim::Ticks begin(sim::Ticks arrival) const { return std::max(arrival, free_at_); }
+  /// The tenure that has begun last keeps the link until `end`.
+  void hold_until(sim::Ticks end) { free_at_ = end; }
+
+ private:
+  sim::Ticks free_at_ = 0;
+};
+
+}  // namespace marti::memory

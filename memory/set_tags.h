@@ -1,0 +1,97 @@
+// Tags of set-associative caches with few ways, searched one by one.
+//
+// One object holds the tags of many equal caches (one per simulated node) in one array, so that 65,536
+// small caches are one allocation and a look-up touches only its own set.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "memory/cache_config.h"
+
+namespace marti::memory {
+
+/// Line numbers are 32 bits; this one is never a line of a database.
+inline constexpr std::uint32_t no_line = 0xffffffffU;
+
+/// The set of a line: the line's number modulo the number of sets.
+class SetIndex {
+ public:
+  explicit SetIndex(std::uint32_t sets) : sets_(sets), mask_(sets - 1), masked_((sets & (sets - 1)) == 0) {}
+  std::uint32_t operator()(std::uint32_t line) const { return masked_ ? line & mask_ : line % sets_; }
+
+ private:
+  std::uint32_t sets_;
+  std::uint32_t mask_;
+  bool masked_;
+};
+
+/// `Policy` decides the victim; `Ways` is the number of ways where it is known when compiling, 0 where it
+/// is not. Within a set, LRU and FIFO keep the newest line first (LRU also moves a line there when it
+/// hits), so the victim is always the last; random replacement leaves lines where they are.
+template <Replacement Policy, std::uint32_t Ways>
+class SetTags {
+ public:
+  SetTags(const CacheShape& shape, std::uint32_t caches, std::uint64_t seed)
+      : index_(shape.sets),
+        sets_(shape.sets),
+        ways_(shape.ways),
+        tags_(std::size_t{caches} * shape.lines(), no_line) {
+    if constexpr (Policy == Replacement::random) {
+      const std::uint64_t all_sets = std::uint64_t{caches} * shape.sets;
+      victims_.reserve(all_sets);
+      for (std::uint64_t set = 0; set < all_sets; ++set) {
+        victims_.emplace_back(seed, set);
+      }
+    }
+  }
+
+  /// Looks `line` up in cache number `cache`; true when it is there. Brings it in when it is not.
+  bool access(std::uint32_t cache, std::uint32_t line) {
+    const std::size_t set = std::size_t{cache} * sets_ + index_(line);
+    const std::uint32_t ways = Ways == 0 ? ways_ : Ways;
+    std::uint32_t* tags = tags_.data() + set * ways;
+    if (tags[0] == line) {
+      return true;
+    }
+    std::uint32_t at = 1;
+    while (at < ways && tags[at] != line) {
+      ++at;
+    }
+    if constexpr (Policy == Replacement::random) {
+      if (at < ways) {
+        return true;
+      }
+      replace_at_random(tags, ways, set, line);
+      return false;
+    } else {
+      const bool hit = at < ways;
+      if (Policy == Replacement::fifo && hit) {
+        return true;
+      }
+      for (std::uint32_t way = hit ? at : ways - 1; way > 0; --way) {
+        tags[way] = tags[way - 1];
+      }
+      tags[0] = line;
+      return hit;
+    }
+  }
+
+ private:
+  // Empty ways are filled from the first on before a victim is drawn.
+  void replace_at_random(std::uint32_t* tags, std::uint32_t ways, std::size_t set, std::uint32_t line) {
+    std::uint32_t way = 0;
+    while (way < ways && tags[way] != no_line) {
+      ++way;
+    }
+    tags[way < ways ? way : victims_[set].next(ways)] = line;
+  }
+
+  SetIndex index_;
+  std::uint32_t sets_;
+  std::uint32_t ways_;
+  std::vector<std::uint32_t> tags_;
+  std::vector<VictimStream> victims_;
+};
+
+}  // namespace marti::memory

@@ -1,0 +1,177 @@
+#include "sim/config.h"
+
+#include <algorithm>
+
+#include "sim/error.h"
+
+namespace marti::sim {
+
+namespace {
+
+/// Is `key` the name itself or a key below the section of that name?
+bool covers(std::string_view name, std::string_view key) {
+  return key == name || (key.starts_with(name) && key[name.size()] == '.');
+}
+
+template <class T>
+std::vector<T> unpack(std::span<const Value> values) {
+  std::vector<T> unpacked;
+  unpacked.reserve(values.size());
+  for (const Value& value : values) {
+    unpacked.push_back(std::get<T>(value));
+  }
+  return unpacked;
+}
+
+}  // namespace
+
+Config::Config(Schema schema, std::string name) : schema_(std::move(schema)), name_(std::move(name)) {
+  entries_.resize(schema_.keys().size());
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    entries_[i].values = schema_.keys()[i].default_value;
+  }
+}
+
+std::size_t Config::index_of(std::string_view key) const {
+  const std::optional<std::size_t> index = schema_.find(key);
+  if (!index) {
+    throw InternalError("the key " + std::string(key) + " is not declared");
+  }
+  return *index;
+}
+
+const Config::Entry& Config::read(std::string_view key, ValueType type, bool is_list) const {
+  const std::size_t index = index_of(key);
+  if (schema_.keys()[index].type != type || schema_.keys()[index].is_list != is_list) {
+    throw InternalError("the key " + std::string(key) + " is read as another type than it is declared");
+  }
+  entries_[index].used = true;
+  return entries_[index];
+}
+
+bool Config::boolean(std::string_view key) const {
+  return std::get<bool>(read(key, ValueType::boolean, false).values.front());
+}
+
+std::int64_t Config::integer(std::string_view key) const {
+  return std::get<std::int64_t>(read(key, ValueType::integer, false).values.front());
+}
+
+double Config::real(std::string_view key) const {
+  return std::get<double>(read(key, ValueType::real, false).values.front());
+}
+
+const std::string& Config::text(std::string_view key) const {
+  return std::get<std::string>(read(key, ValueType::text, false).values.front());
+}
+
+std::size_t Config::choice(std::string_view key) const {
+  const std::vector<std::string>& choices = schema_.keys()[index_of(key)].choices;
+  const auto found = std::find(choices.begin(), choices.end(), choice_name(key));
+  return static_cast<std::size_t>(found - choices.begin());
+}
+
+const std::string& Config::choice_name(std::string_view key) const {
+  return std::get<std::string>(read(key, ValueType::choice, false).values.front());
+}
+
+std::int64_t Config::size(std::string_view key) const {
+  return std::get<std::int64_t>(read(key, ValueType::size, false).values.front());
+}
+
+double Config::frequency(std::string_view key) const {
+  return std::get<double>(read(key, ValueType::frequency, false).values.front());
+}
+
+Ticks Config::duration(std::string_view key) const {
+  return std::get<std::int64_t>(read(key, ValueType::duration, false).values.front());
+}
+
+double Config::percentage(std::string_view key) const {
+  return std::get<double>(read(key, ValueType::percentage, false).values.front());
+}
+
+std::vector<std::int64_t> Config::integers(std::string_view key) const {
+  return unpack<std::int64_t>(read(key, ValueType::integer, true).values);
+}
+
+std::vector<double> Config::reals(std::string_view key) const {
+  return unpack<double>(read(key, ValueType::real, true).values);
+}
+
+std::vector<std::string> Config::texts(std::string_view key) const {
+  return unpack<std::string>(read(key, ValueType::text, true).values);
+}
+
+std::span<const Value> Config::values(std::string_view key) const {
+  const Entry& entry = entries_[index_of(key)];
+  entry.used = true;
+  return entry.values;
+}
+
+bool Config::given(std::string_view key) const { return entries_[index_of(key)].given; }
+
+std::string Config::where(std::string_view key) const { return where(entries_[index_of(key)]); }
+
+std::string Config::where(const Entry& entry) const {
+  if (!entry.given) {
+    return "default";
+  }
+  return entry.line > 0 ? name_ + ":" + std::to_string(entry.line) : "--set " + entry.assignment;
+}
+
+void Config::fail(std::string_view key, std::string_view message) const {
+  const Entry& entry = entries_[index_of(key)];
+  if (entry.given && entry.line == 0) {  // an assignment already names the key
+    throw UserError(where(entry) + ": " + std::string(message));
+  }
+  // A default cannot be pointed at: the file in which it could be changed can.
+  const std::string place = entry.given ? where(entry) : name_;
+  throw UserError(place + ": " + std::string(key) + ": " + std::string(message));
+}
+
+void Config::mark_unused_reason(std::string_view key_or_section, std::string_view reason) {
+  ensure(schema_.find(key_or_section).has_value() || schema_.is_section(key_or_section),
+         "a reason is given for a key that is not declared");
+  unused_reasons_.emplace_back(key_or_section, reason);
+}
+
+void Config::refuse_unused() const {
+  const Entry* first = nullptr;
+  std::string_view key;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const Entry& entry = entries_[i];
+    // The first by line; assignments, which have line 0, only when nothing in the file is unused.
+    const bool earlier =
+        first == nullptr || (entry.line > 0 && (first->line == 0 || entry.line < first->line));
+    if (entry.given && !entry.used && earlier) {
+      first = &entry;
+      key = schema_.names()[i];
+    }
+  }
+  if (first == nullptr) {
+    return;
+  }
+  const std::pair<std::string, std::string>* best = nullptr;
+  for (const auto& reason : unused_reasons_) {
+    if (covers(reason.first, key) && (best == nullptr || reason.first.size() >= best->first.size())) {
+      best = &reason;
+    }
+  }
+  fail(key,
+       best == nullptr ? "is not used by this configuration; leave it out" : "is not used: " + best->second);
+}
+
+std::vector<EffectiveValue> Config::effective_values() const {
+  std::vector<EffectiveValue> effective;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const Entry& entry = entries_[i];
+    if (entry.used) {
+      const Key& key = schema_.keys()[i];
+      effective.push_back({key.name, print_values(key, entry.values), entry.given, where(entry)});
+    }
+  }
+  return effective;
+}
+
+}  // namespace marti::sim

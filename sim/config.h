@@ -1,0 +1,108 @@
+// A configuration: the values given in a TOML file and by `--set key=value`, checked against a Schema.
+//
+// Whatever is wrong with the input is a UserError whose message begins with "file:line: key: " or with
+// "--set key=value: " and says what would be right: a missing, huge or malformed file, an unknown key
+// (with the nearest valid name), a wrong type, a value out of range, a key that is given but not used.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sim/schema.h"
+#include "sim/time.h"
+
+namespace marti::sim {
+
+/// The value a key had in a run, for its provenance.
+struct EffectiveValue {
+  std::string key;
+  std::string value;   // as one would write it in a TOML file
+  bool given = false;  // false: the default
+  std::string source;  // "file:line", "--set key=value" or "default"
+};
+
+class Config {
+ public:
+  /// Reads a file of at most 1 MiB. Each assignment is the "key=value" of a --set option; they override
+  /// the file, and later ones earlier ones. A value is read as TOML, or as a bare text where it is none
+  /// (`cache.size=32KiB`) or the key is a text or a choice.
+  static Config from_file(const Schema& schema, const std::filesystem::path& file,
+                          std::span<const std::string> assignments = {});
+  /// The same from a text; `name` takes the file's place in messages.
+  static Config from_text(const Schema& schema, std::string_view text, std::string_view name,
+                          std::span<const std::string> assignments = {});
+
+  // The value of a key, or its default when it is not given. Each call marks the key as used, so a Config
+  // must not be read by two threads at once. Asking for an undeclared key, or for another type than the
+  // declared one, is an InternalError. References live as long as the Config.
+  [[nodiscard]] bool boolean(std::string_view key) const;
+  [[nodiscard]] std::int64_t integer(std::string_view key) const;
+  [[nodiscard]] double real(std::string_view key) const;
+  [[nodiscard]] const std::string& text(std::string_view key) const;
+  /// Index into the declared choices.
+  [[nodiscard]] std::size_t choice(std::string_view key) const;
+  [[nodiscard]] const std::string& choice_name(std::string_view key) const;
+  /// The choice as an enumeration whose values are the indices of the declared choices.
+  template <class Enum>
+  [[nodiscard]] Enum choice_as(std::string_view key) const {
+    return static_cast<Enum>(choice(key));
+  }
+  [[nodiscard]] std::int64_t size(std::string_view key) const;  // bytes
+  [[nodiscard]] double frequency(std::string_view key) const;   // hertz
+  [[nodiscard]] Ticks duration(std::string_view key) const;     // ticks
+  [[nodiscard]] double percentage(std::string_view key) const;  // fraction
+  [[nodiscard]] std::vector<std::int64_t> integers(std::string_view key) const;
+  [[nodiscard]] std::vector<double> reals(std::string_view key) const;
+  [[nodiscard]] std::vector<std::string> texts(std::string_view key) const;
+  /// The values of any key, lists included.
+  [[nodiscard]] std::span<const Value> values(std::string_view key) const;
+
+  /// Was the key given, in the file or by --set? Does not mark it as used.
+  [[nodiscard]] bool given(std::string_view key) const;
+  /// "file:line", "--set key=value" or "default".
+  [[nodiscard]] std::string where(std::string_view key) const;
+  /// Throws the UserError "file:line: key: message" or "--set key=value: message"; of a key that is not
+  /// given, "file: key: message".
+  [[noreturn]] void fail(std::string_view key, std::string_view message) const;
+
+  /// Why the key, or all keys below the section, are not used in this machine ("has no effect with
+  /// interconnect.kind = \"ideal\""). The longest matching name wins.
+  void mark_unused_reason(std::string_view key_or_section, std::string_view reason);
+  /// Throws a UserError when a key is given that nobody has read. Call it when the machine is assembled.
+  void refuse_unused() const;
+
+  /// The values of all keys read so far, in the order of the schema.
+  [[nodiscard]] std::vector<EffectiveValue> effective_values() const;
+
+  [[nodiscard]] const Schema& schema() const { return schema_; }
+  /// The file's name as it appears in messages.
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  struct Entry {
+    std::vector<Value> values;  // the default when not given
+    bool given = false;
+    int line = 0;            // in the file; 0 when set by an assignment
+    std::string assignment;  // "key=value" of the --set option
+    mutable bool used = false;
+  };
+
+  Config(Schema schema, std::string name);
+  const Entry& read(std::string_view key, ValueType type, bool is_list) const;
+  [[nodiscard]] std::size_t index_of(std::string_view key) const;
+  [[nodiscard]] std::string where(const Entry& entry) const;
+
+  friend class ConfigReader;
+
+  Schema schema_;
+  std::string name_;
+  std::vector<Entry> entries_;  // one for each key of the schema, in its order
+  std::vector<std::pair<std::string, std::string>> unused_reasons_;
+};
+
+}  // namespace marti::sim

@@ -1,0 +1,50 @@
+// The event kernel: hands each pending event, in total order, to the handler of its class.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "sim/event_queue.h"
+#include "sim/time.h"
+
+namespace marti::sim {
+
+/// Whatever events are handed to. Handlers do not own the engine and outlive its run.
+class EventHandler {
+ public:
+  virtual ~EventHandler() = default;
+  /// `event.time` is the engine's current time. New events may be posted from here.
+  virtual void handle(const Event& event) = 0;
+};
+
+/// Runs a simulation. Not shared between threads: each simulated machine has its own engine.
+class Engine {
+ public:
+  static constexpr std::size_t max_classes = 16;
+
+  /// All events of `event_class` (below max_classes) go to `handler`. Lower classes come first at equal
+  /// times.
+  void attach(std::uint8_t event_class, EventHandler& handler) { handlers_.at(event_class) = &handler; }
+
+  /// `event` must not lie in the past; that is a fault of the simulator, never of its input.
+  void post(const Event& event) {
+    ensure(event.time >= now_, "an event was posted in the past");
+    queue_.push(event);
+  }
+
+  /// Handles events until none is left. Throws InternalError when more than `limit` events are handled
+  /// at one tick, which only a machine that makes no progress can do.
+  void run(std::uint64_t limit_per_tick);
+
+  [[nodiscard]] Ticks now() const { return now_; }
+  [[nodiscard]] std::uint64_t events() const { return events_; }
+  void reserve(std::size_t events) { queue_.reserve(events); }
+
+ private:
+  EventQueue queue_;
+  std::array<EventHandler*, max_classes> handlers_{};
+  Ticks now_ = 0;
+  std::uint64_t events_ = 0;
+};
+
+}  // namespace marti::sim

@@ -1,0 +1,114 @@
+// The pending events, earliest first, as a 4-ary heap of 16-byte keys.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sim/time.h"
+
+namespace marti::sim {
+
+inline constexpr unsigned sequence_bits = 24;
+inline constexpr unsigned component_bits = 32;
+
+/// One event. Events are ordered by (time, class, component, sequence), packed so that two integer
+/// comparisons decide; equal times never depend on the order of insertion. The poster gives a component
+/// that may have several events of one class pending a sequence number that tells them apart.
+struct Event {
+  Ticks time = 0;
+  std::uint64_t order = 0;
+
+  [[nodiscard]] static Event make(Ticks time, std::uint8_t event_class, std::uint32_t component,
+                                  std::uint32_t sequence = 0) {
+    return {time, (std::uint64_t{event_class} << (component_bits + sequence_bits)) |
+                      (std::uint64_t{component} << sequence_bits) |
+                      (sequence & ((1U << sequence_bits) - 1U))};
+  }
+  [[nodiscard]] std::uint8_t event_class() const {
+    return static_cast<std::uint8_t>(order >> (component_bits + sequence_bits));
+  }
+  [[nodiscard]] std::uint32_t component() const { return static_cast<std::uint32_t>(order >> sequence_bits); }
+  [[nodiscard]] std::uint32_t sequence() const {
+    return static_cast<std::uint32_t>(order) & ((1U << sequence_bits) - 1U);
+  }
+
+  friend bool operator<(const Event& a, const Event& b) {
+    return a.time != b.time ? a.time < b.time : a.order < b.order;
+  }
+};
+
+/// A priority queue of events. `pop` leaves a hole at the root that a following `push` fills, because a
+/// handler nearly always posts one event: that is one pass down the heap instead of two.
+class EventQueue {
+ public:
+  [[nodiscard]] bool empty() const { return heap_.size() == (hole_ ? 1U : 0U); }
+  [[nodiscard]] std::size_t size() const { return heap_.size() - (hole_ ? 1U : 0U); }
+  void reserve(std::size_t events) { heap_.reserve(events); }
+
+  void push(const Event& event) {
+    if (hole_) {
+      hole_ = false;
+      sift_down(event);
+      return;
+    }
+    heap_.push_back(event);
+    std::size_t at = heap_.size() - 1;
+    while (at > 0) {
+      const std::size_t parent = (at - 1) / arity;
+      if (!(event < heap_[parent])) {
+        break;
+      }
+      heap_[at] = heap_[parent];
+      at = parent;
+    }
+    heap_[at] = event;
+  }
+
+  /// Removes and returns the earliest event. The queue must not be empty.
+  Event pop() {
+    fill_hole();
+    hole_ = true;
+    return heap_.front();
+  }
+
+ private:
+  static constexpr std::size_t arity = 4;
+
+  void fill_hole() {
+    if (hole_) {
+      hole_ = false;
+      const Event last = heap_.back();
+      heap_.pop_back();
+      sift_down(last);
+    }
+  }
+
+  // Moves the root's hole down until `event` fits in it.
+  void sift_down(const Event& event) {
+    const std::size_t size = heap_.size();
+    std::size_t at = 0;
+    for (;;) {
+      const std::size_t first = at * arity + 1;
+      if (first >= size) {
+        break;
+      }
+      std::size_t least = first;
+      const std::size_t end = first + arity < size ? first + arity : size;
+      for (std::size_t child = first + 1; child < end; ++child) {
+        least = heap_[child] < heap_[least] ? child : least;
+      }
+      if (!(heap_[least] < event)) {
+        break;
+      }
+      heap_[at] = heap_[least];
+      at = least;
+    }
+    heap_[at] = event;
+  }
+
+  std::vector<Event> heap_;
+  bool hole_ = false;
+};
+
+}  // namespace marti::sim

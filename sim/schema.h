@@ -1,0 +1,117 @@
+// The keys a configuration may hold. Each key is declared once, with type, default, range, unit and
+// meaning; reading (sim/config.h), `marti config` and the reference in docs/ all come from here. Each
+// folder declares its own keys in a function `void declare_<what>_keys(sim::Schema&)`.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <variant>
+#include <vector>
+
+#include "sim/time.h"
+
+namespace marti::sim {
+
+enum class ValueType { boolean, integer, real, text, choice, size, frequency, duration, percentage };
+
+/// "integer", "size", ...
+std::string_view name_of(ValueType type);
+
+/// One value. boolean: bool; integer, size (bytes), duration (ticks): int64; real, frequency (hertz),
+/// percentage (fraction): double; text, choice: string.
+using Value = std::variant<bool, std::int64_t, double, std::string>;
+
+/// As one would write it in a TOML file: `"16 KiB"`, `3`, `0.5`, `true`.
+std::string print_value(ValueType type, const Value& value);
+
+struct Key {
+  std::string name;  // dotted: "cache.size"
+  ValueType type = ValueType::text;
+  bool is_list = false;
+  std::vector<Value> default_value;  // exactly one unless is_list
+  std::optional<Value> minimum;      // inclusive; never for boolean, text, choice
+  std::optional<Value> maximum;
+  std::vector<std::string> choices;  // of a choice, in the order of their indices
+  std::string unit;                  // of an integer or a real: "cycles"; empty when it has none
+  std::string meaning;               // one or two sentences, without the full stop
+};
+
+/// The values of `key`, a list in brackets, as one would write them in a TOML file.
+std::string print_values(const Key& key, std::span<const Value> values);
+/// "16 KiB to 1 GiB", "lru, fifo or random", "at least 1"; empty when everything of the type is allowed.
+std::string print_range(const Key& key);
+
+/// Does a value of the key's type lie within its range or among its choices?
+bool in_range(const Key& key, const Value& value);
+
+/// A headed group of keys: "cache" holds "cache.size". Names may be dotted themselves.
+struct Section {
+  std::string name;  // prefix without the last dot
+  std::string meaning;
+};
+
+class Schema {
+ public:
+  template <class T>
+  struct Range {
+    std::optional<T> minimum{};
+    std::optional<T> maximum{};
+  };
+
+  /// Describes the keys with this prefix. Call it before declaring them.
+  void section(std::string_view name, std::string_view meaning);
+
+  // A declaration throws InternalError when the name was declared before, is not made of lower-case
+  // letters, digits, '_' and '.', or the default lies outside the range. Ranges and defaults of sizes,
+  // frequencies, durations and percentages are written with their units.
+  void boolean(std::string_view name, bool default_value, std::string_view meaning);
+  void integer(std::string_view name, std::int64_t default_value, Range<std::int64_t> range,
+               std::string_view unit, std::string_view meaning);
+  void real(std::string_view name, double default_value, Range<double> range, std::string_view unit,
+            std::string_view meaning);
+  void text(std::string_view name, std::string_view default_value, std::string_view meaning);
+  void choice(std::string_view name, std::string_view default_value, std::vector<std::string> choices,
+              std::string_view meaning);
+  void size(std::string_view name, std::string_view default_value, Range<std::string_view> range,
+            std::string_view meaning);
+  void frequency(std::string_view name, std::string_view default_value, Range<std::string_view> range,
+                 std::string_view meaning);
+  void duration(std::string_view name, std::string_view default_value, Range<std::string_view> range,
+                std::string_view meaning);
+  void percentage(std::string_view name, std::string_view default_value, Range<std::string_view> range,
+                  std::string_view meaning);
+  void integers(std::string_view name, std::vector<std::int64_t> default_value, Range<std::int64_t> range,
+                std::string_view unit, std::string_view meaning);
+  void reals(std::string_view name, std::vector<double> default_value, Range<double> range,
+             std::string_view unit, std::string_view meaning);
+  void texts(std::string_view name, std::vector<std::string> default_value, std::string_view meaning);
+  /// Any key, for what the functions above do not cover (lists of choices, of sizes, ...).
+  void add(Key key);
+
+  /// In the order of declaration.
+  [[nodiscard]] std::span<const Key> keys() const { return keys_; }
+  [[nodiscard]] std::span<const Section> sections() const { return sections_; }
+  [[nodiscard]] std::span<const std::string> names() const { return names_; }
+  /// Index into keys(), if the key is declared.
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
+  /// Is `name` a proper prefix of declared keys ("cache" of "cache.size")?
+  [[nodiscard]] bool is_section(std::string_view name) const;
+
+ private:
+  std::vector<Key> keys_;
+  std::vector<std::string> names_;
+  std::vector<Section> sections_;
+  std::unordered_map<std::string, std::size_t> index_;
+};
+
+/// Every key with type, default, unit, range and meaning, for a terminal `width` columns wide.
+std::string list_keys_as_text(const Schema& schema, int width = 100);
+/// The same as Markdown, one table a section.
+std::string list_keys_as_markdown(const Schema& schema);
+
+}  // namespace marti::sim

@@ -1,0 +1,236 @@
+// Declared statistics. A component counts in a plain struct of int64 members and declares each member
+// once, with name, unit and description, in a static constexpr function counters(); ratios are formulas of
+// counters, declared in formulas(), and never stored:
+//
+//   struct CacheCounters {
+//     std::int64_t references = 0;
+//     std::int64_t hits = 0;
+//     static constexpr auto counters() {
+//       using C = Counter<CacheCounters>;
+//       return std::array{C{"references", "1", "lines asked for", &CacheCounters::references},
+//                         C{"hits", "1", "lines found", &CacheCounters::hits}};
+//     }
+//     static constexpr auto formulas() {
+//       using F = Formula<CacheCounters>;
+//       return std::array{F{"hit_ratio", "1", "hits / references",
+//                           [](const CacheCounters& c) { return ratio(c.hits, c.references); }}};
+//     }
+//   };
+//
+// Counting is one raw increment. Merging is exact integer arithmetic, hence associative and commutative:
+// the result does not depend on the number of threads. Statistics know no output format.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "sim/error.h"
+
+namespace marti::sim {
+
+enum class MergeRule {
+  sum,
+  maximum,  // of a peak, such as the longest queue
+};
+
+/// One declared counter. `unit` is "1" for a plain count, else "byte", "ps", "ps2", "cycle", ...
+template <class S>
+struct Counter {
+  std::string_view name;
+  std::string_view unit;
+  std::string_view description;
+  std::int64_t S::*member;
+  MergeRule rule = MergeRule::sum;
+};
+
+/// One declared formula; it has no value where its denominator is zero.
+template <class S>
+struct Formula {
+  std::string_view name;
+  std::string_view unit;
+  std::string_view description;
+  std::optional<double> (*value)(const S&);
+};
+
+/// numerator / denominator, or nothing when the denominator is zero.
+constexpr std::optional<double> ratio(std::int64_t numerator, std::int64_t denominator) {
+  if (denominator == 0) {
+    return std::nullopt;
+  }
+  return static_cast<double>(numerator) / static_cast<double>(denominator);
+}
+
+template <class S>
+concept HasCounters = requires {
+  { S::counters()[0].member } -> std::convertible_to<std::int64_t S::*>;
+};
+
+template <class S>
+concept HasFormulas = requires(const S& s) {
+  { S::formulas()[0].value(s) } -> std::convertible_to<std::optional<double>>;
+};
+
+/// For structs that hold nothing but counters: is every member declared, once? Use it in a static_assert.
+template <HasCounters S>
+constexpr bool declares_every_member() {
+  constexpr auto table = S::counters();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (table[i].member == table[j].member || table[i].name == table[j].name) {
+        return false;
+      }
+    }
+  }
+  return sizeof(S) == table.size() * sizeof(std::int64_t);
+}
+
+/// Calls visit(const Counter<S>&, std::int64_t value) for each counter in the order of declaration.
+template <HasCounters S, class Visitor>
+void for_each_counter(const S& statistics, Visitor&& visit) {
+  constexpr auto table = S::counters();
+  for (const auto& counter : table) {
+    visit(counter, statistics.*counter.member);
+  }
+}
+
+/// Calls visit(const Formula<S>&, std::optional<double> value) for each formula.
+template <HasFormulas S, class Visitor>
+void for_each_formula(const S& statistics, Visitor&& visit) {
+  constexpr auto table = S::formulas();
+  for (const auto& formula : table) {
+    visit(formula, formula.value(statistics));
+  }
+}
+
+/// Adds `from` to `into`. A sum that does not fit in 64 bits is an InternalError.
+template <HasCounters S>
+void merge(S& into, const S& from) {
+  constexpr auto table = S::counters();
+  for (const auto& counter : table) {
+    std::int64_t& value = into.*counter.member;
+    if (counter.rule == MergeRule::maximum) {
+      value = std::max(value, from.*counter.member);
+    } else {
+      ensure(!__builtin_add_overflow(value, from.*counter.member, &value), "a counter overflowed");
+    }
+  }
+}
+
+/// What was counted between two snapshots, so that a warm-up can be removed. A maximum cannot be taken
+/// back: it stays that of `later`.
+template <HasCounters S>
+S difference(const S& later, const S& earlier) {
+  constexpr auto table = S::counters();
+  S result = later;
+  for (const auto& counter : table) {
+    if (counter.rule == MergeRule::sum) {
+      std::int64_t& value = result.*counter.member;
+      ensure(!__builtin_sub_overflow(value, earlier.*counter.member, &value), "a counter overflowed");
+    }
+  }
+  return result;
+}
+
+/// Count, sum, sum of squares and extremes of int64 samples, all exact: 128 bits hold the sum and 192 the
+/// sum of squares of any 2^63 samples. Mean and variance are rounded once, at the end; running means in
+/// floating point freeze or lose all digits at large offsets.
+class Moments {
+ public:
+  void add(std::int64_t sample) {
+    ++count_;
+    sum_ += sample;
+    add_square(static_cast<Wide>(static_cast<__int128>(sample) * sample));
+    minimum_ = std::min(minimum_, sample);
+    maximum_ = std::max(maximum_, sample);
+  }
+  void merge(const Moments& other);
+
+  [[nodiscard]] std::int64_t count() const { return count_; }
+  /// The sum, or an InternalError when it does not fit in 64 bits.
+  [[nodiscard]] std::int64_t sum() const;
+  /// Zero without samples.
+  [[nodiscard]] std::int64_t minimum() const { return count_ == 0 ? 0 : minimum_; }
+  [[nodiscard]] std::int64_t maximum() const { return count_ == 0 ? 0 : maximum_; }
+  /// Nothing without samples.
+  [[nodiscard]] std::optional<double> mean() const;
+  /// Of the samples themselves, E[x^2] - E[x]^2, computed as (n sum(x^2) - sum(x)^2) / n^2 in whole
+  /// numbers of 256 bits. Nothing without samples.
+  [[nodiscard]] std::optional<double> variance() const;
+
+  friend bool operator==(const Moments&, const Moments&) = default;
+
+ private:
+  using Wide = unsigned __int128;
+  void add_square(Wide square) {
+    squares_ += square;
+    squares_carry_ += squares_ < square ? 1U : 0U;
+  }
+
+  std::int64_t count_ = 0;
+  std::int64_t minimum_ = INT64_MAX;
+  std::int64_t maximum_ = INT64_MIN;
+  std::uint64_t squares_carry_ = 0;  // the sum of squares is squares_carry_ 2^128 + squares_
+  __int128 sum_ = 0;
+  Wide squares_ = 0;
+};
+
+/// A histogram of samples >= 0: exact below 16, then 8 buckets for each power of two, so that a bucket is
+/// at most 12.5 % of its lower bound wide. Memory grows with the logarithm of the largest sample (at most
+/// 4 KB).
+class LogHistogram {
+ public:
+  /// An InternalError when `sample` is negative.
+  void add(std::int64_t sample) {
+    const std::size_t bucket = bucket_of(sample);
+    if (bucket >= buckets_.size()) [[unlikely]] {
+      buckets_.resize(bucket + 1);
+    }
+    ++buckets_[bucket];
+    ++count_;
+    maximum_ = std::max(maximum_, sample);
+  }
+  void merge(const LogHistogram& other);
+
+  [[nodiscard]] std::int64_t count() const { return count_; }
+  /// Exact; zero without samples.
+  [[nodiscard]] std::int64_t maximum() const { return maximum_; }
+  /// The p-th percentile by nearest rank, 0 < p <= 100: never below the exact one and at most 12.5 % above
+  /// it; percentile(100) is the maximum. Nothing without samples.
+  [[nodiscard]] std::optional<std::int64_t> percentile(double p) const;
+
+  struct Bucket {
+    std::int64_t lowest = 0;  // smallest and largest sample that falls into it
+    std::int64_t highest = 0;
+    std::int64_t count = 0;
+  };
+  /// The buckets that are not empty, in ascending order.
+  [[nodiscard]] std::vector<Bucket> buckets() const;
+
+  static std::size_t bucket_of(std::int64_t sample) {
+    ensure(sample >= 0, "a histogram takes no negative sample");
+    const auto value = static_cast<std::uint64_t>(sample);
+    if (value < 16) {
+      return static_cast<std::size_t>(value);
+    }
+    const auto exponent = static_cast<unsigned>(std::bit_width(value)) - 1;  // 4 to 62
+    return 16 + (exponent - 4) * 8 + ((value >> (exponent - 3)) & 7);
+  }
+  static std::int64_t lowest_of(std::size_t bucket);
+  static std::int64_t highest_of(std::size_t bucket);
+
+  friend bool operator==(const LogHistogram&, const LogHistogram&) = default;
+
+ private:
+  std::vector<std::int64_t> buckets_;  // up to the last that is not empty
+  std::int64_t count_ = 0;
+  std::int64_t maximum_ = 0;
+};
+
+}  // namespace marti::sim

@@ -1,0 +1,54 @@
+// Simulated time: a signed 64-bit count of picoseconds (2^63 ps are 107 days). Additions are checked:
+// a time that does not fit is a UserError, because only the durations of the user's machine can cause it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "sim/error.h"
+
+namespace marti::sim {
+
+/// One tick is one picosecond.
+using Ticks = std::int64_t;
+
+inline constexpr Ticks ticks_per_second = 1'000'000'000'000;
+
+[[noreturn]] void fail_time_overflow();
+
+/// a + b, or a UserError when the sum does not fit in 64 bits.
+inline Ticks add_ticks(Ticks a, Ticks b) {
+  Ticks sum = 0;
+  if (__builtin_add_overflow(a, b, &sum)) [[unlikely]] {
+    fail_time_overflow();
+  }
+  return sum;
+}
+
+/// a * b, or a UserError when the product does not fit in 64 bits.
+inline Ticks multiply_ticks(Ticks a, std::int64_t b) {
+  Ticks product = 0;
+  if (__builtin_mul_overflow(a, b, &product)) [[unlikely]] {
+    fail_time_overflow();
+  }
+  return product;
+}
+
+/// A component's clock. The frequency is turned into a whole number of ticks once; every duration of the
+/// component is a whole number of these periods afterwards.
+class Clock {
+ public:
+  /// `hertz` from 1 to 1e12. The period is 1e12 / hertz rounded to the nearest tick, at least 1.
+  static Clock from_hertz(double hertz);
+  /// A clock with a given period in ticks, at least 1.
+  static Clock from_period(Ticks period);
+
+  [[nodiscard]] Ticks period() const { return period_; }
+  [[nodiscard]] Ticks cycles(std::int64_t count) const { return multiply_ticks(period_, count); }
+
+ private:
+  explicit Clock(Ticks period) : period_(period) {}
+  Ticks period_;
+};
+
+}  // namespace marti::sim

@@ -1,0 +1,157 @@
+// Random work logs and random machines for property tests: small, but with every kind of step and every
+// kind of component.
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+#include "processors/machine_config.h"
+#include "processors/program/work_log.h"
+
+namespace marti::tests {
+
+using Random = std::mt19937_64;
+
+/// A uniform integer from lo to hi.
+inline std::int64_t pick(Random& random, std::int64_t lo, std::int64_t hi) {
+  return lo + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(hi - lo + 1));
+}
+
+/// A tree of `branches` branches with eight children each and leaves of up to `most_entries` entries.
+inline accel::Topology random_topology(Random& random, std::uint32_t branches, std::uint32_t primitives,
+                                       std::uint32_t most_entries) {
+  accel::Topology topology;
+  topology.nodes.emplace_back();
+  for (std::uint32_t node = 0; node < topology.nodes.size(); ++node) {
+    const bool branch = branches > 0 && (node == 0 || pick(random, 0, 1) == 1);
+    if (branch) {
+      --branches;
+      const auto first = static_cast<std::uint32_t>(topology.nodes.size());
+      const auto level = static_cast<std::uint8_t>(topology.nodes[node].level + 1);
+      topology.nodes[node] = {first, 8, topology.nodes[node].level, false};
+      topology.nodes.insert(topology.nodes.end(), 8, accel::TopologyNode{0, 0, level, true});
+    } else {
+      const auto count = static_cast<std::uint32_t>(pick(random, 0, most_entries));
+      topology.nodes[node].first = static_cast<std::uint32_t>(topology.entries.size());
+      topology.nodes[node].count = count;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        topology.entries.push_back(static_cast<std::uint32_t>(pick(random, 0, primitives - 1)));
+      }
+    }
+  }
+  return topology;
+}
+
+/// A log whose words are random but valid.
+inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::uint32_t height,
+                                      std::uint32_t most_words_a_pixel = 40) {
+  using processors::make_word;
+  using processors::Step;
+  processors::WorkLog log;
+  log.width = width;
+  log.height = height;
+  log.primitives = 50;
+  log.materials = 3;
+  log.texture_begin = {0, 100, 356};
+  log.topology = random_topology(random, 12, log.primitives, 6);
+  std::vector<std::uint32_t> leaves;
+  std::vector<std::uint32_t> branches;
+  for (std::uint32_t node = 0; node < log.topology.nodes.size(); ++node) {
+    (log.topology.nodes[node].leaf ? leaves : branches).push_back(node);
+  }
+  log.rows.resize(height);
+  for (processors::LogRow& row : log.rows) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+      row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+      row.words.push_back(make_word(Step::ray, 0));
+      for (std::int64_t left = pick(random, 0, most_words_a_pixel); left > 0; --left) {
+        const std::uint32_t leaf = leaves[random() % leaves.size()];
+        switch (pick(random, 0, 9)) {
+          case 0:
+          case 1:
+          case 2:
+          case 3:
+            row.words.push_back(make_word(Step::branch, branches[random() % branches.size()]));
+            break;
+          case 4:
+          case 5:
+            row.words.push_back(make_word(Step::leaf, leaf));
+            break;
+          case 6:
+            if (log.topology.nodes[leaf].count > 1) {
+              row.words.push_back(make_word(Step::partial_leaf, leaf));
+              row.words.push_back(
+                  static_cast<std::uint32_t>(pick(random, 1, log.topology.nodes[leaf].count - 1)));
+            }
+            break;
+          case 7:
+            row.words.push_back(
+                make_word(Step::ray, static_cast<std::uint32_t>(pick(random, 0, 3)) | (1U << 2U)));
+            break;
+          case 8:
+            row.words.push_back(make_word(Step::shade, static_cast<std::uint32_t>(pick(random, 0, 2))));
+            row.words.push_back(make_word(Step::light, 0));
+            break;
+          default: {
+            const auto texture = static_cast<std::uint32_t>(pick(random, 0, 1));
+            row.words.push_back(make_word(Step::texel, texture));
+            row.words.push_back(static_cast<std::uint32_t>(pick(random, 0, texture == 0 ? 99 : 255)));
+          }
+        }
+      }
+    }
+    row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+  }
+  return log;
+}
+
+/// Any machine the configuration allows, with at most `most_nodes` nodes.
+inline processors::MachineConfig random_machine(Random& random, std::uint32_t most_nodes = 12) {
+  processors::MachineConfig machine;
+  machine.clusters = static_cast<std::uint32_t>(pick(random, 1, 3));
+  machine.nodes =
+      static_cast<std::uint32_t>(pick(random, 1, std::max<std::int64_t>(1, most_nodes / machine.clusters)));
+  machine.clock = sim::Clock::from_period(pick(random, 1, 40));
+  machine.operations = {pick(random, 0, 4), pick(random, 0, 4), pick(random, 0, 9), pick(random, 0, 9),
+                        pick(random, 0, 2), pick(random, 0, 2), pick(random, 0, 2), pick(random, 0, 2)};
+  machine.write_buffer = static_cast<std::uint32_t>(pick(random, 1, 3));
+  machine.layout.node_bytes = static_cast<std::uint32_t>(pick(random, 1, 40));
+  machine.layout.primitive_bytes = static_cast<std::uint32_t>(pick(random, 1, 100));
+  machine.layout.node_order = static_cast<memory::NodeOrder>(pick(random, 0, 1));
+  machine.cache.organisation = static_cast<processors::CacheOrganisation>(pick(random, 0, 2));
+  machine.cache.hit_cycles = pick(random, 0, 2);
+  machine.cache.cache.line = 1U << pick(random, 2, 6);
+  machine.cache.cache.replacement = static_cast<memory::Replacement>(pick(random, 0, 2));
+  machine.cache.cache.ways = static_cast<std::uint32_t>(std::array{0, 1, 2, 3, 4, 8, 24}[random() % 7]);
+  const std::uint32_t ways = std::max(1U, machine.cache.cache.ways);
+  machine.cache.cache.size =
+      std::uint64_t{machine.cache.cache.line} * ways * static_cast<std::uint64_t>(pick(random, 1, 9));
+  for (std::uint64_t& size : machine.cache.split_sizes) {
+    size = std::uint64_t{machine.cache.cache.line} * ways * static_cast<std::uint64_t>(pick(random, 1, 5));
+  }
+  machine.placement = static_cast<processors::Placement>(pick(random, 0, 3) == 0 ? 1 : 0);
+  machine.local.access_cycles = pick(random, 0, 5);
+  machine.local.clock = sim::Clock::from_period(pick(random, 1, 40));
+  machine.interconnect.kind = static_cast<memory::InterconnectKind>(pick(random, 0, 2));
+  machine.interconnect.mode = static_cast<memory::BusMode>(pick(random, 0, 1));
+  machine.interconnect.clock = sim::Clock::from_period(pick(random, 1, 40));
+  machine.interconnect.width = static_cast<std::uint32_t>(pick(random, 1, 16));
+  machine.interconnect.cycles_per_beat = pick(random, 0, 2);
+  machine.interconnect.address_cycles = pick(random, 0, 2);
+  machine.interconnect.latency_cycles = pick(random, 0, 12);
+  machine.banks.count = static_cast<std::uint32_t>(pick(random, 1, 5));
+  machine.banks.interleave = 1U << pick(random, 2, 6);
+  machine.banks.clock = sim::Clock::from_period(pick(random, 1, 40));
+  machine.banks.access_cycles = pick(random, 0, 6);
+  machine.banks.busy_cycles = pick(random, 0, 9);
+  machine.packets.width = static_cast<std::uint32_t>(pick(random, 1, 5));
+  machine.packets.height = static_cast<std::uint32_t>(pick(random, 1, 5));
+  machine.packets.order = static_cast<processors::PacketOrder>(pick(random, 0, 2));
+  machine.host.assignment = static_cast<processors::Assignment>(pick(random, 0, 2));
+  machine.host.clock = sim::Clock::from_period(pick(random, 1, 40));
+  machine.host.latency_cycles = pick(random, 0, 20);
+  machine.host.occupancy_cycles = pick(random, 0, 5);
+  return machine;
+}
+
+}  // namespace marti::tests

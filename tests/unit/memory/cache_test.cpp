@@ -1,0 +1,192 @@
+// The cache model against a second one that knows nothing of tags, hashes or arrays of caches.
+#include "memory/cache.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <list>
+#include <map>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "memory/tags.h"
+#include "sim/error.h"
+
+namespace marti::memory {
+namespace {
+
+// Each set is a list of lines, newest first for LRU and FIFO; in slots for random replacement.
+class ListModel {
+ public:
+  explicit ListModel(const CacheConfig& config)
+      : config_(config),
+        ways_(config.ways == full_ways ? config.size / config.line : config.ways),
+        sets_(config.size / config.line / ways_) {}
+
+  bool read(Address line) {
+    std::vector<Address>& set = contents_[line % sets_];
+    const auto at = std::find(set.begin(), set.end(), line);
+    if (at != set.end()) {
+      if (config_.replacement == Replacement::lru) {
+        set.erase(at);
+        set.insert(set.begin(), line);
+      }
+      return true;
+    }
+    if (config_.replacement == Replacement::random) {
+      if (set.size() < ways_) {
+        set.push_back(line);
+      } else {
+        VictimStream& stream = streams_.try_emplace(line % sets_, config_.seed, line % sets_).first->second;
+        set[stream.next(static_cast<std::uint32_t>(ways_))] = line;
+      }
+      return false;
+    }
+    set.insert(set.begin(), line);
+    if (set.size() > ways_) {
+      set.pop_back();
+    }
+    return false;
+  }
+
+ private:
+  CacheConfig config_;
+  std::uint64_t ways_;
+  std::uint64_t sets_;
+  std::map<Address, std::vector<Address>> contents_;
+  std::map<Address, VictimStream> streams_;
+};
+
+// Addresses with both locality and conflicts: a random walk with jumps.
+std::vector<Address> trace(std::uint64_t seed, std::size_t length, Address span) {
+  std::mt19937_64 random(seed);
+  std::vector<Address> addresses;
+  Address at = 0;
+  for (std::size_t i = 0; i < length; ++i) {
+    at = random() % 8 == 0 ? random() % span : (at + random() % 64) % span;
+    addresses.push_back(at);
+  }
+  return addresses;
+}
+
+TEST(Cache, AgreesWithAListModelForEveryPolicyAndShape) {
+  std::mt19937_64 random(1);
+  for (int round = 0; round < 300; ++round) {
+    CacheConfig config;
+    config.line = 1U << (random() % 7);
+    config.ways = static_cast<std::uint32_t>(std::array{0, 1, 2, 3, 4, 7, 8, 16, 17, 40}[random() % 10]);
+    config.size = std::uint64_t{config.line} * std::max(1U, config.ways) * (1 + random() % 20);
+    config.replacement = static_cast<Replacement>(random() % 3);
+    config.seed = random();
+    Cache cache(config);
+    ListModel model(config);
+    for (const Address address : trace(random(), 1500, config.size * 4)) {
+      const std::uint64_t bytes = 1 + random() % 50;
+      std::int64_t missed = 0;
+      for (Address line = address / config.line; line <= (address + bytes - 1) / config.line; ++line) {
+        missed += model.read(line) ? 0 : 1;
+      }
+      ASSERT_EQ(cache.read(address, bytes), missed)
+          << "line " << config.line << " ways " << config.ways << " size " << config.size << " policy "
+          << replacement_names[static_cast<std::size_t>(config.replacement)];
+    }
+  }
+}
+
+TEST(Cache, ManyCachesInOneStoreDoNotDisturbEachOther) {
+  CacheConfig config;
+  config.size = 512;
+  config.line = 16;
+  config.ways = 2;
+  const CacheShape shape = shape_of(config);
+  SetTags<Replacement::lru, 2> together(shape, 5, config.seed);
+  std::vector<Cache> apart;
+  for (int i = 0; i < 5; ++i) {
+    apart.emplace_back(config);
+  }
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 20000; ++i) {
+    const auto which = static_cast<std::uint32_t>(random() % 5);
+    const auto line = static_cast<std::uint32_t>(random() % 100);
+    ASSERT_EQ(together.access(which, line), apart[which].read(line * 16, 1) == 0);
+  }
+}
+
+TEST(Cache, LargerThanTheDatabaseMissesOncePerDistinctLine) {
+  for (const Replacement replacement : {Replacement::lru, Replacement::fifo, Replacement::random}) {
+    CacheConfig config;
+    config.size = 1 << 20;
+    config.ways = full_ways;
+    config.replacement = replacement;
+    Cache cache(config);
+    std::set<Address> distinct;
+    for (const Address address : trace(3, 20000, 1 << 18)) {
+      cache.read(address, 1);
+      distinct.insert(address / config.line);
+    }
+    EXPECT_EQ(cache.counters().misses, static_cast<std::int64_t>(distinct.size()));
+    EXPECT_EQ(cache.counters().references(), 20000);
+  }
+}
+
+TEST(Cache, OfOneLineMissesOncePerChangeOfLine) {
+  CacheConfig config;
+  config.size = 64;
+  config.line = 64;
+  config.ways = 1;
+  Cache cache(config);
+  std::int64_t changes = 0;
+  Address last = ~Address{0};
+  for (const Address address : trace(4, 20000, 4096)) {
+    cache.read(address, 1);
+    changes += address / 64 != last ? 1 : 0;
+    last = address / 64;
+  }
+  EXPECT_EQ(cache.counters().misses, changes);
+}
+
+TEST(Cache, LeastRecentlyUsedHasTheInclusionProperty) {
+  // Mattson et al. 1970: whatever a smaller fully associative LRU cache holds, a larger one holds too.
+  std::vector<Cache> caches;
+  for (std::uint64_t lines = 1; lines <= 256; lines *= 2) {
+    CacheConfig config;
+    config.size = lines * config.line;
+    config.ways = full_ways;
+    caches.emplace_back(config);
+  }
+  for (const Address address : trace(5, 30000, 1 << 14)) {
+    bool smaller_hit = false;
+    for (Cache& cache : caches) {
+      const bool hit = cache.read(address, 1) == 0;
+      ASSERT_TRUE(hit || !smaller_hit);
+      smaller_hit = hit;
+    }
+  }
+}
+
+TEST(Cache, RefusesWhatCannotBeBuilt) {
+  const auto build = [](std::uint64_t size, std::uint32_t line, std::uint32_t ways) {
+    CacheConfig config;
+    config.size = size;
+    config.line = line;
+    config.ways = ways;
+    return Cache(config);
+  };
+  EXPECT_THROW(build(0, 32, 1), sim::UserError);
+  EXPECT_THROW(build(1024, 0, 1), sim::UserError);
+  EXPECT_THROW(build(1024, 24, 1), sim::UserError);
+  EXPECT_THROW(build(1000, 32, 1), sim::UserError);
+  EXPECT_THROW(build(1024, 32, 33), sim::UserError);
+  EXPECT_THROW(build(1024, 32, 5), sim::UserError);
+  EXPECT_THROW(build(~std::uint64_t{0} - 31, 32, 1), sim::UserError);
+  EXPECT_EQ(build(96, 32, 1).shape().sets, 3U) << "sets need not be a power of two";
+  Cache cache = build(1024, 1, 4);
+  EXPECT_THROW(cache.read(0, 0), sim::UserError);
+  EXPECT_THROW(cache.read(~Address{0}, 2), sim::UserError);
+  EXPECT_THROW(cache.read(Address{1} << 33U, 1), sim::UserError);
+}
+
+}  // namespace
+}  // namespace marti::memory

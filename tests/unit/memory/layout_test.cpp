@@ -1,0 +1,42 @@
+#include "memory/layout.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/error.h"
+
+namespace marti::memory {
+namespace {
+
+TEST(Layout, RecordsDoNotOverlapAndSectionsAreAligned) {
+  LayoutConfig config;
+  config.node_bytes = 10;
+  config.record_alignment = 8;
+  config.section_alignment = 256;
+  const RecordCounts counts = {7, 11, 5, 3, 2, 9};
+  const Layout layout(config, counts);
+  Address last_end = 0;
+  for (std::size_t k = 0; k < record_kinds; ++k) {
+    const auto kind = static_cast<RecordKind>(k);
+    EXPECT_EQ(layout.base(kind) % 256, 0U);
+    for (std::uint64_t i = 0; i < counts[k]; ++i) {
+      EXPECT_GE(layout.address(kind, i), last_end);
+      last_end = layout.address(kind, i) + layout.record_bytes(kind);
+    }
+  }
+  EXPECT_EQ(layout.address(RecordKind::node, 3), 48U) << "10 bytes aligned to 8 are 16 apart";
+  EXPECT_EQ(layout.end(), last_end);
+  EXPECT_EQ(layout.database_bytes(), 7U * 16 + 11 * 4 + 5 * 48 + 3 * 64 + 2 * 4);
+}
+
+TEST(Layout, RefusesImpossibleSizes) {
+  LayoutConfig config;
+  config.node_bytes = 0;
+  EXPECT_THROW(Layout(config, RecordCounts{}), sim::UserError);
+  config = {};
+  config.record_alignment = 3;
+  EXPECT_THROW(Layout(config, RecordCounts{}), sim::UserError);
+  EXPECT_THROW(Layout(LayoutConfig{}, RecordCounts{~std::uint64_t{0}, 0, 0, 0, 0, 0}), sim::UserError);
+}
+
+}  // namespace
+}  // namespace marti::memory
