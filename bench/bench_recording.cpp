@@ -1,0 +1,111 @@
+// What the work log costs: the render without and with it on one thread, its size, and the size that
+// other encodings of the same steps would have.
+//   bench_recording [SCENE [SIZE [REPEATS]]]     default: teapot:12 512 11
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "accel/structure.h"
+#include "processors/program/render.h"
+#include "scenes/procedural.h"
+#include "sim/error.h"
+
+namespace {
+
+using namespace marti;
+
+double seconds(const std::vector<double>& sorted, double quantile) {
+  return sorted[static_cast<std::size_t>(quantile * static_cast<double>(sorted.size() - 1))];
+}
+
+/// Counts what the totals do not: how often a leaf ended early.
+std::uint64_t partial_leaves(const processors::WorkLog& log) {
+  std::uint64_t count = 0;
+  for (const processors::LogRow& row : log.rows) {
+    for (std::size_t at = 0; at < row.words.size(); ++at) {
+      const processors::Step step = processors::step_of(row.words[at]);
+      count += step == processors::Step::partial_leaf ? 1U : 0U;
+      at += processors::has_second_word(step) ? 1U : 0U;
+    }
+  }
+  return count;
+}
+
+void run(const std::string& name, std::uint32_t size, int repeats) {
+  const scenes::Scene scene = scenes::make_procedural(name);
+  const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
+  const auto structure = accel::make_structure("octree", triangles);
+  processors::RenderOptions options{.width = size, .height = size, .max_depth = 2};
+
+  // Interleaved, so that whatever else the host does meets both; the first pair only warms up.
+  std::vector<double> times[2];
+  processors::Frame recorded;
+  for (int repeat = 0; repeat <= repeats; ++repeat) {
+    for (const bool record : {false, true}) {
+      options.record = record;
+      const auto start = std::chrono::steady_clock::now();
+      processors::Frame frame = processors::render(scene, *triangles, *structure, options, 1);
+      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+      if (repeat > 0) {
+        times[record ? 1 : 0].push_back(took.count());
+      }
+      if (record) {
+        recorded = std::move(frame);
+      }
+    }
+  }
+  for (auto& of_kind : times) {
+    std::sort(of_kind.begin(), of_kind.end());
+  }
+
+  const processors::LogTotals totals = processors::totals_of(*recorded.log);
+  const auto rays = static_cast<double>(totals.all_rays());
+  const auto steps = static_cast<double>(totals.all_steps());
+  const double pixels = static_cast<double>(size) * size;
+  std::printf("%s, %u x %u, depth 2, one thread, %d repeats\n", name.c_str(), size, size, repeats);
+  std::printf(
+      "rays                     %12.0f  (camera %llu, shadow %llu, reflection %llu, refraction %llu)\n", rays,
+      static_cast<unsigned long long>(totals.rays[0]), static_cast<unsigned long long>(totals.rays[1]),
+      static_cast<unsigned long long>(totals.rays[2]), static_cast<unsigned long long>(totals.rays[3]));
+  std::printf("render without log       %12.2f ms best, %.2f median\n", 1e3 * times[0].front(),
+              1e3 * seconds(times[0], 0.5));
+  std::printf("render with log          %12.2f ms best, %.2f median\n", 1e3 * times[1].front(),
+              1e3 * seconds(times[1], 0.5));
+  std::printf("recording ratio          %12.3f best, %.3f median\n", times[1].front() / times[0].front(),
+              seconds(times[1], 0.5) / seconds(times[0], 0.5));
+  std::printf("steps per ray            %12.2f  (branches %.2f, leaves %.2f, tests %.2f)\n", steps / rays,
+              static_cast<double>(totals.branches) / rays, static_cast<double>(totals.leaves) / rays,
+              static_cast<double>(totals.tests) / rays);
+  std::printf("bytes per ray            %12.2f  (%.1f MB)\n", static_cast<double>(totals.bytes) / rays,
+              static_cast<double>(totals.bytes) / 1e6);
+
+  // Other encodings of the same steps. Offsets of pixels count in each.
+  const double offsets = 4.0 * (pixels + size);
+  const double every_step = 4.0 * (steps + static_cast<double>(totals.texels)) + offsets;
+  std::printf("  a word for every step  %12.2f\n", every_step / rays);
+  // A branch's visited children as a bit mask: their order follows from the ray's octant, leaves from the
+  // tree. The reader then walks the tree anew, with a stack.
+  const auto partial = static_cast<double>(partial_leaves(*recorded.log));
+  const double masks = 4.0 * (rays + static_cast<double>(totals.shades + totals.lights) +
+                              2.0 * static_cast<double>(totals.texels) + partial) +
+                       static_cast<double>(totals.branches) + offsets;
+  std::printf("  a byte for a branch    %12.2f\n", masks / rays);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    run(argc > 1 ? argv[1] : "teapot:12", argc > 2 ? static_cast<std::uint32_t>(std::atoi(argv[2])) : 512U,
+        std::max(1, argc > 3 ? std::atoi(argv[3]) : 11));
+  } catch (const sim::UserError& error) {
+    std::fprintf(stderr, "bench_recording: %s\n", error.what());
+    return 2;
+  }
+  return 0;
+}

@@ -1,0 +1,50 @@
+#include "processors/accounting.h"
+
+#include <numeric>
+
+namespace marti::processors {
+
+StepCounts& StepCounts::operator+=(const StepCounts& other) {
+  for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
+    rays[kind] += other.rays[kind];
+  }
+  branches += other.branches;
+  leaves += other.leaves;
+  lists += other.lists;
+  tests += other.tests;
+  shades += other.shades;
+  lights += other.lights;
+  texels += other.texels;
+  pixels += other.pixels;
+  return *this;
+}
+
+std::int64_t ReferenceCounts::all_hits() const {
+  return std::accumulate(hits.begin(), hits.end(), std::int64_t{0});
+}
+
+std::int64_t ReferenceCounts::all_misses() const {
+  return std::accumulate(misses.begin(), misses.end(), std::int64_t{0});
+}
+
+ReferenceCounts& ReferenceCounts::operator+=(const ReferenceCounts& other) {
+  for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
+    hits[kind] += other.hits[kind];
+    misses[kind] += other.misses[kind];
+  }
+  return *this;
+}
+
+std::array<std::int64_t, memory::record_kinds> records_of(const StepCounts& steps) {
+  return {steps.branches + steps.leaves, steps.lists, steps.tests, steps.shades, steps.texels, steps.pixels};
+}
+
+sim::Ticks sum_of(const TimeDivision& time) {
+  sim::Ticks sum = 0;
+  for (const sim::Ticks part : time) {
+    sum = sim::add_ticks(sum, part);
+  }
+  return sum;
+}
+
+}  // namespace marti::processors

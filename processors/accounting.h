@@ -1,0 +1,80 @@
+// Where a node's time goes: every tick from 0 to the end of the frame belongs to exactly one activity.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "memory/record_kind.h"
+#include "processors/program/work_log.h"
+#include "sim/time.h"
+
+namespace marti::processors {
+
+enum class Activity : std::uint8_t {
+  traversal,     ///< setting up rays, visiting branches and leaves
+  intersection,  ///< testing primitives
+  shading,       ///< hit points, lights, textures, finished pixels
+  building,      ///< subdividing nodes during the frame
+  cache_access,  ///< hit cycles
+  interconnect_wait,
+  transfer,
+  bank_wait,
+  bank_access,
+  lock_wait,
+  message_wait,
+  queue_full_wait,  ///< the write buffer or another bounded queue was full
+  dispatch_wait,    ///< between asking the host for a packet and beginning it
+  idle,             ///< no packet left, until the last node and the last write are done
+};
+inline constexpr std::size_t activities = 14;
+inline constexpr std::array<std::string_view, activities> activity_names = {
+    "traversal",         "intersection",    "shading",       "building",    "cache_access",
+    "interconnect_wait", "transfer",        "bank_wait",     "bank_access", "lock_wait",
+    "message_wait",      "queue_full_wait", "dispatch_wait", "idle"};
+
+using TimeDivision = std::array<sim::Ticks, activities>;
+
+/// How many of each kind of step a node took.
+struct StepCounts {
+  std::array<std::int64_t, ray_kinds> rays{};
+  std::int64_t branches = 0;
+  std::int64_t leaves = 0;
+  std::int64_t lists = 0;  ///< leaves whose object list was read: those with at least one test
+  std::int64_t tests = 0;
+  std::int64_t shades = 0;
+  std::int64_t lights = 0;
+  std::int64_t texels = 0;
+  std::int64_t pixels = 0;
+
+  StepCounts& operator+=(const StepCounts& other);
+};
+
+/// References count lines touched (parts of at most one interleave unit where there is no cache); one
+/// record may be several.
+struct ReferenceCounts {
+  std::array<std::int64_t, memory::record_kinds> hits{};
+  std::array<std::int64_t, memory::record_kinds> misses{};
+
+  [[nodiscard]] std::int64_t all_hits() const;
+  [[nodiscard]] std::int64_t all_misses() const;
+  [[nodiscard]] std::int64_t references() const { return all_hits() + all_misses(); }
+  ReferenceCounts& operator+=(const ReferenceCounts& other);
+};
+
+/// Everything counted at one node.
+struct NodeStatistics {
+  StepCounts steps;
+  ReferenceCounts references;
+  TimeDivision time{};
+  std::int64_t packets = 0;
+  std::int64_t writes = 0;
+  sim::Ticks finish = 0;  ///< when it learned that no packet is left
+};
+
+/// Records read or written, by kind: they follow from the steps.
+[[nodiscard]] std::array<std::int64_t, memory::record_kinds> records_of(const StepCounts& steps);
+
+[[nodiscard]] sim::Ticks sum_of(const TimeDivision& time);
+
+}  // namespace marti::processors

@@ -1,0 +1,68 @@
+#include <string>
+
+#include "processors/replay.h"
+#include "sim/error.h"
+
+namespace marti::processors {
+
+namespace {
+
+sim::Ticks part(const TimeDivision& time, Activity activity) {
+  return time[static_cast<std::size_t>(activity)];
+}
+
+void require(bool holds, const std::string& law) {
+  if (!holds) {
+    throw sim::InternalError("a conservation law is broken: " + law);
+  }
+}
+
+void check_node(const NodeStatistics& node, sim::Ticks end, std::size_t number) {
+  require(sum_of(node.time) == end, "the activities of node " + std::to_string(number) + " add up to " +
+                                        std::to_string(sum_of(node.time)) + " ticks of " +
+                                        std::to_string(end));
+  require(node.steps.pixels == node.writes, "finished pixels are pixel writes");
+}
+
+}  // namespace
+
+void check_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result) {
+  for (std::size_t node = 0; node < result.nodes.size(); ++node) {
+    check_node(result.nodes[node], result.end, node);
+  }
+  const StepCounts steps = result.steps();
+  require(steps.pixels == static_cast<std::int64_t>(log.width) * log.height, "every pixel is written once");
+  std::int64_t packets = 0;
+  for (const NodeStatistics& node : result.nodes) {
+    packets += node.packets;
+  }
+  require(packets == static_cast<std::int64_t>(result.packets), "every packet is traced once");
+
+  std::int64_t reads = 0;
+  std::int64_t writes = 0;
+  sim::Ticks interconnect_waits = 0;
+  sim::Ticks bank_waits = 0;
+  for (const ClusterResult& cluster : result.clusters) {
+    const memory::InterconnectStatistics& traffic = cluster.interconnect;
+    reads += traffic.reads;
+    writes += traffic.writes;
+    interconnect_waits += traffic.waits.sum;
+    require(config.interconnect.kind == memory::InterconnectKind::ideal ||
+                traffic.busy <= sim::multiply_ticks(result.end, traffic.links),
+            "links are not busy for longer than the frame");
+    for (const memory::BankStatistics& bank : cluster.banks) {
+      bank_waits += bank.waits.sum;
+    }
+  }
+  const ReferenceCounts references = result.references();
+  const std::int64_t misses = config.placement == Placement::shared ? references.all_misses() : 0;
+  require(reads == misses, "every miss is one read of the interconnect");
+  require(writes == steps.pixels, "every pixel is one write of the interconnect");
+  // Posted writes wait too, but no node waits with them.
+  const TimeDivision time = result.time();
+  require(part(time, Activity::interconnect_wait) <= interconnect_waits,
+          "nodes wait for the interconnect no longer than its transactions do");
+  require(part(time, Activity::bank_wait) <= bank_waits, "nodes wait for banks no longer than accesses do");
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,60 @@
+// From operations to cycles: what each kind of step costs a processor node in compute time. References
+// to memory are not part of it; the node adds them from the database layout.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "processors/program/work_log.h"
+
+namespace marti::processors {
+
+/// Cycles of one primitive operation. `load` and `store` are the issue of one word; waiting for memory is
+/// simulated, not priced here.
+struct OperationCycles {
+  std::int64_t add = 1;
+  std::int64_t multiply = 1;
+  std::int64_t divide = 1;
+  std::int64_t square_root = 1;
+  std::int64_t compare = 1;
+  std::int64_t integer = 1;
+  std::int64_t load = 1;
+  std::int64_t store = 1;
+};
+
+/// Words moved by one record of each kind, from the database layout: record bytes / word bytes, rounded up.
+struct RecordWords {
+  std::int64_t node = 2;
+  std::int64_t entry = 1;
+  std::int64_t primitive = 12;
+  std::int64_t material = 16;
+  std::int64_t texel = 1;
+  std::int64_t pixel = 1;
+};
+
+/// Whole compute cycles of each kind of step.
+struct StepCycles {
+  std::array<std::int64_t, ray_kinds> ray{};  ///< setting up a ray of each RayKind and its traversal
+  std::int64_t branch = 0;                    ///< reading a branch and ordering its children
+  std::int64_t leaf = 0;                      ///< reading a leaf, without its tests
+  std::int64_t test = 0;  ///< one entry of a leaf's list: fetch its id and primitive, test it
+  std::int64_t shade = 0;
+  std::int64_t light = 0;
+  std::int64_t texel = 0;
+  std::int64_t pixel = 0;  ///< converting and storing one finished pixel
+};
+
+/// Names of the presets, for the configuration reference.
+[[nodiscard]] std::span<const std::string_view> cost_presets();
+
+/// The costs of a named preset. Throws UserError for an unknown name. Each preset's source is in
+/// cost_model.cpp.
+[[nodiscard]] OperationCycles cost_preset(std::string_view name);
+
+/// Prices the measured operation mixes (operation_mix.h). Rounds each step to whole cycles, halves up.
+[[nodiscard]] StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words);
+
+}  // namespace marti::processors

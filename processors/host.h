@@ -1,0 +1,63 @@
+// The host: gives packets to the nodes of all clusters.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "processors/packets.h"
+#include "sim/time.h"
+
+namespace marti::processors {
+
+/// dynamic: a node that is free asks for the next packet. interleaved: node i of n has packets i, i + n,
+/// i + 2n, ... from the start. blocks: node i has the i-th n-th of the packets in a row.
+enum class Assignment : std::uint8_t { dynamic, interleaved, blocks };
+inline constexpr std::array<std::string_view, 3> assignment_names = {"dynamic", "interleaved", "blocks"};
+
+struct HostConfig {
+  Assignment assignment = Assignment::dynamic;
+  sim::Clock clock = sim::Clock::from_hertz(33e6);
+  std::int64_t latency_cycles = 100;  ///< dynamic: from a node's request to the start of its packet
+  std::int64_t occupancy_cycles = 0;  ///< dynamic: how long one request keeps the host from the next
+};
+
+/// A packet and when its node may begin it.
+struct Grant {
+  std::uint64_t packet = 0;
+  sim::Ticks start = 0;
+};
+
+struct HostStatistics {
+  std::int64_t requests = 0;  ///< dynamic requests, those that found no packet left included
+  sim::Ticks busy = 0;
+};
+
+/// Requests must come in the order of simulated time.
+class Host {
+ public:
+  Host(const HostConfig& config, std::uint64_t packets, std::uint32_t nodes);
+
+  /// Node `node` is free at `now`. Nothing when no packet is left for it.
+  std::optional<Grant> next(std::uint32_t node, sim::Ticks now);
+
+  /// True when the nodes know their packets from the start, so that asking for the next costs nothing and
+  /// touches nothing shared.
+  [[nodiscard]] bool is_static() const { return config_.assignment != Assignment::dynamic; }
+  [[nodiscard]] const HostStatistics& statistics() const { return statistics_; }
+
+ private:
+  HostConfig config_;
+  std::uint64_t packets_;
+  std::uint64_t nodes_;
+  std::uint64_t handed_out_ = 0;      // dynamic
+  std::vector<std::uint32_t> taken_;  // static: packets each node has taken
+  sim::Ticks latency_;
+  sim::Ticks occupancy_;
+  sim::Ticks free_at_ = 0;
+  HostStatistics statistics_;
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,74 @@
+// A whole simulated machine, as values. Defaults are those of the configuration reference.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "memory/bank.h"
+#include "memory/cache_config.h"
+#include "memory/interconnect.h"
+#include "memory/layout.h"
+#include "processors/cost_model.h"
+#include "processors/host.h"
+#include "processors/packets.h"
+#include "sim/time.h"
+
+namespace marti::processors {
+
+/// Where the database is. shared: one copy in the cluster's memory behind its interconnect. replicated: a
+/// full copy in every node's own memory; only pixels cross the interconnect.
+enum class Placement : std::uint8_t { shared, replicated };
+inline constexpr std::array<std::string_view, 2> placement_names = {"shared", "replicated"};
+
+/// none: every reference goes to memory. unified: one cache for all records. split: one for nodes, one for
+/// object lists, one for primitives, one for materials and texels, each with its own size.
+enum class CacheOrganisation : std::uint8_t { none, unified, split };
+inline constexpr std::array<std::string_view, 3> cache_organisation_names = {"none", "unified", "split"};
+
+/// The caches of a split organisation, in this order.
+inline constexpr std::size_t split_caches = 4;
+inline constexpr std::array<std::string_view, split_caches> split_cache_names = {"node", "list", "primitive",
+                                                                                 "shading"};
+
+struct NodeCacheConfig {
+  CacheOrganisation organisation = CacheOrganisation::unified;
+  memory::CacheConfig cache;  ///< size is that of the unified cache
+  std::array<std::uint64_t, split_caches> split_sizes = {4096, 2048, 8192, 2048};  ///< bytes
+  std::int64_t hit_cycles = 1;
+};
+
+/// A replicated database's memory: no contention, one line after `access_cycles` plus its beats.
+struct LocalMemoryConfig {
+  sim::Clock clock = sim::Clock::from_hertz(33e6);
+  std::uint32_t width = 8;  ///< bytes a beat
+  std::int64_t access_cycles = 4;
+  std::int64_t cycles_per_beat = 1;
+};
+
+struct MachineConfig {
+  std::uint32_t clusters = 1;
+  std::uint32_t nodes = 16;  ///< in each cluster
+  sim::Clock clock = sim::Clock::from_hertz(33e6);
+  OperationCycles operations;
+  std::uint32_t word_bytes = 4;    ///< what one load or store moves
+  std::uint32_t write_buffer = 4;  ///< posted pixel writes a node may have outstanding, at least 1
+  memory::LayoutConfig layout;
+  NodeCacheConfig cache;
+  Placement placement = Placement::shared;
+  LocalMemoryConfig local;
+  memory::InterconnectConfig interconnect;
+  memory::BankConfig banks;
+  PacketConfig packets;
+  HostConfig host;
+
+  [[nodiscard]] std::uint32_t all_nodes() const { return clusters * nodes; }
+};
+
+/// The most nodes a machine may have; event keys and node tables are sized by it.
+inline constexpr std::uint32_t most_nodes = 1U << 24U;
+
+/// Throws UserError with the reason when the machine cannot be built.
+void check(const MachineConfig& config);
+
+}  // namespace marti::processors

@@ -1,0 +1,60 @@
+// The processor nodes of a machine, replaying a work log.
+//
+// A node's hits touch no shared state, so a node runs ahead through them without events. It stops where it
+// meets something shared: a miss, a pixel write, a request to the host. The result is the same as with an
+// event for every reference (`step_by_step`), which tests prove.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "memory/interconnect.h"
+#include "processors/accounting.h"
+#include "processors/host.h"
+#include "processors/machine_config.h"
+#include "processors/packets.h"
+#include "processors/program/work_log.h"
+#include "sim/engine.h"
+
+namespace marti::processors {
+
+/// Event classes. At equal times local progress comes before requests to the host, replies before new
+/// requests (an interconnect's data do not wait for an address of the same instant), reads before writes.
+enum class EventClass : std::uint8_t { step, dispatch, reply, read, write };
+
+/// What all nodes share and none changes.
+struct ReplayInput {
+  const WorkLog& log;
+  const MachineConfig& config;
+  const memory::Layout& layout;
+  const PacketList& packets;
+  std::span<const std::uint32_t> node_rank;  ///< record number of each tree node; empty: its own number
+  bool step_by_step = false;                 ///< an event for every reference
+};
+
+/// The nodes of all clusters as one event handler; node n is port n % nodes of cluster n / nodes.
+class NodeArray : public sim::EventHandler {
+ public:
+  /// Posts each node's first event, in an order drawn from `seed` (0: ascending), which changes nothing.
+  virtual void start(std::uint64_t seed) = 0;
+  /// The interconnect of each cluster; set before start().
+  virtual void connect(std::vector<memory::Interconnect*> interconnects) = 0;
+  /// The client to plug into cluster `cluster`'s interconnect.
+  [[nodiscard]] virtual memory::InterconnectClient& client(std::uint32_t cluster) = 0;
+
+  /// After the run: when the last node and the last write were done.
+  [[nodiscard]] virtual sim::Ticks end() const = 0;
+  /// After the run: fills in idle time and the times that follow from counts.
+  virtual void finish() = 0;
+  [[nodiscard]] virtual const std::vector<NodeStatistics>& statistics() const = 0;
+  /// Host bytes per simulated node beside its cache tags.
+  [[nodiscard]] virtual std::size_t bytes_per_node() const = 0;
+};
+
+/// Builds the nodes with the look-up code that the cache configuration asks for.
+[[nodiscard]] std::unique_ptr<NodeArray> make_node_array(const ReplayInput& input, sim::Engine& engine,
+                                                         Host& host);
+
+}  // namespace marti::processors

@@ -1,0 +1,112 @@
+// Recorders: what the tracer and the traversals report to. One is compiled into the plain render and does
+// nothing, one writes the words of a log row; operation_mix.cpp has a third that counts.
+//
+// A recorder is an accel visitor (branch, leaf) with the members of NullRecorder.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include "accel/ray.h"
+#include "accel/visitor.h"
+#include "processors/program/work_log.h"
+#include "sim/error.h"
+
+namespace marti::processors {
+
+/// Which part of the program runs; the boundaries at which the operation mixes are divided.
+enum class Phase : std::uint8_t { ray, shade, texel, light, pixel };
+
+/// The recorder of a plain render: everything inlines to nothing.
+struct NullRecorder : accel::NullVisitor {
+  /// The work that follows belongs to `phase`; `kind` says which ray when the phase is a ray's set-up.
+  void phase(Phase /*phase*/, RayKind /*kind*/) {}
+  void begin_pixel() {}
+  void ray(RayKind /*kind*/, std::uint32_t /*bounce*/, const accel::Ray& /*ray*/) {}
+  void shade(std::uint32_t /*material*/) {}
+  void light(std::uint32_t /*light*/) {}
+  void texel(std::uint32_t /*texture*/, std::uint32_t /*texel*/) {}
+};
+
+/// Writes one image row at a time. The words go through a raw pointer into a buffer that the recorder
+/// keeps from row to row, because most of recording's cost would be growing and clearing vectors; a
+/// finished row is copied out at its exact size.
+class RowRecorder {
+ public:
+  void phase(Phase /*phase*/, RayKind /*kind*/) {}
+
+  void begin_row(std::uint32_t width) {
+    next_ = buffer_.get();
+    begin_.clear();
+    begin_.reserve(std::size_t{width} + 1);
+  }
+  void begin_pixel() { begin_.push_back(static_cast<std::uint32_t>(next_ - buffer_.get())); }
+
+  void branch(std::uint32_t node) { put(make_word(Step::branch, node)); }
+  void leaf(std::uint32_t node, std::uint32_t tests, std::uint32_t entries) {
+    if (tests == entries) [[likely]] {
+      put(make_word(Step::leaf, node));
+    } else {
+      put(make_word(Step::partial_leaf, node), tests);
+    }
+  }
+  void ray(RayKind kind, std::uint32_t bounce, const accel::Ray& /*ray*/) {
+    put(make_word(Step::ray, static_cast<std::uint32_t>(kind) | bounce << 2U));
+  }
+  void shade(std::uint32_t material) { put(make_word(Step::shade, material)); }
+  void light(std::uint32_t light) { put(make_word(Step::light, light)); }
+  void texel(std::uint32_t texture, std::uint32_t texel) { put(make_word(Step::texel, texture), texel); }
+
+  /// Ends the row and copies it out.
+  void end_row(LogRow& row) {
+    begin_pixel();
+    row.words.assign(buffer_.get(), next_);
+    row.begin.assign(begin_.begin(), begin_.end());
+  }
+
+ private:
+  struct Free {
+    void operator()(std::uint32_t* words) const { std::free(words); }
+  };
+
+  void put(std::uint32_t word) {
+    if (next_ == end_) [[unlikely]] {
+      grow();
+    }
+    *next_++ = word;
+  }
+  void put(std::uint32_t first, std::uint32_t second) {
+    put(first);
+    put(second);
+  }
+
+  [[gnu::noinline]] void grow() {
+    const auto used = static_cast<std::size_t>(next_ - buffer_.get());
+    const std::size_t capacity = std::max<std::size_t>(std::size_t{1} << 16U, 2 * used);
+    if (capacity > std::numeric_limits<std::uint32_t>::max()) {
+      throw sim::UserError(
+          "the work log of one image row exceeds 2^31 steps; lower render.max_depth or the image's width");
+    }
+    // realloc and not a vector: the new words need no clearing.
+    auto* words = static_cast<std::uint32_t*>(std::realloc(buffer_.get(), capacity * sizeof(std::uint32_t)));
+    if (words == nullptr) {
+      throw std::bad_alloc();
+    }
+    static_cast<void>(buffer_.release());
+    buffer_.reset(words);
+    next_ = words + used;
+    end_ = words + capacity;
+  }
+
+  std::unique_ptr<std::uint32_t[], Free> buffer_;
+  std::uint32_t* next_ = nullptr;
+  std::uint32_t* end_ = nullptr;
+  std::vector<std::uint32_t> begin_;
+};
+
+}  // namespace marti::processors

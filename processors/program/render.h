@@ -1,0 +1,58 @@
+// Renders a frame: the functional world's whole answer, on all host cores, the same bytes at any number
+// of them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "processors/program/image.h"
+#include "processors/program/work_log.h"
+#include "scenes/scene.h"
+
+namespace marti::accel {
+class Structure;
+class TriangleSet;
+}  // namespace marti::accel
+
+namespace marti::processors {
+
+/// The largest RenderOptions::max_depth.
+inline constexpr std::uint32_t max_ray_depth = 64;
+
+struct RenderOptions {
+  std::uint32_t width = 512;   ///< pixels, 1 to 32768
+  std::uint32_t height = 512;  ///< pixels, 1 to 32768
+  std::uint32_t max_depth =
+      5;                    ///< rays in a row, the eye ray being 1; 1 to max_ray_depth. Shadow rays are free.
+  double min_weight = 0.0;  ///< 0 to 1: a ray whose largest weight is below this is not traced
+  bool shadows = true;      ///< without: every light a surface faces reaches it
+  bool record = false;      ///< also make the work log
+};
+
+/// Rays of each kind, in the order of RayKind.
+struct RayCounts {
+  std::array<std::uint64_t, ray_kinds> traced{};
+  std::array<std::uint64_t, ray_kinds> hit{};  ///< of these, hit something (a shadow ray: was blocked)
+
+  RayCounts& operator+=(const RayCounts& other);
+  [[nodiscard]] std::uint64_t all() const { return traced[0] + traced[1] + traced[2] + traced[3]; }
+};
+
+struct Frame {
+  Image image;
+  RayCounts rays;
+  /// A hash of every ray's outcome (pixel, order within the pixel, primitive id, bits of t; for a shadow
+  /// ray only whether it was blocked). Equal for every structure, machine and number of threads.
+  std::uint64_t hit_hash = 0;
+  std::shared_ptr<const WorkLog> log;  ///< null unless RenderOptions::record
+};
+
+/// Renders `scene`, whose triangles are `triangles` indexed by `structure`, on `threads` host threads (0:
+/// all of them). Throws UserError for options out of range, and when recording a scene whose nodes,
+/// materials, lights or textures do not fit the log's 28-bit operands.
+[[nodiscard]] Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
+                           const accel::Structure& structure, const RenderOptions& options,
+                           unsigned threads = 0);
+
+}  // namespace marti::processors

@@ -1,0 +1,223 @@
+// The illumination of one surface point: normals, secondary ray origins, lights, reflection, refraction.
+// Templates over the scalar, so that the same code that renders is counted for the cost model.
+//
+// Colours follow Whitted, "An improved illumination model for shaded display", CACM 23(6), 1980, with the
+// weights of scenes::Material.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "processors/program/power.h"
+#include "processors/program/vector.h"
+#include "scenes/scene.h"
+#include "scenes/texture.h"
+
+namespace marti::processors {
+
+/// A hit point made ready for shading.
+template <typename Real>
+struct Surface {
+  Vec3<Real> point;
+  Vec3<Real> error;      ///< bound of each coordinate's error
+  Vec3<Real> geometric;  ///< the triangle's unit normal, on the viewer's side
+  Vec3<Real> normal;     ///< the unit shading normal, on the viewer's side and facing the viewer
+  Vec3<Real> color;      ///< the material's colour times the texture's
+  bool outside = true;   ///< the viewer is on the side from which the triangle winds counter-clockwise
+};
+
+/// Bound of the relative error of n roundings in double: n eps / (1 - n eps), Higham, "Accuracy and
+/// Stability of Numerical Algorithms", 2nd ed., lemma 3.1.
+constexpr double gamma_bound(int n) {
+  const double ne = n * (std::numeric_limits<double>::epsilon() * 0.5);
+  return ne / (1.0 - ne);
+}
+
+/// The point with barycentric weights b and the normals of the triangle there, seen along `direction`.
+template <typename Real>
+Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, const Real (&b)[3],
+                         const Vec3<Real>& direction) {
+  const scenes::Triangle& t = scene.triangles[triangle];
+  const Vec3<Real> p0(scene.positions[t.vertex[0]]);
+  const Vec3<Real> p1(scene.positions[t.vertex[1]]);
+  const Vec3<Real> p2(scene.positions[t.vertex[2]]);
+
+  Surface<Real> surface;
+  const Vec3<Real> t0 = p0 * b[0];
+  const Vec3<Real> t1 = p1 * b[1];
+  const Vec3<Real> t2 = p2 * b[2];
+  surface.point = t0 + t1 + t2;
+  // Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 6.8.5.
+  surface.error = (absolute(t0) + absolute(t1) + absolute(t2)) * Real(gamma_bound(7));
+
+  surface.geometric = normalized(cross(p1 - p0, p2 - p0));
+  surface.outside = dot(surface.geometric, direction) < Real(0.0);
+  if (!surface.outside) {
+    surface.geometric = -surface.geometric;
+  }
+  surface.normal = surface.geometric;
+  if (!scene.normals.empty()) {
+    const auto corner = [&](int k) {
+      const glm::dvec3& n = scene.normals[t.vertex[static_cast<std::size_t>(k)]];
+      const bool none = n.x == 0.0 && n.y == 0.0 && n.z == 0.0;
+      const Vec3<Real> own(n);
+      // Vertex normals may point to either side: each is brought to the viewer's before they are mixed.
+      return none ? surface.geometric : (dot(own, surface.geometric) < Real(0.0) ? -own : own);
+    };
+    const Vec3<Real> mixed = corner(0) * b[0] + corner(1) * b[1] + corner(2) * b[2];
+    // Near a silhouette the mixed normal may face away although the triangle does not; then the
+    // triangle's own is used. A mix that cancels out fails the comparison too.
+    if (dot(mixed, direction) < Real(0.0)) {
+      surface.normal = normalized(mixed);
+    }
+  }
+  return surface;
+}
+
+/// Texture coordinates at the point with barycentric weights b. The scene must have uvs.
+template <typename Real>
+glm::dvec2 uv_at(const scenes::Scene& scene, std::uint32_t triangle, const Real (&b)[3]) {
+  const scenes::Triangle& t = scene.triangles[triangle];
+  const auto mix = [&](auto component) {
+    return static_cast<double>(b[0] * Real(component(scene.uvs[t.vertex[0]])) +
+                               b[1] * Real(component(scene.uvs[t.vertex[1]])) +
+                               b[2] * Real(component(scene.uvs[t.vertex[2]])));
+  };
+  return {mix([](const glm::dvec2& uv) { return uv.x; }), mix([](const glm::dvec2& uv) { return uv.y; })};
+}
+
+/// The next double away from zero's side given by `toward`: up when toward > 0, down when toward < 0.
+inline double next_toward(double value, double toward) {
+  if (toward == 0.0 || !std::isfinite(value)) {
+    return value;
+  }
+  if (value == 0.0) {
+    return std::copysign(std::numeric_limits<double>::denorm_min(), toward);
+  }
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  return std::bit_cast<double>((value > 0.0) == (toward > 0.0) ? bits + 1 : bits - 1);
+}
+
+/// Where a ray that leaves the surface into `direction` begins: the point moved along the triangle's
+/// normal out of its error box, each coordinate rounded outwards (Physically Based Rendering, 4th ed.,
+/// section 6.8.6). A fixed epsilon fails at both ends of scale.
+template <typename Real>
+Vec3<Real> leave(const Surface<Real>& surface, const Vec3<Real>& direction) {
+  Real distance = dot(absolute(surface.geometric), surface.error);
+  if (dot(surface.geometric, direction) < Real(0.0)) {
+    distance = -distance;
+  }
+  const Vec3<Real> offset = surface.geometric * distance;
+  const Vec3<Real> moved = surface.point + offset;
+  // The last step is integer work on a register.
+  const auto outward = [](const Real& value, const Real& toward) {
+    return Real(next_toward(static_cast<double>(value), static_cast<double>(toward)));
+  };
+  return {outward(moved.x, offset.x), outward(moved.y, offset.y), outward(moved.z, offset.z)};
+}
+
+/// A light as one surface point sees it.
+template <typename Real>
+struct LightSample {
+  Vec3<Real> direction;      ///< unit, from the surface to the light
+  Vec3<Real> radiance;       ///< colour with all its fall-offs; zero where the light does not reach
+  bool reaches = false;      ///< the radiance is not zero
+  bool at_infinity = false;  ///< directional
+};
+
+/// glTF's KHR_lights_punctual: spot cone and range window. inverse_square off leaves out the distance law.
+template <typename Real>
+LightSample<Real> light_at(const scenes::Light& light, const Vec3<Real>& point) {
+  using std::sqrt;
+  LightSample<Real> sample;
+  sample.radiance = Vec3<Real>(light.color);
+  if (light.kind == scenes::LightKind::directional) {
+    sample.direction = -Vec3<Real>(light.direction);
+    sample.at_infinity = true;
+    sample.reaches = largest(sample.radiance) > Real(0.0);
+    return sample;
+  }
+  const Vec3<Real> to_light = Vec3<Real>(light.position) - point;
+  const Real squared = dot(to_light, to_light);
+  if (!(squared > Real(0.0))) {
+    return sample;  // in the light itself
+  }
+  sample.direction = to_light * (Real(1.0) / sqrt(squared));
+  Real strength(1.0);
+  if (light.inverse_square) {
+    strength = strength / squared;
+  }
+  if (light.range > 0.0) {
+    const Real ratio = squared / Real(light.range * light.range);
+    const Real window = Real(1.0) - ratio * ratio;
+    strength = window > Real(0.0) ? strength * window : Real(0.0);
+  }
+  if (light.kind == scenes::LightKind::spot) {
+    const Real cosine = -dot(sample.direction, Vec3<Real>(light.direction));
+    const double width = light.cos_inner_cone - light.cos_outer_cone;
+    Real cone = (cosine - Real(light.cos_outer_cone)) * Real(1.0 / (width > 0.001 ? width : 0.001));
+    cone = cone < Real(0.0) ? Real(0.0) : (cone > Real(1.0) ? Real(1.0) : cone);
+    strength = strength * (cone * cone);
+  }
+  sample.radiance = sample.radiance * strength;
+  sample.reaches = largest(sample.radiance) > Real(0.0);
+  return sample;
+}
+
+/// True when light from `direction` falls on the viewer's side: both normals must face it, or light would
+/// leak through the horizon that the triangle really has.
+template <typename Real>
+bool faces(const Surface<Real>& surface, const Vec3<Real>& direction) {
+  return dot(surface.normal, direction) > Real(0.0) && dot(surface.geometric, direction) > Real(0.0);
+}
+
+/// What one unoccluded light adds: Lambert's diffuse term and the highlight of the halfway vector (Blinn,
+/// SIGGRAPH 1977).
+template <typename Real>
+Vec3<Real> lit(const scenes::Material& material, const Surface<Real>& surface, const LightSample<Real>& light,
+               const Vec3<Real>& ray_direction) {
+  Vec3<Real> reflected = surface.color * (Real(material.diffuse) * dot(surface.normal, light.direction));
+  if (material.highlight > 0.0) {
+    const Vec3<Real> halfway = normalized(light.direction - ray_direction);
+    const Real cosine = dot(surface.normal, halfway);
+    if (cosine > Real(0.0)) {
+      const Real shine = power(cosine < Real(1.0) ? cosine : Real(1.0), Real(material.shininess));
+      reflected = reflected + Vec3<Real>(material.specular_color) * (Real(material.highlight) * shine);
+    }
+  }
+  return reflected * light.radiance;
+}
+
+/// The mirror direction. Where a shading normal would send it under the triangle's own plane, the
+/// triangle's normal is used instead.
+template <typename Real>
+Vec3<Real> reflected(const Surface<Real>& surface, const Vec3<Real>& direction) {
+  const auto mirror = [&](const Vec3<Real>& n) { return direction - n * (Real(2.0) * dot(n, direction)); };
+  const Vec3<Real> smooth = mirror(surface.normal);
+  return dot(smooth, surface.geometric) > Real(0.0) ? smooth : mirror(surface.geometric);
+}
+
+/// Snell's direction into the surface, or false at total internal reflection. `ratio` is the index of
+/// refraction on the viewer's side over that beyond.
+template <typename Real>
+bool refracted(const Surface<Real>& surface, const Vec3<Real>& direction, const Real& ratio,
+               Vec3<Real>& out) {
+  using std::sqrt;
+  const auto bend = [&](const Vec3<Real>& n) {
+    const Real cosine = -dot(n, direction);
+    const Real squared = Real(1.0) - ratio * ratio * (Real(1.0) - cosine * cosine);
+    if (squared < Real(0.0)) {
+      return false;
+    }
+    out = direction * ratio + n * (ratio * cosine - sqrt(squared));
+    return true;
+  };
+  if (!bend(surface.normal)) {
+    return false;
+  }
+  return dot(out, surface.geometric) < Real(0.0) || bend(surface.geometric);
+}
+
+}  // namespace marti::processors

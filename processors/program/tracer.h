@@ -1,0 +1,238 @@
+// The recursive ray tracer (Whitted, CACM 23(6), 1980), one pixel at a time, without recursion: rays wait
+// on a small stack with the weight their colour has in the pixel, and every contribution is added to the
+// pixel when it is found. The order of additions is fixed, so the image has the same bits always.
+//
+// Order of execution, and of the log: a ray and its visits; then, where it hit, the shading of the point,
+// its texel, and per light the shadow ray with its visits and the light's contribution; then everything
+// the reflected ray leads to, then everything the refracted ray leads to.
+//
+// Where it differs from Whitted's program: shadows are opaque (whatever lies before the light blocks it,
+// glass too); reflection and transmission weights are the material's, no Fresnel term; a refracting body is
+// surrounded by vacuum on the side from which its triangles wind counter-clockwise, bodies do not nest.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+#include "accel/ray.h"
+#include "processors/program/recorder.h"
+#include "processors/program/render.h"
+#include "processors/program/shading.h"
+#include "scenes/camera.h"
+#include "scenes/scene.h"
+#include "scenes/texture.h"
+
+namespace marti::processors {
+
+/// Structure: a concrete structure of accel with closest<Real>(ray, visitor) and occluded<Real>(ray,
+/// visitor). Recorder: see recorder.h. Real: double, or accel::Counted to count the operations.
+/// A tracer belongs to one host thread.
+template <typename Real, typename Structure, typename Recorder>
+class Tracer {
+ public:
+  using Vec = Vec3<Real>;
+
+  /// Keeps references to all but the plane; they must outlive the tracer.
+  Tracer(const scenes::Scene& scene, const Structure& structure, const scenes::ImagePlane& plane,
+         const RenderOptions& options, Recorder& recorder)
+      : scene_(scene), structure_(structure), plane_(plane), options_(options), recorder_(recorder) {}
+
+  /// The colour of pixel (x, y), through its centre.
+  Vec trace(std::uint32_t x, std::uint32_t y) {
+    recorder_.begin_pixel();
+    recorder_.phase(Phase::ray, RayKind::camera);
+    color_ = Vec();
+    pixel_hash_ = 0;
+    depth_of_stack_ = 0;
+    push(Vec(plane_.origin), camera_direction(x, y), Vec(Real(1.0), Real(1.0), Real(1.0)), RayKind::camera,
+         0);
+    while (depth_of_stack_ > 0) {
+      const Pending ray = stack_[--depth_of_stack_];
+      follow(ray);
+    }
+    hit_hash_ += mix(pixel_hash_ ^ (std::uint64_t{y} << 32U | x));
+    recorder_.phase(Phase::pixel, RayKind::camera);
+    return color_;
+  }
+
+  [[nodiscard]] const RayCounts& rays() const { return rays_; }
+  /// Sum over the pixels traced so far; sums of several tracers add up to the frame's.
+  [[nodiscard]] std::uint64_t hit_hash() const { return hit_hash_; }
+
+ private:
+  struct Pending {
+    Vec origin;
+    Vec direction;
+    Vec weight;
+    RayKind kind = RayKind::camera;
+    std::uint32_t bounce = 0;
+  };
+
+  Vec camera_direction(std::uint32_t x, std::uint32_t y) const {
+    const Real column(x + 0.5);
+    const Real row(y + 0.5);
+    return normalized(Vec(plane_.corner) + Vec(plane_.step_x) * column + Vec(plane_.step_y) * row);
+  }
+
+  void push(const Vec& origin, const Vec& direction, const Vec& weight, RayKind kind, std::uint32_t bounce) {
+    stack_[depth_of_stack_++] = {origin, direction, weight, kind, bounce};
+  }
+
+  /// A ray that leaves a surface never sees t = 0 again. It could, where the offset out of the surface is
+  /// nothing: a triangle in a coordinate plane has points without any error.
+  static accel::Ray leaving_ray(const Vec& origin, const Vec& direction) {
+    accel::Ray ray = make_ray(origin, direction);
+    ray.t_min = std::numeric_limits<double>::denorm_min();
+    return ray;
+  }
+  static accel::Ray make_ray(const Vec& origin, const Vec& direction) {
+    return {{static_cast<double>(origin.x), static_cast<double>(origin.y), static_cast<double>(origin.z)},
+            {static_cast<double>(direction.x), static_cast<double>(direction.y),
+             static_cast<double>(direction.z)}};
+  }
+
+  void follow(const Pending& pending) {
+    const auto kind = static_cast<std::size_t>(pending.kind);
+    const accel::Ray ray = pending.bounce == 0 ? make_ray(pending.origin, pending.direction)
+                                               : leaving_ray(pending.origin, pending.direction);
+    recorder_.ray(pending.kind, pending.bounce, ray);
+    const accel::Hit hit = structure_.template closest<Real>(ray, recorder_);
+    ++rays_.traced[kind];
+    if (!hit.found()) {
+      recorder_.phase(Phase::ray, pending.kind);
+      note(accel::no_primitive, 0);
+      add(pending.weight, Vec(scene_.background));
+      return;
+    }
+    ++rays_.hit[kind];
+    note(hit.primitive, std::bit_cast<std::uint64_t>(hit.t));
+    shade(pending, hit);
+  }
+
+  void shade(const Pending& pending, const accel::Hit& hit) {
+    recorder_.phase(Phase::shade, pending.kind);
+    const std::uint32_t material_id = scene_.triangles[hit.primitive].material;
+    const scenes::Material& material = scene_.materials[material_id];
+    recorder_.shade(material_id);
+    const Real b[3] = {Real(hit.u), Real(hit.v), Real(hit.w)};
+    Surface<Real> surface = surface_at(scene_, hit.primitive, b, pending.direction);
+    surface.color = Vec(material.color);
+    if (material.texture != scenes::no_texture && !scene_.uvs.empty()) {
+      recorder_.phase(Phase::texel, pending.kind);
+      const scenes::TextureSample sample =
+          scenes::sample_nearest(scene_.textures[material.texture], uv_at(scene_, hit.primitive, b));
+      recorder_.texel(material.texture, sample.texel);
+      surface.color = surface.color * Vec(sample.color);
+      recorder_.phase(Phase::shade, pending.kind);
+    }
+    const Vec ambient = surface.color * Vec(scene_.ambient) * Real(material.diffuse);
+    add(pending.weight, Vec(material.emission) + ambient);
+    if (material.diffuse > 0.0 || material.highlight > 0.0) {
+      illuminate(pending, material, surface);
+    }
+    spawn(pending, material, surface);
+  }
+
+  void illuminate(const Pending& pending, const scenes::Material& material, const Surface<Real>& surface) {
+    for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
+      recorder_.phase(Phase::shade, pending.kind);
+      const scenes::Light& light = scene_.lights[i];
+      const LightSample<Real> sample = light_at(light, surface.point);
+      if (!sample.reaches || !faces(surface, sample.direction)) {
+        continue;
+      }
+      if (options_.shadows && in_shadow(surface, sample, light, pending.bounce + 1)) {
+        continue;
+      }
+      recorder_.phase(Phase::light, pending.kind);
+      recorder_.light(static_cast<std::uint32_t>(i));
+      add(pending.weight, lit(material, surface, sample, pending.direction));
+    }
+  }
+
+  /// A shadow ray towards a light in reach is not of unit length: t = 1 is the light itself.
+  bool in_shadow(const Surface<Real>& surface, const LightSample<Real>& sample, const scenes::Light& light,
+                 std::uint32_t bounce) {
+    recorder_.phase(Phase::ray, RayKind::shadow);
+    const Vec origin = leave(surface, sample.direction);
+    accel::Ray ray;
+    if (sample.at_infinity) {
+      ray = leaving_ray(origin, sample.direction);
+    } else {
+      ray = leaving_ray(origin, Vec(light.position) - origin);
+      ray.t_max = 1.0;
+    }
+    recorder_.ray(RayKind::shadow, bounce, ray);
+    const bool blocked = structure_.template occluded<Real>(ray, recorder_);
+    constexpr auto kind = static_cast<std::size_t>(RayKind::shadow);
+    ++rays_.traced[kind];
+    rays_.hit[kind] += blocked ? 1U : 0U;
+    note(blocked ? 1U : 0U, 1);
+    return blocked;
+  }
+
+  /// Puts the refracted ray and on top of it the reflected ray on the stack.
+  void spawn(const Pending& pending, const scenes::Material& material, const Surface<Real>& surface) {
+    if (pending.bounce + 2 > options_.max_depth) {
+      return;  // the new ray would be number bounce + 2, the eye ray being 1
+    }
+    Vec mirror_weight = Vec(material.specular_color) * Real(material.reflection);
+    if (material.transmission > 0.0) {
+      recorder_.phase(Phase::ray, RayKind::refraction);
+      const Real ratio(surface.outside ? 1.0 / material.ior : material.ior);
+      Vec direction;
+      const Vec weight(Real(material.transmission), Real(material.transmission), Real(material.transmission));
+      if (refracted(surface, pending.direction, ratio, direction)) {
+        send(pending, surface, direction, weight, RayKind::refraction);
+      } else {
+        mirror_weight = mirror_weight + weight;  // total internal reflection takes it all
+      }
+    }
+    recorder_.phase(Phase::ray, RayKind::reflection);
+    if (mirror_weight.x > 0.0 || mirror_weight.y > 0.0 || mirror_weight.z > 0.0) {
+      send(pending, surface, reflected(surface, pending.direction), mirror_weight, RayKind::reflection);
+    }
+  }
+
+  void send(const Pending& pending, const Surface<Real>& surface, const Vec& direction, const Vec& factor,
+            RayKind kind) {
+    const Vec weight = pending.weight * factor;
+    const Real size = largest(weight);
+    if (!(size > Real(0.0)) || size < Real(options_.min_weight)) {
+      return;
+    }
+    // Rounding would let the length drift over many bounces.
+    push(leave(surface, direction), normalized(direction), weight, kind, pending.bounce + 1);
+  }
+
+  void add(const Vec& weight, const Vec& light) { color_ = color_ + weight * light; }
+
+  /// The finaliser of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014).
+  static std::uint64_t mix(std::uint64_t h) {
+    h += 0x9e3779b97f4a7c15U;
+    h = (h ^ (h >> 30U)) * 0xbf58476d1ce4e5b9U;
+    h = (h ^ (h >> 27U)) * 0x94d049bb133111ebU;
+    return h ^ (h >> 31U);
+  }
+  void note(std::uint32_t primitive, std::uint64_t t_bits) {
+    pixel_hash_ = mix((pixel_hash_ ^ t_bits) * 0x9e3779b97f4a7c15U + primitive);
+  }
+
+  const scenes::Scene& scene_;
+  const Structure& structure_;
+  scenes::ImagePlane plane_;
+  RenderOptions options_;
+  Recorder& recorder_;
+
+  Vec color_;
+  RayCounts rays_;
+  std::uint64_t hit_hash_ = 0;
+  std::uint64_t pixel_hash_ = 0;
+  /// Each ray taken off puts at most two on, once per level.
+  std::array<Pending, max_ray_depth + 1> stack_;
+  std::size_t depth_of_stack_ = 0;
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,157 @@
+#include "processors/program/work_log.h"
+
+#include <string>
+
+#include "sim/error.h"
+
+namespace marti::processors {
+
+namespace {
+
+using sim::ensure;
+
+/// Walks one row's words; every problem is an InternalError that names what is out of bounds.
+class RowChecker {
+ public:
+  RowChecker(const WorkLog& log, const LogRow& row) : log_(log), row_(row) {}
+
+  void check() {
+    ensure(row_.begin.size() == std::size_t{log_.width} + 1, "work log: a row lacks pixel offsets");
+    ensure(row_.begin.front() == 0, "work log: a row does not begin at its first word");
+    ensure(row_.begin.back() == row_.words.size(),
+           "work log: a row's last pixel ends elsewhere than its words");
+    for (std::size_t x = 0; x < log_.width; ++x) {
+      ensure(row_.begin[x] <= row_.begin[x + 1], "work log: pixel offsets decrease");
+      check_pixel(row_.begin[x], row_.begin[x + 1]);
+    }
+  }
+
+ private:
+  void check_pixel(std::size_t at, std::size_t end) {
+    while (at < end) {
+      const std::uint32_t word = row_.words[at++];
+      const Step step = step_of(word);
+      std::uint32_t second = 0;
+      if (has_second_word(step)) {
+        ensure(at < end, "work log: a pixel ends between the two words of a step");
+        second = row_.words[at++];
+      }
+      check_step(step, operand_of(word), second);
+    }
+  }
+
+  void check_step(Step step, std::uint32_t operand, std::uint32_t second) const {
+    switch (step) {
+      case Step::branch:
+        ensure(operand < log_.topology.nodes.size(), "work log: a branch that the tree does not have");
+        ensure(!log_.topology.nodes[operand].leaf, "work log: a branch step on a leaf");
+        return;
+      case Step::leaf:
+      case Step::partial_leaf:
+        ensure(operand < log_.topology.nodes.size(), "work log: a leaf that the tree does not have");
+        ensure(log_.topology.nodes[operand].leaf, "work log: a leaf step on a branch");
+        ensure(step == Step::leaf || second < log_.topology.nodes[operand].count,
+               "work log: a partial leaf that tests all its entries or more");
+        return;
+      case Step::ray:
+        return;  // every value of the low two bits is a RayKind
+      case Step::shade:
+        ensure(operand < log_.materials, "work log: a material that the database does not have");
+        return;
+      case Step::light:
+        ensure(operand < log_.lights, "work log: a light that the database does not have");
+        return;
+      case Step::texel:
+        ensure(operand + std::size_t{1} < log_.texture_begin.size(),
+               "work log: a texture that the database does not have");
+        ensure(second < log_.texture_begin[operand + 1] - log_.texture_begin[operand],
+               "work log: a texel outside its texture");
+        return;
+    }
+    throw sim::InternalError("work log: an unknown step " + std::to_string(static_cast<unsigned>(step)));
+  }
+
+  const WorkLog& log_;
+  const LogRow& row_;
+};
+
+void check_topology(const WorkLog& log) {
+  const std::size_t nodes = log.topology.nodes.size();
+  for (std::size_t n = 0; n < nodes; ++n) {
+    const accel::TopologyNode& node = log.topology.nodes[n];
+    const std::size_t end = std::size_t{node.first} + node.count;
+    ensure(end <= (node.leaf ? log.topology.entries.size() : nodes),
+           "work log: a node that points outside the tree");
+    ensure(node.leaf || node.count == 0 || node.first > n, "work log: a branch above its parent");
+  }
+  for (const std::uint32_t entry : log.topology.entries) {
+    ensure(entry < log.primitives, "work log: a primitive that the database does not have");
+  }
+  for (std::size_t i = 1; i < log.texture_begin.size(); ++i) {
+    ensure(log.texture_begin[i - 1] <= log.texture_begin[i], "work log: texture offsets decrease");
+  }
+}
+
+}  // namespace
+
+void check_log_capacity(std::size_t nodes, std::size_t materials, std::size_t lights, std::size_t textures) {
+  const auto fits = [](const char* what, std::size_t count) {
+    constexpr std::size_t most = std::size_t{max_operand} + 1;
+    if (count > most) {
+      throw sim::UserError("the work log numbers at most " + std::to_string(most) + " " + what +
+                           ", and there are " + std::to_string(count) +
+                           "; use a smaller scene or a coarser structure");
+    }
+  };
+  fits("structure nodes", nodes);
+  fits("materials", materials);
+  fits("lights", lights);
+  fits("textures", textures);
+}
+
+LogTotals totals_of(const WorkLog& log) {
+  LogTotals totals;
+  for (const LogRow& row : log.rows) {
+    totals.bytes += (row.words.size() + row.begin.size()) * sizeof(std::uint32_t);
+    for (std::size_t at = 0; at < row.words.size(); ++at) {
+      const std::uint32_t word = row.words[at];
+      switch (step_of(word)) {
+        case Step::branch:
+          ++totals.branches;
+          break;
+        case Step::leaf:
+          ++totals.leaves;
+          totals.tests += log.topology.nodes[operand_of(word)].count;
+          break;
+        case Step::partial_leaf:
+          ++totals.leaves;
+          totals.tests += row.words[++at];
+          break;
+        case Step::ray:
+          ++totals.rays[operand_of(word) & 3U];
+          break;
+        case Step::shade:
+          ++totals.shades;
+          break;
+        case Step::light:
+          ++totals.lights;
+          break;
+        case Step::texel:
+          ++totals.texels;
+          ++at;
+          break;
+      }
+    }
+  }
+  return totals;
+}
+
+void validate(const WorkLog& log) {
+  ensure(log.rows.size() == log.height, "work log: the number of rows is not the image's height");
+  check_topology(log);
+  for (const LogRow& row : log.rows) {
+    RowChecker(log, row).check();
+  }
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,99 @@
+// The work log: what the ray tracer did, pixel by pixel, without cycles and without addresses.
+//
+// A pixel is a run of 32-bit words: step kind in the top 4 bits, operand in the lower 28. A leaf's tests
+// are not written: they follow from the leaf (every entry is tested, in list order), except when an
+// occlusion query ended early, which partial_leaf records with its count in a second word. Words are
+// kept per image row, so rows are recorded on any number of host threads and give the same bytes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "accel/topology.h"
+
+namespace marti::processors {
+
+/// Kinds of ray, in the order statistics list them.
+enum class RayKind : std::uint8_t { camera, shadow, reflection, refraction };
+inline constexpr std::size_t ray_kinds = 4;
+
+/// What a word of the log says.
+enum class Step : std::uint32_t {
+  branch,        ///< operand: node. A branch record was read and its children ordered.
+  leaf,          ///< operand: node. A leaf record was read; all its entries were tested.
+  partial_leaf,  ///< operand: node; second word: how many of its entries were tested.
+  ray,           ///< operand: RayKind | bounce << 2. A ray was set up and its traversal begins. The bounce
+                 ///< is the number of surface points between the eye and the ray's origin: 0 for camera
+                 ///< rays, 1 for the shadow, reflected and refracted rays of what the camera sees.
+  shade,         ///< operand: material. A hit point, normal and local colour were computed.
+  light,         ///< operand: light. One unoccluded light's contribution was added.
+  texel,         ///< operand: texture; second word: texel index in the texture. A texel was read.
+};
+
+inline constexpr unsigned operand_bits = 28;
+inline constexpr std::uint32_t max_operand = (1U << operand_bits) - 1U;
+
+[[nodiscard]] constexpr std::uint32_t make_word(Step step, std::uint32_t operand) {
+  return (static_cast<std::uint32_t>(step) << operand_bits) | operand;
+}
+[[nodiscard]] constexpr Step step_of(std::uint32_t word) { return static_cast<Step>(word >> operand_bits); }
+[[nodiscard]] constexpr std::uint32_t operand_of(std::uint32_t word) { return word & max_operand; }
+/// True for the steps that are followed by a second, raw word.
+[[nodiscard]] constexpr bool has_second_word(Step step) {
+  return step == Step::partial_leaf || step == Step::texel;
+}
+
+/// One image row: the words of its pixels from left to right. Pixel x is words[begin[x] .. begin[x + 1]).
+struct LogRow {
+  std::vector<std::uint32_t> words;
+  std::vector<std::uint32_t> begin;  ///< width + 1 offsets
+};
+
+/// How much a log holds; also the denominators of bytes per ray and steps per ray.
+struct LogTotals {
+  std::uint64_t rays[ray_kinds] = {};
+  std::uint64_t branches = 0;
+  std::uint64_t leaves = 0;
+  std::uint64_t tests = 0;
+  std::uint64_t shades = 0;
+  std::uint64_t lights = 0;
+  std::uint64_t texels = 0;
+  std::uint64_t bytes = 0;  ///< words and pixel offsets
+
+  [[nodiscard]] std::uint64_t all_rays() const { return rays[0] + rays[1] + rays[2] + rays[3]; }
+  /// Steps the log stands for: every visit, test, ray, shade, light and texel.
+  [[nodiscard]] std::uint64_t all_steps() const {
+    return all_rays() + branches + leaves + tests + shades + lights + texels;
+  }
+};
+
+/// A whole frame's log with the tree it refers to. Immutable once recorded; shared read-only by replays.
+struct WorkLog {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  accel::Topology topology;
+  std::uint32_t primitives = 0;              ///< number of primitive records in the database
+  std::uint32_t materials = 0;               ///< number of material records
+  std::uint32_t lights = 0;                  ///< number of lights
+  std::vector<std::uint64_t> texture_begin;  ///< first texel of each texture in the texel array, plus the end
+  std::vector<LogRow> rows;                  ///< `height` of them, from the top
+
+  [[nodiscard]] std::span<const std::uint32_t> pixel(std::uint32_t x, std::uint32_t y) const {
+    const LogRow& row = rows[y];
+    return std::span(row.words).subspan(row.begin[x], row.begin[x + 1] - row.begin[x]);
+  }
+};
+
+/// Throws UserError when a database with that many records does not fit the operands of a log.
+void check_log_capacity(std::size_t nodes, std::size_t materials, std::size_t lights, std::size_t textures);
+
+/// Counts the whole log in one pass.
+[[nodiscard]] LogTotals totals_of(const WorkLog& log);
+
+/// Throws InternalError unless every operand names something that exists; for logs read from elsewhere
+/// and for tests.
+void validate(const WorkLog& log);
+
+}  // namespace marti::processors

@@ -1,0 +1,113 @@
+#include "processors/replay.h"
+
+#include <limits>
+#include <memory>
+
+#include "memory/layout.h"
+#include "memory/set_tags.h"
+#include "processors/node_array.h"
+#include "processors/node_order.h"
+#include "processors/packets.h"
+#include "sim/engine.h"
+#include "sim/error.h"
+
+namespace marti::processors {
+
+namespace {
+
+memory::Layout layout_of(const WorkLog& log, const MachineConfig& config) {
+  const memory::RecordCounts counts = {log.topology.nodes.size(),
+                                       log.topology.entries.size(),
+                                       log.primitives,
+                                       log.materials,
+                                       log.texture_begin.empty() ? 0 : log.texture_begin.back(),
+                                       std::uint64_t{log.width} * log.height};
+  const memory::Layout layout(config.layout, counts);
+  const std::uint32_t unit = config.cache.organisation == CacheOrganisation::none ? config.banks.interleave
+                                                                                  : config.cache.cache.line;
+  if (layout.end() / unit >= memory::no_line) {
+    throw sim::UserError("the database has 2^32 or more lines; use longer cache lines");
+  }
+  return layout;
+}
+
+}  // namespace
+
+StepCounts MachineResult::steps() const {
+  StepCounts sum;
+  for (const NodeStatistics& node : nodes) {
+    sum += node.steps;
+  }
+  return sum;
+}
+
+ReferenceCounts MachineResult::references() const {
+  ReferenceCounts sum;
+  for (const NodeStatistics& node : nodes) {
+    sum += node.references;
+  }
+  return sum;
+}
+
+TimeDivision MachineResult::time() const {
+  TimeDivision sum{};
+  for (const NodeStatistics& node : nodes) {
+    for (std::size_t i = 0; i < activities; ++i) {
+      sum[i] = sim::add_ticks(sum[i], node.time[i]);
+    }
+  }
+  return sum;
+}
+
+MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
+  check(config);
+  const memory::Layout layout = layout_of(log, config);
+  const PacketList packets(log.width, log.height, config.packets);
+  const std::vector<std::uint32_t> rank = config.layout.node_order == memory::NodeOrder::depth_first
+                                              ? depth_first_rank(log.topology)
+                                              : std::vector<std::uint32_t>{};
+  sim::Engine engine;
+  engine.reserve(std::size_t{config.all_nodes()} + 1);
+  Host host(config.host, packets.size(), config.all_nodes());
+  const std::unique_ptr<NodeArray> nodes =
+      make_node_array({log, config, layout, packets, rank, options.step_by_step}, engine, host);
+
+  std::vector<std::unique_ptr<memory::Interconnect>> interconnects;
+  std::vector<memory::Interconnect*> links;
+  for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
+    interconnects.push_back(memory::make_interconnect(
+        config.interconnect, config.banks,
+        {engine, nodes->client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * config.nodes,
+         config.nodes}));
+    links.push_back(interconnects.back().get());
+  }
+  nodes->connect(links);
+  for (const EventClass c :
+       {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read, EventClass::write}) {
+    engine.attach(static_cast<std::uint8_t>(c), *nodes);
+  }
+  nodes->start(options.start_seed);
+  // Every event moves some node on by at least one step of a finite log, so no limit is needed.
+  engine.run(std::numeric_limits<std::uint64_t>::max());
+  nodes->finish();
+
+  MachineResult result;
+  result.end = nodes->end();
+  result.nodes = nodes->statistics();
+  for (const auto& interconnect : interconnects) {
+    result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
+  }
+  result.host = host.statistics();
+  result.packets = packets.size();
+  result.database_bytes = layout.database_bytes();
+  result.copies = config.placement == Placement::replicated ? config.all_nodes() : config.clusters;
+  result.events = engine.events();
+  result.host_bytes_per_node = nodes->bytes_per_node();
+  result.unloaded_miss = interconnects.front()->unloaded_read(
+      config.cache.organisation == CacheOrganisation::none ? config.banks.interleave
+                                                           : config.cache.cache.line);
+  check_conservation(log, config, result);
+  return result;
+}
+
+}  // namespace marti::processors

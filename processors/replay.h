@@ -1,0 +1,54 @@
+// Times one machine from a work log.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "memory/interconnect.h"
+#include "processors/accounting.h"
+#include "processors/host.h"
+#include "processors/machine_config.h"
+#include "processors/program/work_log.h"
+
+namespace marti::processors {
+
+/// What one cluster's interconnect and banks counted.
+struct ClusterResult {
+  memory::InterconnectStatistics interconnect;
+  std::vector<memory::BankStatistics> banks;
+};
+
+/// A timed frame. All figures are integers; ratios are left to whoever prints them.
+struct MachineResult {
+  sim::Ticks end = 0;  ///< when the last node and the last posted write are done: the frame time
+  std::vector<NodeStatistics> nodes;
+  std::vector<ClusterResult> clusters;
+  HostStatistics host;
+  std::uint64_t packets = 0;
+  std::uint64_t database_bytes = 0;  ///< of one copy
+  std::uint64_t copies = 0;          ///< one for each cluster, or for each node when replicated
+  std::uint64_t events = 0;
+  std::size_t host_bytes_per_node = 0;
+  sim::Ticks unloaded_miss = 0;  ///< a miss that meets no other transaction
+
+  [[nodiscard]] StepCounts steps() const;
+  [[nodiscard]] ReferenceCounts references() const;
+  [[nodiscard]] TimeDivision time() const;
+};
+
+struct ReplayOptions {
+  bool step_by_step = false;     ///< an event for every reference instead of running ahead; same result
+  std::uint64_t start_seed = 0;  ///< order in which the nodes' first events are posted; same result
+};
+
+/// Times `config` on `log`. Deterministic, single-threaded; many replays may share one log. Before it
+/// returns it checks the conservation laws of the result and throws InternalError when one is broken.
+/// Throws UserError for a machine that cannot be built or a time that does not fit.
+[[nodiscard]] MachineResult replay(const WorkLog& log, const MachineConfig& config,
+                                   const ReplayOptions& options = {});
+
+/// The conservation laws that every result must obey: each node's time adds up to the end; every pixel is
+/// written once; what the nodes waited is what the interconnect and the banks made them wait.
+void check_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result);
+
+}  // namespace marti::processors

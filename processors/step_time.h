@@ -1,0 +1,26 @@
+// A machine's step costs in ticks, and the division of a node's computing time that follows from counts.
+#pragma once
+
+#include "processors/accounting.h"
+#include "processors/machine_config.h"
+
+namespace marti::processors {
+
+struct StepTicks {
+  std::array<sim::Ticks, ray_kinds> ray{};
+  sim::Ticks branch = 0;
+  sim::Ticks leaf = 0;
+  sim::Ticks test = 0;
+  sim::Ticks shade = 0;
+  sim::Ticks light = 0;
+  sim::Ticks texel = 0;
+  sim::Ticks pixel = 0;
+  sim::Ticks hit = 0;
+};
+
+[[nodiscard]] StepTicks step_ticks(const MachineConfig& config);
+
+/// Adds traversal, intersection, shading and cache access of `counts` to `time`.
+void add_counted_time(const StepTicks& ticks, const StepCounts& steps, std::int64_t hits, TimeDivision& time);
+
+}  // namespace marti::processors

@@ -1,0 +1,76 @@
+#include "studies/functional_run.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "accel/structure.h"
+#include "sim/error.h"
+#include "sim/units.h"
+#include "studies/image_file.h"
+
+namespace marti::studies {
+
+namespace {
+
+// FNV-1a (Fowler, Noll, Vo) over the bits of all pixels.
+std::uint64_t hash_of(const processors::Image& image) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const glm::vec3& pixel : image.pixels) {
+    for (int channel = 0; channel < 3; ++channel) {
+      hash = (hash ^ std::bit_cast<std::uint32_t>(pixel[channel])) * 0x100000001b3ULL;
+    }
+  }
+  return hash;
+}
+
+// A rendering of at most this many pixels a side is made without asking what it takes.
+constexpr std::uint32_t sample_side = 64;
+
+// Bytes of log and image, scaled up from a small rendering of the same view. Doubled, because a row grows
+// by doubling and the coarse sample may miss what is expensive.
+void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
+                          const accel::TriangleSet& triangles, const accel::Structure& structure) {
+  processors::RenderOptions sample = config.render;
+  sample.width = std::min(sample.width, sample_side);
+  sample.height = std::min(sample.height, sample_side);
+  if (sample.width == config.render.width && sample.height == config.render.height) {
+    return;
+  }
+  sample.record = true;
+  const processors::Frame frame = processors::render(scene, triangles, structure, sample);
+  const double pixels = static_cast<double>(config.render.width) * config.render.height;
+  const double bytes = static_cast<double>(processors::totals_of(*frame.log).bytes) /
+                           (static_cast<double>(sample.width) * sample.height) * pixels * 2.0 +
+                       pixels * sizeof(glm::vec3);
+  if (bytes > static_cast<double>(config.memory_limit)) {
+    throw sim::UserError("the image and its work log may take " +
+                         sim::print_size(static_cast<std::int64_t>(std::min(bytes, 9e18)) >> 20U << 20U) +
+                         ", more than host_machine.memory_limit = " + sim::print_size(config.memory_limit) +
+                         ": raise the limit, or lower image.width, image.height or image.max_depth");
+  }
+}
+
+}  // namespace
+
+FunctionalRun run_functional(const FrameConfig& config) {
+  const scenes::Scene scene = scenes::open_scene(config.scene, config.open, decode_image);
+  const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
+  const std::unique_ptr<accel::Structure> structure =
+      accel::make_structure(config.structure, triangles, config.structure_options);
+  refuse_beyond_memory(config, scene, *triangles, *structure);
+
+  FunctionalRun run;
+  run.scene = scenes::facts_of(scene);
+  run.notes = scene.notes;
+  if (const auto* octree = dynamic_cast<const accel::StructureOf<accel::Octree>*>(structure.get())) {
+    run.levels = octree->concrete().levels();
+  }
+  processors::RenderOptions options = config.render;
+  options.record = true;
+  run.frame = processors::render(scene, *triangles, *structure, options);
+  run.totals = processors::totals_of(*run.frame.log);
+  run.image_hash = hash_of(run.frame.image);
+  return run;
+}
+
+}  // namespace marti::studies

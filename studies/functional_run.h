@@ -1,0 +1,28 @@
+// The functional world's part of a run: scene, structure, image and work log.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "accel/octree.h"
+#include "processors/program/render.h"
+#include "scenes/open.h"
+#include "studies/frame_keys.h"
+
+namespace marti::studies {
+
+struct FunctionalRun {
+  scenes::SceneFacts scene;
+  std::vector<std::string> notes;              ///< what the loader chose or left out
+  std::vector<accel::LevelStatistics> levels;  ///< of an octree; empty for other structures
+  processors::Frame frame;
+  processors::LogTotals totals;
+  std::uint64_t image_hash = 0;  ///< of the pixels' bits
+};
+
+/// Opens the scene, builds the structure, renders and records. Throws UserError when the scene cannot be
+/// used or the frame would take more than the memory limit, which it estimates from a small rendering.
+[[nodiscard]] FunctionalRun run_functional(const FrameConfig& config);
+
+}  // namespace marti::studies

@@ -1,0 +1,27 @@
+// Image files, through OpenImageIO: the only place that touches an image codec.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "processors/program/image.h"
+#include "scenes/scene.h"
+
+namespace marti::studies {
+
+/// Writes 32-bit float linear RGB as OpenEXR. Throws UserError when the file cannot be written.
+void write_exr(const processors::Image& image, const std::filesystem::path& file);
+
+/// Writes 8-bit sRGB-encoded PNG; values are clamped to 0..1. Throws UserError likewise.
+void write_png(const processors::Image& image, const std::filesystem::path& file);
+
+/// A scenes::ImageDecoder. Reads PNG and JPEG; refuses more than 65,536 pixels a side or 2^28 in all.
+[[nodiscard]] scenes::Texture decode_image(std::span<const std::byte> file, std::string_view name);
+
+/// A scenes::ImageEncoder: PNG.
+[[nodiscard]] std::vector<std::byte> encode_png(const scenes::Texture& texture);
+
+}  // namespace marti::studies

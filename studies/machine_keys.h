@@ -1,0 +1,16 @@
+// The configuration keys of a simulated machine.
+#pragma once
+
+#include "processors/machine_config.h"
+#include "sim/config.h"
+#include "sim/schema.h"
+
+namespace marti::studies {
+
+void declare_machine_keys(sim::Schema& schema);
+
+/// Reads and checks the machine. Marks the keys that the chosen kinds do not use, with the reason.
+/// Throws UserError naming file, line and key.
+[[nodiscard]] processors::MachineConfig read_machine(sim::Config& config);
+
+}  // namespace marti::studies

@@ -1,0 +1,157 @@
+// The command line. Exit status: 0 done, 2 the user's input is wrong, 1 a fault of ours.
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "scenes/gltf_export.h"
+#include "scenes/open.h"
+#include "scenes/procedural.h"
+#include "sim/error.h"
+#include "sim/schema.h"
+#include "studies/image_file.h"
+#include "studies/output.h"
+#include "studies/run_result.h"
+#include "studies/version.h"
+
+namespace {
+
+using namespace marti;
+
+constexpr int done = 0;
+constexpr int our_fault = 1;
+constexpr int wrong_input = 2;
+
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw sim::UserError("standard output cannot be written");
+  }
+}
+
+struct RunArguments {
+  std::string config;
+  std::vector<std::string> assignments;
+  std::string directory;
+  bool json = false;
+};
+
+void run_command(const RunArguments& arguments) {
+  sim::Config config = sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
+  if (!arguments.directory.empty()) {
+    studies::prepare_output(arguments.directory);
+  }
+  const studies::RunResult result = studies::run(config);
+  std::vector<std::filesystem::path> files;
+  if (!arguments.directory.empty()) {
+    files = studies::write_output(result, arguments.directory);
+  }
+  if (arguments.json) {
+    print(studies::json_of(result));
+    return;
+  }
+  std::string text = studies::summary_of(result);
+  for (const std::filesystem::path& file : files) {
+    text += "wrote         " + file.string() + "\n";
+  }
+  print(text);
+}
+
+void list_scenes() {
+  std::string text;
+  for (const scenes::ProceduralScene& scene : scenes::procedural_scenes()) {
+    text += std::string(scene.name) + ":" + std::to_string(scene.default_size) + "  (" +
+            std::to_string(scene.minimum_size) + " to " + std::to_string(scene.maximum_size) + ")  " +
+            std::string(scene.meaning) + "\n";
+    for (const scenes::ProceduralVariant& variant : scene.variants) {
+      text += "  :" + std::string(variant.name) + "  " + std::string(variant.meaning) + "\n";
+    }
+  }
+  print(text);
+}
+
+struct SceneArguments {
+  std::string source;
+  std::string target;
+  scenes::GltfOptions gltf;
+};
+
+scenes::Scene open(const SceneArguments& arguments) {
+  return scenes::open_scene(arguments.source, {{}, arguments.gltf}, studies::decode_image);
+}
+
+void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
+  CLI::App* scene = app.add_subcommand("scene", "Lists, describes and exports scenes");
+  scene->require_subcommand(1);
+  scene->add_subcommand("list", "Lists the procedural scenes")->callback(list_scenes);
+  CLI::App* info = scene->add_subcommand("info", "Describes a scene");
+  CLI::App* save = scene->add_subcommand("export", "Writes a scene as binary glTF");
+  for (CLI::App* command : {info, save}) {
+    command->add_option("SOURCE", arguments.source, "name:size, or a .gltf or .glb file")->required();
+    command->add_option("--scene", arguments.gltf.scene, "scene of the file, by index or name");
+    command->add_option("--camera", arguments.gltf.camera, "camera of the file, by index or name");
+  }
+  save->add_option("FILE", arguments.target, "the .glb file to write")->required();
+  info->callback([&] { print(scenes::describe(open(arguments))); });
+  save->callback([&] {
+    if (!arguments.target.ends_with(".glb")) {
+      throw sim::UserError(arguments.target + ": the name of a binary glTF file must end in .glb");
+    }
+    scenes::export_glb(open(arguments), arguments.target, studies::encode_png);
+    print("wrote " + arguments.target + "\n");
+  });
+}
+
+int parse_and_run(int argc, char** argv) {
+  CLI::App app("marti: simulates multiprocessor ray-tracing machines");
+  app.set_version_flag("--version", std::string(studies::version));
+  app.require_subcommand(1);
+
+  RunArguments run_arguments;
+  CLI::App* run = app.add_subcommand("run", "Runs one machine: image, statistics, summary");
+  run->add_option("CONFIG", run_arguments.config, "configuration file (TOML)")->required();
+  run->add_option("--set", run_arguments.assignments, "key=value, overrides the file; may be repeated")
+      ->allow_extra_args(false);
+  run->add_option("-o,--output", run_arguments.directory,
+                  "directory for image.exr, image.png and result.json");
+  run->add_flag("--json", run_arguments.json, "print the result as JSON instead of the summary");
+  run->callback([&] { run_command(run_arguments); });
+
+  bool markdown = false;
+  CLI::App* config = app.add_subcommand("config", "Prints every configuration key");
+  config->add_flag("--markdown", markdown, "as Markdown, as in docs/configuration.md");
+  config->callback([&] {
+    const sim::Schema schema = studies::run_schema();
+    print(markdown ? sim::list_keys_as_markdown(schema) : sim::list_keys_as_text(schema));
+  });
+
+  SceneArguments scene_arguments;
+  add_scene_commands(app, scene_arguments);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // CLI11 prints help, version and its complaint; a complaint is the user's input being wrong.
+    return app.exit(error) == 0 ? done : wrong_input;
+  }
+  return done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return parse_and_run(argc, argv);
+  } catch (const marti::sim::UserError& error) {
+    std::fprintf(stderr, "marti: %s\n", error.what());
+    return wrong_input;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "marti: not enough memory for this scene or machine\n");
+    return wrong_input;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "marti: internal error: %s\n", error.what());
+    return our_fault;
+  }
+}

@@ -1,0 +1,20 @@
+// Writing a run's files: all or, as far as a file system allows, none.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "studies/run_result.h"
+
+namespace marti::studies {
+
+/// Makes sure that `directory` exists and can be written to, so that a long run does not end in a refusal.
+void prepare_output(const std::filesystem::path& directory);
+
+/// Writes image.exr, image.png and result.json under temporary names and renames them together at the
+/// end; signals that end the program wait until that is done. Returns the files. Throws UserError with the
+/// reason; older results stay as they were then.
+std::vector<std::filesystem::path> write_output(const RunResult& result,
+                                                const std::filesystem::path& directory);
+
+}  // namespace marti::studies

@@ -1,0 +1,182 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "studies/run_result.h"
+#include "studies/version.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int schema_version = 1;
+// Beyond this many nodes their own figures are left out: sums and extremes remain.
+constexpr std::size_t most_listed_nodes = 4096;
+
+Json optional(std::optional<double> value) { return value ? Json(*value) : Json(nullptr); }
+
+Json hash(std::uint64_t value) { return fmt::format("{:016x}", value); }
+
+template <class Names, class Values>
+Json named(const Names& names, const Values& values) {
+  Json object = Json::object();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    object[std::string(names[i])] = values[i];
+  }
+  return object;
+}
+
+Json config_json(const RunResult& r) {
+  Json keys = Json::object();
+  for (const sim::EffectiveValue& value : r.values) {
+    keys[value.key] = {{"value", value.value}, {"given", value.given}};
+  }
+  return {{"file", r.config_name}, {"keys", keys}};
+}
+
+Json scene_json(const RunResult& r) {
+  const scenes::SceneFacts& s = r.functional.scene;
+  Json bounds = nullptr;
+  if (!s.bounds.empty()) {
+    bounds = {{"lo", {s.bounds.lo.x, s.bounds.lo.y, s.bounds.lo.z}},
+              {"hi", {s.bounds.hi.x, s.bounds.hi.y, s.bounds.hi.z}}};
+  }
+  return {{"source", r.frame_config.scene}, {"name", s.name},         {"polygons", s.polygons},
+          {"triangles", s.triangles},       {"vertices", s.vertices}, {"materials", s.materials},
+          {"textures", s.textures},         {"lights", s.lights},     {"bounds", bounds},
+          {"notes", r.functional.notes}};
+}
+
+Json structure_json(const RunResult& r) {
+  const accel::Topology& topology = r.functional.frame.log->topology;
+  Json levels = Json::array();
+  for (const accel::LevelStatistics& level : r.functional.levels) {
+    levels.push_back({{"branches", level.branches},
+                      {"leaves", level.leaves},
+                      {"empty_leaves", level.empty_leaves},
+                      {"entries", level.entries},
+                      {"overfull_leaves", level.overfull_leaves}});
+  }
+  return {{"kind", r.frame_config.structure},
+          {"nodes", topology.nodes.size()},
+          {"entries", topology.entries.size()},
+          {"levels", levels}};
+}
+
+Json image_json(const RunResult& r) {
+  const processors::Frame& frame = r.functional.frame;
+  const std::array<std::string_view, processors::ray_kinds> kinds = {"camera", "shadow", "reflection",
+                                                                     "refraction"};
+  return {{"width", frame.image.width},
+          {"height", frame.image.height},
+          {"rays", named(kinds, frame.rays.traced)},
+          {"hits", named(kinds, frame.rays.hit)},
+          {"image_hash", hash(r.functional.image_hash)},
+          {"hit_hash", hash(frame.hit_hash)}};
+}
+
+Json log_json(const processors::LogTotals& t) {
+  return {{"bytes", t.bytes},   {"branches", t.branches}, {"leaves", t.leaves}, {"tests", t.tests},
+          {"shades", t.shades}, {"lights", t.lights},     {"texels", t.texels}};
+}
+
+Json wait_json(const memory::WaitStatistics& w) {
+  Json buckets = Json::array();
+  for (const auto& bucket : w.histogram.buckets()) {
+    buckets.push_back({bucket.lowest, bucket.highest, bucket.count});
+  }
+  return {{"count", w.count}, {"sum_ps", w.sum}, {"max_ps", w.max}, {"histogram_ps", buckets}};
+}
+
+Json reference_json(const processors::MachineResult& result) {
+  const processors::ReferenceCounts counts = result.references();
+  const auto records = processors::records_of(result.steps());
+  Json object = Json::object();
+  for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
+    object[std::string(memory::record_kind_names[kind])] = {
+        {"records", records[kind]}, {"hits", counts.hits[kind]}, {"misses", counts.misses[kind]}};
+  }
+  return object;
+}
+
+Json clusters_json(const processors::MachineResult& result) {
+  Json clusters = Json::array();
+  for (const processors::ClusterResult& cluster : result.clusters) {
+    const memory::InterconnectStatistics& i = cluster.interconnect;
+    Json banks = Json::array();
+    for (const memory::BankStatistics& bank : cluster.banks) {
+      banks.push_back(
+          {{"accesses", bank.accesses}, {"busy_ps", bank.busy}, {"waits", wait_json(bank.waits)}});
+    }
+    clusters.push_back({{"interconnect",
+                         {{"reads", i.reads},
+                          {"writes", i.writes},
+                          {"bytes", i.bytes},
+                          {"links", i.links},
+                          {"busy_ps", i.busy},
+                          {"waits", wait_json(i.waits)}}},
+                        {"banks", banks}});
+  }
+  return clusters;
+}
+
+Json nodes_json(const processors::MachineResult& result) {
+  if (result.nodes.size() > most_listed_nodes) {
+    return nullptr;
+  }
+  Json nodes = Json::array();
+  for (const processors::NodeStatistics& node : result.nodes) {
+    nodes.push_back({{"finish_ps", node.finish},
+                     {"packets", node.packets},
+                     {"pixels", node.steps.pixels},
+                     {"hits", node.references.all_hits()},
+                     {"misses", node.references.all_misses()},
+                     {"time_ps", named(processors::activity_names, node.time)}});
+  }
+  return nodes;
+}
+
+}  // namespace
+
+std::string json_of(const RunResult& r) {
+  const processors::MachineResult& timed = r.timed;
+  const Utilisation used = utilisation_of(timed);
+  Json machine = {
+      {"scheme", "image"},
+      {"clusters", r.machine.clusters},
+      {"nodes", r.machine.nodes},
+      {"frame_time_ps", timed.end},
+      {"node_clock_period_ps", r.machine.clock.period()},
+      {"one_node_time_ps", r.scaling.one_node_end},
+      {"speed_up", optional(r.scaling.speed_up)},
+      {"efficiency", optional(r.scaling.efficiency)},
+      {"karp_flatt_serial_fraction", optional(r.scaling.serial_fraction)},
+      {"limit",
+       {{"what", name_of(r.finding.limit)}, {"share", r.finding.share}, {"sentence", r.finding.sentence}}},
+      {"interconnect_utilisation", used.interconnect},
+      {"busiest_bank_utilisation", used.bank},
+      {"mean_bank_utilisation", used.mean_bank},
+      {"packets", timed.packets},
+      {"host_requests", timed.host.requests},
+      {"database_bytes", timed.database_bytes},
+      {"database_copies", timed.copies},
+      {"unloaded_miss_ps", timed.unloaded_miss},
+      {"time_ps", named(processors::activity_names, timed.time())},
+      {"references", reference_json(timed)},
+      {"per_cluster", clusters_json(timed)},
+      {"per_node", nodes_json(timed)}};
+  const Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
+                       {"config", config_json(r)},
+                       {"scene", scene_json(r)},
+                       {"structure", structure_json(r)},
+                       {"image", image_json(r)},
+                       {"work_log", log_json(r.functional.totals)},
+                       {"machine", machine}};
+  // Text that is not UTF-8 can only come from names in files; it is replaced, not refused.
+  return result.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace marti::studies

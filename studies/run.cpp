@@ -1,0 +1,38 @@
+#include <utility>
+
+#include "studies/machine_keys.h"
+#include "studies/run_result.h"
+
+namespace marti::studies {
+
+sim::Schema run_schema() {
+  sim::Schema schema;
+  declare_frame_keys(schema);
+  declare_machine_keys(schema);
+  return schema;
+}
+
+RunResult run(sim::Config& config) {
+  RunResult result;
+  result.config_name = config.name();
+  result.frame_config = read_frame(config);
+  result.machine = read_machine(config);
+  config.refuse_unused();
+  result.values = config.effective_values();
+
+  result.functional = run_functional(result.frame_config);
+  const processors::WorkLog& log = *result.functional.frame.log;
+  result.timed = processors::replay(log, result.machine);
+  sim::Ticks one_node_end = result.timed.end;
+  if (result.machine.all_nodes() > 1) {
+    processors::MachineConfig one = result.machine;
+    one.clusters = 1;
+    one.nodes = 1;
+    one_node_end = processors::replay(log, one).end;
+  }
+  result.scaling = scaling_of(one_node_end, result.timed.end, result.machine.all_nodes());
+  result.finding = find_limit(result.machine, result.timed);
+  return result;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,149 @@
+#include "studies/scaling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+namespace marti::studies {
+
+using processors::Activity;
+
+namespace {
+
+double share(sim::Ticks part, double whole) { return whole > 0.0 ? static_cast<double>(part) / whole : 0.0; }
+
+std::string describe(Limit limit, double part, const Utilisation& used,
+                     const processors::MachineConfig& machine, const processors::MachineResult& result) {
+  const double percent = 100.0 * part;
+  const bool bus = machine.interconnect.kind == memory::InterconnectKind::bus;
+  switch (limit) {
+    case Limit::nothing:
+      return "nothing to do";
+    case Limit::interconnect:
+      return fmt::format(
+          "the {} is {:.1f} % busy and nodes spend {:.1f} % of their time waiting for it; fewer misses "
+          "(larger cache), a wider {} or more clusters would help",
+          bus ? "bus" : "crossbar", 100.0 * used.interconnect, percent, bus ? "bus" : "link");
+    case Limit::bank:
+      return fmt::format(
+          "the busiest bank is {:.1f} % busy and nodes spend {:.1f} % of their time waiting for banks; more "
+          "or "
+          "faster banks would help",
+          100.0 * used.bank, percent);
+    case Limit::memory_latency:
+      return fmt::format(
+          "memory latency: nodes spend {:.1f} % of their time on transfers and bank accesses that meet no "
+          "queue; fewer misses or faster memory would help",
+          percent);
+    case Limit::dispatch:
+      return fmt::format(
+          "the host: nodes spend {:.1f} % of their time waiting for packets; larger packets would help",
+          percent);
+    case Limit::imbalance:
+      return fmt::format(
+          "imbalance: nodes are idle {:.1f} % of the time, {} packets for {} nodes; smaller packets would "
+          "help",
+          percent, result.packets, result.nodes.size());
+    case Limit::write_buffer:
+      return fmt::format("full write buffers: nodes spend {:.1f} % of their time on them", percent);
+    case Limit::compute:
+      break;
+  }
+  return fmt::format("computing: nodes spend {:.1f} % of their time on it; more or faster nodes would help",
+                     percent);
+}
+
+}  // namespace
+
+Scaling scaling_of(sim::Ticks one_node_end, sim::Ticks end, std::uint32_t nodes) {
+  Scaling scaling;
+  scaling.nodes = nodes;
+  scaling.one_node_end = one_node_end;
+  if (end > 0 && one_node_end > 0) {
+    const double n = nodes;
+    const double s = static_cast<double>(one_node_end) / static_cast<double>(end);
+    scaling.speed_up = s;
+    scaling.efficiency = s / n;
+    if (nodes > 1) {
+      scaling.serial_fraction = (1.0 / s - 1.0 / n) / (1.0 - 1.0 / n);
+    }
+  }
+  return scaling;
+}
+
+Utilisation utilisation_of(const processors::MachineResult& result) {
+  Utilisation used;
+  std::int64_t banks = 0;
+  double busy = 0.0;
+  const double end = static_cast<double>(result.end);
+  for (const processors::ClusterResult& cluster : result.clusters) {
+    used.interconnect =
+        std::max(used.interconnect,
+                 share(cluster.interconnect.busy, end * static_cast<double>(cluster.interconnect.links)));
+    for (const memory::BankStatistics& bank : cluster.banks) {
+      // A bank that is still recovering when the frame ends counts as busy until then.
+      const double utilisation = std::min(1.0, share(bank.busy, end));
+      used.bank = std::max(used.bank, utilisation);
+      busy += utilisation;
+      ++banks;
+    }
+  }
+  used.mean_bank = banks > 0 ? busy / static_cast<double>(banks) : 0.0;
+  return used;
+}
+
+Finding find_limit(const processors::MachineConfig& machine, const processors::MachineResult& result) {
+  if (result.end == 0) {
+    return {Limit::nothing, 0.0, "nothing: the frame takes no time on this machine"};
+  }
+  const processors::TimeDivision time = result.time();
+  const auto part = [&](std::initializer_list<Activity> parts) {
+    return std::accumulate(parts.begin(), parts.end(), 0.0, [&](double sum, Activity activity) {
+      return sum + static_cast<double>(time[static_cast<std::size_t>(activity)]);
+    });
+  };
+  const std::array<std::pair<Limit, double>, 7> candidates = {{
+      {Limit::interconnect, part({Activity::interconnect_wait})},
+      {Limit::bank, part({Activity::bank_wait})},
+      {Limit::memory_latency, part({Activity::transfer, Activity::bank_access})},
+      {Limit::dispatch, part({Activity::dispatch_wait})},
+      {Limit::imbalance, part({Activity::idle})},
+      {Limit::write_buffer, part({Activity::queue_full_wait})},
+      {Limit::compute, part({Activity::traversal, Activity::intersection, Activity::shading,
+                             Activity::building, Activity::cache_access})},
+  }};
+  const auto largest = std::max_element(candidates.begin(), candidates.end(),
+                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+  const double all = static_cast<double>(result.end) * static_cast<double>(result.nodes.size());
+  Finding finding;
+  finding.limit = largest->first;
+  finding.share = largest->second / all;
+  finding.sentence = describe(finding.limit, finding.share, utilisation_of(result), machine, result);
+  return finding;
+}
+
+std::string_view name_of(Limit limit) {
+  switch (limit) {
+    case Limit::nothing:
+      return "nothing";
+    case Limit::interconnect:
+      return "interconnect";
+    case Limit::bank:
+      return "bank";
+    case Limit::memory_latency:
+      return "memory_latency";
+    case Limit::dispatch:
+      return "dispatch";
+    case Limit::imbalance:
+      return "imbalance";
+    case Limit::write_buffer:
+      return "write_buffer";
+    case Limit::compute:
+      break;
+  }
+  return "compute";
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,48 @@
+// Figures derived from timed machines: speed-up, efficiency, and what limits a machine.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "processors/replay.h"
+
+namespace marti::studies {
+
+/// T(1) / T(n) of the same machine with one node, and what follows from it.
+struct Scaling {
+  std::uint32_t nodes = 1;  ///< of all clusters
+  sim::Ticks one_node_end = 0;
+  std::optional<double> speed_up;    ///< nothing when the frame takes no time
+  std::optional<double> efficiency;  ///< speed_up / nodes
+  /// Karp and Flatt 1990: the serial fraction (1/s - 1/n) / (1 - 1/n) that would explain the speed-up by
+  /// Amdahl's law; nothing for one node.
+  std::optional<double> serial_fraction;
+};
+
+[[nodiscard]] Scaling scaling_of(sim::Ticks one_node_end, sim::Ticks end, std::uint32_t nodes);
+
+/// The busiest link of a cluster's interconnect set and the busiest bank, as shares of the frame time.
+struct Utilisation {
+  double interconnect = 0.0;  ///< transfer time over links times frame time, the busiest cluster's
+  double bank = 0.0;          ///< the busiest bank's
+  double mean_bank = 0.0;
+};
+
+[[nodiscard]] Utilisation utilisation_of(const processors::MachineResult& result);
+
+enum class Limit { nothing, interconnect, bank, memory_latency, dispatch, imbalance, write_buffer, compute };
+
+/// What limits a machine: the part of the nodes' time that would have to shrink first.
+struct Finding {
+  Limit limit = Limit::nothing;
+  double share = 0.0;    ///< of all nodes' time
+  std::string sentence;  ///< for people; names the figure it rests on and what to try
+};
+
+[[nodiscard]] Finding find_limit(const processors::MachineConfig& machine,
+                                 const processors::MachineResult& result);
+
+/// The name of a limit in results for programs.
+[[nodiscard]] std::string_view name_of(Limit limit);
+
+}  // namespace marti::studies

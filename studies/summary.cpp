@@ -1,0 +1,176 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+#include "sim/units.h"
+#include "studies/run_result.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Lines = std::back_insert_iterator<std::string>;
+
+// 1234567 -> 1,234,567
+std::string grouped(std::int64_t value) {
+  std::string digits = std::to_string(value);
+  const std::size_t first = digits[0] == '-' ? 1 : 0;
+  for (std::size_t at = digits.size(); at > first + 3;) {
+    at -= 3;
+    digits.insert(at, 1, ',');
+  }
+  return digits;
+}
+
+std::string grouped(std::uint64_t value) { return grouped(static_cast<std::int64_t>(value)); }
+
+std::string seconds(sim::Ticks ticks) {
+  const double s = static_cast<double>(ticks) / static_cast<double>(sim::ticks_per_second);
+  if (s >= 1.0) {
+    return fmt::format("{:.3f} s", s);
+  }
+  if (s >= 1e-3) {
+    return fmt::format("{:.3f} ms", s * 1e3);
+  }
+  return fmt::format("{:.3f} us", s * 1e6);
+}
+
+std::string bytes(double count) {
+  if (count >= 1024.0 * 1024.0) {
+    return fmt::format("{:.1f} MiB", count / (1024.0 * 1024.0));
+  }
+  return count >= 1024.0 ? fmt::format("{:.1f} KiB", count / 1024.0) : fmt::format("{:.0f} B", count);
+}
+
+std::string ratio(std::optional<double> value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : "-";
+}
+
+std::string percent(double part, double whole) {
+  return whole > 0.0 ? fmt::format("{:.2f} %", 100.0 * part / whole) : "-";
+}
+
+void scene_lines(Lines out, const RunResult& r) {
+  const scenes::SceneFacts& scene = r.functional.scene;
+  fmt::format_to(out, "scene         {}: {} polygons, {} triangles, {} materials, {} lights\n",
+                 r.frame_config.scene, grouped(scene.polygons), grouped(scene.triangles), scene.materials,
+                 scene.lights);
+  for (const std::string& note : r.functional.notes) {
+    fmt::format_to(out, "  note        {}\n", note);
+  }
+  const processors::WorkLog& log = *r.functional.frame.log;
+  fmt::format_to(out, "structure     {}: {} nodes, {} object references", r.frame_config.structure,
+                 grouped(log.topology.nodes.size()), grouped(log.topology.entries.size()));
+  if (!r.functional.levels.empty()) {
+    fmt::format_to(out, ", {} levels", r.functional.levels.size());
+  }
+  const processors::LogTotals& totals = r.functional.totals;
+  const double rays = static_cast<double>(totals.all_rays());
+  fmt::format_to(out,
+                 "\nimage         {} x {}, {} rays (camera {}, shadow {}, reflection {}, refraction {})\n",
+                 log.width, log.height, grouped(totals.all_rays()), grouped(totals.rays[0]),
+                 grouped(totals.rays[1]), grouped(totals.rays[2]), grouped(totals.rays[3]));
+  fmt::format_to(out, "work log      {}, {:.1f} bytes and {:.1f} steps a ray\n",
+                 bytes(static_cast<double>(totals.bytes)), static_cast<double>(totals.bytes) / rays,
+                 static_cast<double>(totals.branches + totals.leaves + totals.tests + totals.shades +
+                                     totals.lights + totals.texels) /
+                     rays);
+}
+
+void machine_lines(Lines out, const RunResult& r) {
+  const processors::MachineConfig& machine = r.machine;
+  fmt::format_to(out, "machine       {} cluster{} of {} node{}, image scheme, {} packets of {} x {}\n",
+                 machine.clusters, machine.clusters == 1 ? "" : "s", machine.nodes,
+                 machine.nodes == 1 ? "" : "s", grouped(r.timed.packets), machine.packets.width,
+                 machine.packets.height);
+  fmt::format_to(out, "database      {}, {} cop{}: {} in all\n",
+                 bytes(static_cast<double>(r.timed.database_bytes)), grouped(r.timed.copies),
+                 r.timed.copies == 1 ? "y" : "ies",
+                 bytes(static_cast<double>(r.timed.database_bytes) * static_cast<double>(r.timed.copies)));
+  fmt::format_to(out, "\nframe time    {} = {} node cycles\n", seconds(r.timed.end),
+                 grouped(r.timed.end / machine.clock.period()));
+  fmt::format_to(out, "speed-up      {} on {} nodes, efficiency {}, serial fraction (Karp-Flatt) {}\n",
+                 ratio(r.scaling.speed_up, 2), grouped(std::int64_t{r.scaling.nodes}),
+                 ratio(r.scaling.efficiency, 3), ratio(r.scaling.serial_fraction, 4));
+  fmt::format_to(out, "one node      {}\n", seconds(r.scaling.one_node_end));
+}
+
+void time_lines(Lines out, const RunResult& r) {
+  const processors::TimeDivision time = r.timed.time();
+  const double all = static_cast<double>(r.timed.end) * static_cast<double>(r.timed.nodes.size());
+  fmt::format_to(out, "\nwhere the nodes' time goes\n");
+  for (std::size_t i = 0; i < processors::activities; ++i) {
+    if (time[i] != 0) {
+      fmt::format_to(out, "  {:<20}{:>9}\n", processors::activity_names[i],
+                     percent(static_cast<double>(time[i]), all));
+    }
+  }
+}
+
+void memory_lines(Lines out, const RunResult& r) {
+  const processors::ReferenceCounts references = r.timed.references();
+  fmt::format_to(out, "\nreferences    {:>15} {:>15} {:>10}\n", "lines", "misses", "hit ratio");
+  const auto line = [&](std::string_view name, std::int64_t hits, std::int64_t misses) {
+    if (hits + misses > 0) {
+      fmt::format_to(out, "  {:<11} {:>15} {:>15} {:>10}\n", name, grouped(hits + misses), grouped(misses),
+                     percent(static_cast<double>(hits), static_cast<double>(hits + misses)));
+    }
+  };
+  for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
+    line(memory::record_kind_names[kind], references.hits[kind], references.misses[kind]);
+  }
+  line("all", references.all_hits(), references.all_misses());
+
+  const Utilisation used = utilisation_of(r.timed);
+  memory::WaitStatistics waits;
+  memory::WaitStatistics bank_waits;
+  const auto gather = [](memory::WaitStatistics& into, const memory::WaitStatistics& from) {
+    into.count += from.count;
+    into.sum = sim::add_ticks(into.sum, from.sum);
+    into.max = std::max(into.max, from.max);
+    into.histogram.merge(from.histogram);
+  };
+  std::int64_t moved = 0;
+  for (const processors::ClusterResult& cluster : r.timed.clusters) {
+    gather(waits, cluster.interconnect.waits);
+    moved += cluster.interconnect.bytes;
+    for (const memory::BankStatistics& bank : cluster.banks) {
+      gather(bank_waits, bank.waits);
+    }
+  }
+  const auto waiting = [&](const memory::WaitStatistics& w) {
+    if (w.count == 0) {
+      return std::string("no transactions");
+    }
+    return fmt::format("mean wait {}, 95 % below {}, longest {}", seconds(w.sum / w.count),
+                       seconds(w.histogram.percentile(95.0).value_or(0)), seconds(w.max));
+  };
+  const bool ideal = r.machine.interconnect.kind == memory::InterconnectKind::ideal;
+  const bool bus = r.machine.interconnect.kind == memory::InterconnectKind::bus;
+  fmt::format_to(out, "\n{:<14}", ideal ? "interconnect" : (bus ? "bus" : "crossbar"));
+  if (ideal) {
+    fmt::format_to(out, "ideal, {} moved\n", bytes(static_cast<double>(moved)));
+    return;
+  }
+  fmt::format_to(out, "{:.1f} % busy, {}, {} moved\n", 100.0 * used.interconnect, waiting(waits),
+                 bytes(static_cast<double>(moved)));
+  fmt::format_to(out, "banks         {:.1f} % busy (the busiest {:.1f} %), {}\n", 100.0 * used.mean_bank,
+                 100.0 * used.bank, waiting(bank_waits));
+}
+
+}  // namespace
+
+std::string summary_of(const RunResult& r) {
+  std::string text;
+  const Lines out = std::back_inserter(text);
+  scene_lines(out, r);
+  machine_lines(out, r);
+  time_lines(out, r);
+  memory_lines(out, r);
+  fmt::format_to(out, "\nlimited by    {}\n", r.finding.sentence);
+  return text;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,142 @@
+// Presets, prices, and the table of operation mixes against a new measurement.
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "processors/cost_model.h"
+#include "processors/operation_mix.h"
+#include "program_scenes.h"
+#include "scenes/procedural.h"
+#include "sim/error.h"
+
+namespace marti::processors {
+namespace {
+
+/// Within 3 %, or a fiftieth of an operation where there is next to none.
+void expect_close(const char* step, const OperationMix& measured, const OperationMix& table) {
+  const auto close = [&](const char* operation, std::int64_t m, std::int64_t t) {
+    EXPECT_LE(std::abs(static_cast<double>(m - t)), std::max(20.0, 0.03 * static_cast<double>(t)))
+        << step << ": " << operation << " measured " << m << ", table " << t << " (thousandths)";
+  };
+  close("add", measured.add, table.add);
+  close("multiply", measured.multiply, table.multiply);
+  close("divide", measured.divide, table.divide);
+  close("square root", measured.square_root, table.square_root);
+  close("compare", measured.compare, table.compare);
+  close("integer", measured.integer, table.integer);
+}
+
+MeasuredMixes measure(const scenes::Scene& scene) {
+  const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
+  accel::StructureOptions options;
+  options.octree.max_objects = 9;
+  options.octree.max_level = 12;
+  const auto structure = accel::make_structure("octree", triangles, options);
+  return measure_operation_mixes(scene, *triangles, *structure,
+                                 {.width = 128, .height = 128, .max_depth = 2});
+}
+
+TEST(OperationMixes, TheTableIsWhatTheProgramDoes) {
+  const OperationMixes& table = operation_mixes();
+  const MeasuredMixes teapot = measure(scenes::make_procedural("teapot:12"));
+  expect_close("camera ray", teapot.mixes.ray[0], table.ray[0]);
+  expect_close("shadow ray", teapot.mixes.ray[1], table.ray[1]);
+  expect_close("reflected ray", teapot.mixes.ray[2], table.ray[2]);
+  expect_close("branch", teapot.mixes.branch, table.branch);
+  expect_close("test", teapot.mixes.test, table.test);
+  expect_close("shade", teapot.mixes.shade, table.shade);
+  expect_close("light", teapot.mixes.light, table.light);
+  EXPECT_EQ(teapot.mixes.leaf, table.leaf);
+  EXPECT_EQ(teapot.mixes.pixel, table.pixel);
+
+  const MeasuredMixes gears = measure(scenes::make_procedural("gears:2"));
+  ASSERT_GT(gears.steps.rays[3], 0U);
+  expect_close("refracted ray", gears.mixes.ray[3], table.ray[3]);
+}
+
+TEST(OperationMixes, TexelsAreStraightLineCode) {
+  scenes::Scene scene = test::looking_down(2.0);
+  scene.materials.emplace_back().texture = 0;
+  test::add_floor(scene, 0.0, 1.0, 0);
+  scene.uvs = {{0.0, 1.0}, {1.0, 1.0}, {1.0, 0.0}, {0.0, 0.0}};
+  scenes::Texture& texture = scene.textures.emplace_back();
+  texture.width = texture.height = 1;
+  texture.texels = {{1, 2, 3, 255}};
+  const MeasuredMixes measured = measure(scene);
+  ASSERT_GT(measured.steps.texels, 0U);
+  EXPECT_EQ(measured.mixes.texel, operation_mixes().texel);
+}
+
+// The counting render takes exactly the steps of the real one.
+TEST(OperationMixes, CountingChangesNothing) {
+  const test::Built built(scenes::make_procedural("gears:2"), "octree");
+  const RenderOptions options{.width = 32, .height = 32, .max_depth = 4, .record = true};
+  const LogTotals real = totals_of(*built.render(options).log);
+  const LogTotals counted =
+      measure_operation_mixes(built.scene, *built.triangles, *built.structure, options).steps;
+  EXPECT_EQ(counted.all_rays(), real.all_rays());
+  EXPECT_EQ(counted.branches, real.branches);
+  EXPECT_EQ(counted.leaves, real.leaves);
+  EXPECT_EQ(counted.tests, real.tests);
+  EXPECT_EQ(counted.shades, real.shades);
+  EXPECT_EQ(counted.lights, real.lights);
+}
+
+TEST(CostModel, EveryPresetIsThereAndPositive) {
+  EXPECT_FALSE(cost_presets().empty());
+  for (const std::string_view name : cost_presets()) {
+    const OperationCycles c = cost_preset(name);
+    for (const std::int64_t cycles :
+         {c.add, c.multiply, c.divide, c.square_root, c.compare, c.integer, c.load, c.store}) {
+      EXPECT_GE(cycles, 1) << name;
+    }
+  }
+}
+
+TEST(CostModel, AnUnknownPresetIsRefusedWithTheNamesOfTheOthers) {
+  try {
+    static_cast<void>(cost_preset("mc68000"));
+    FAIL();
+  } catch (const sim::UserError& error) {
+    for (const std::string_view name : cost_presets()) {
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos);
+    }
+  }
+}
+
+TEST(CostModel, OneKindOfOperationIsPricedByItsColumn) {
+  const OperationMixes& mixes = operation_mixes();
+  const RecordWords words;
+  OperationCycles only{0, 0, 0, 0, 0, 0, 0, 0};
+  only.add = 1000;  // thousandths become cycles
+  StepCycles steps = step_cycles(only, words);
+  EXPECT_EQ(steps.branch, mixes.branch.add);
+  EXPECT_EQ(steps.test, mixes.test.add);
+  EXPECT_EQ(steps.ray[1], mixes.ray[1].add);
+  EXPECT_EQ(steps.leaf, 0);
+  only = {0, 0, 0, 0, 0, 0, 0, 0};
+  only.divide = 1000;
+  steps = step_cycles(only, words);
+  EXPECT_EQ(steps.shade, mixes.shade.divide);
+  EXPECT_EQ(steps.light, mixes.light.divide);
+  only.divide = 1;  // halves up
+  EXPECT_EQ(step_cycles(only, words).test, (mixes.test.divide + 500) / 1000);
+}
+
+TEST(CostModel, RecordsCostTheirWords) {
+  OperationCycles cycles{0, 0, 0, 0, 0, 0, 3, 7};
+  RecordWords words{.node = 2, .entry = 1, .primitive = 12, .material = 16, .texel = 1, .pixel = 4};
+  const StepCycles steps = step_cycles(cycles, words);
+  EXPECT_EQ(steps.branch, 3 * 2);
+  EXPECT_EQ(steps.leaf, 3 * 2);
+  EXPECT_EQ(steps.test, 3 * (1 + 12));
+  EXPECT_EQ(steps.shade, 3 * 16);
+  EXPECT_EQ(steps.light, 0);
+  EXPECT_EQ(steps.texel, 3 * 1);
+  EXPECT_EQ(steps.pixel, 7 * 4);
+  EXPECT_EQ(steps.ray[0], 0);
+}
+
+}  // namespace
+}  // namespace marti::processors

@@ -1,0 +1,120 @@
+#include "processors/packets.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <vector>
+
+#include "processors/host.h"
+#include "processors/node_order.h"
+#include "sim/error.h"
+#include "tests/support/random_machine.h"
+
+namespace marti::processors {
+namespace {
+
+TEST(Packets, CoverEveryPixelOnceInEveryOrder) {
+  tests::Random random(1);
+  for (int round = 0; round < 200; ++round) {
+    const auto width = static_cast<std::uint32_t>(tests::pick(random, 1, 40));
+    const auto height = static_cast<std::uint32_t>(tests::pick(random, 1, 40));
+    const PacketConfig config = {static_cast<std::uint32_t>(tests::pick(random, 1, 50)),
+                                 static_cast<std::uint32_t>(tests::pick(random, 1, 50)),
+                                 static_cast<PacketOrder>(tests::pick(random, 0, 2))};
+    const PacketList packets(width, height, config);
+    std::vector<int> seen(std::size_t{width} * height);
+    for (std::uint64_t i = 0; i < packets.size(); ++i) {
+      const Packet packet = packets[i];
+      ASSERT_LT(packet.x0, packet.x1);
+      ASSERT_LT(packet.y0, packet.y1);
+      for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
+        for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
+          ++seen.at(std::size_t{y} * width + x);
+        }
+      }
+    }
+    for (const int count : seen) {
+      ASSERT_EQ(count, 1);
+    }
+  }
+}
+
+TEST(Packets, HilbertNeighboursTouch) {
+  const PacketList packets(64, 64, {4, 4, PacketOrder::hilbert});
+  for (std::uint64_t i = 1; i < packets.size(); ++i) {
+    const Packet a = packets[i - 1];
+    const Packet b = packets[i];
+    EXPECT_EQ(std::abs(static_cast<int>(a.x0) - static_cast<int>(b.x0)) +
+                  std::abs(static_cast<int>(a.y0) - static_cast<int>(b.y0)),
+              4);
+  }
+}
+
+TEST(Packets, MortonInterleavesTheBits) {
+  const PacketList packets(8, 8, {1, 1, PacketOrder::morton});
+  EXPECT_EQ(packets[1].x0, 1U);
+  EXPECT_EQ(packets[2].y0, 1U);
+  EXPECT_EQ(packets[0b111001].x0, 0b101U);
+  EXPECT_EQ(packets[0b111001].y0, 0b110U);
+}
+
+TEST(Packets, RefusesNothingAndTooMuch) {
+  EXPECT_THROW(PacketList(8, 8, {0, 1, PacketOrder::scanline}), sim::UserError);
+  EXPECT_THROW(PacketList(1U << 20U, 1U << 20U, {1, 1, PacketOrder::scanline}), sim::UserError);
+  EXPECT_EQ(PacketList(8, 8, {~0U, ~0U, PacketOrder::morton}).size(), 1U);
+  EXPECT_EQ(PacketList(0, 0, {1, 1, PacketOrder::hilbert}).size(), 0U);
+}
+
+TEST(Host, GivesEveryPacketToExactlyOneNode) {
+  for (const Assignment assignment : {Assignment::dynamic, Assignment::interleaved, Assignment::blocks}) {
+    for (const std::uint32_t nodes : {1U, 3U, 16U, 100U}) {
+      HostConfig config;
+      config.assignment = assignment;
+      Host host(config, 37, nodes);
+      std::vector<int> given(37);
+      bool progress = true;
+      while (progress) {
+        progress = false;
+        for (std::uint32_t node = 0; node < nodes; ++node) {
+          if (const auto grant = host.next(node, 0)) {
+            ++given.at(grant->packet);
+            progress = true;
+          }
+        }
+      }
+      EXPECT_EQ(given, std::vector<int>(37, 1)) << assignment_names[static_cast<std::size_t>(assignment)];
+    }
+  }
+}
+
+TEST(Host, ABusyHostServesRequestsOneAfterTheOther) {
+  HostConfig config;
+  config.clock = sim::Clock::from_period(10);
+  config.latency_cycles = 7;
+  config.occupancy_cycles = 3;
+  Host host(config, 5, 2);
+  EXPECT_EQ(host.next(0, 100)->start, 170);
+  EXPECT_EQ(host.next(1, 110)->start, 130 + 70);
+  EXPECT_EQ(host.next(0, 500)->start, 570);
+  EXPECT_EQ(host.statistics().busy, 90);
+}
+
+TEST(NodeOrder, DepthFirstIsAPermutationThatKeepsChildrenTogether) {
+  tests::Random random(2);
+  const accel::Topology topology = tests::random_topology(random, 30, 10, 3);
+  const std::vector<std::uint32_t> rank = depth_first_rank(topology);
+  std::vector<int> seen(rank.size());
+  for (const std::uint32_t r : rank) {
+    ++seen.at(r);
+  }
+  EXPECT_EQ(seen, std::vector<int>(rank.size(), 1));
+  EXPECT_EQ(rank[0], 0U);
+  for (const accel::TopologyNode& node : topology.nodes) {
+    for (std::uint32_t i = 1; !node.leaf && i < node.count; ++i) {
+      EXPECT_EQ(rank[node.first + i], rank[node.first] + i);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace marti::processors

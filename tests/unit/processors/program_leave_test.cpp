@@ -1,0 +1,127 @@
+// Rays that leave a surface: outwards from a convex closed mesh they must hit nothing, inwards they must hit
+// the other side, at every scale and far from the origin.
+#include <cmath>
+#include <map>
+#include <random>
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+#include "processors/program/shading.h"
+#include "program_scenes.h"
+
+namespace marti::processors {
+namespace {
+
+/// A sphere of radius `scale` about (offset, offset, offset): an icosahedron with each triangle divided
+/// `levels` times into four, wound counter-clockwise seen from outside.
+scenes::Scene icosphere(int levels, double scale, double offset) {
+  const double g = (1.0 + std::sqrt(5.0)) / 2.0;
+  std::vector<glm::dvec3> points = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
+                                    {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
+                                    {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
+  std::vector<std::array<std::uint32_t, 3>> faces = {
+      {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+  for (glm::dvec3& p : points) {
+    p = glm::normalize(p);
+  }
+  for (int level = 0; level < levels; ++level) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+      const auto [at, added] =
+          middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(points.size()));
+      if (added) {
+        points.push_back(glm::normalize(points[a] + points[b]));
+      }
+      return at->second;
+    };
+    std::vector<std::array<std::uint32_t, 3>> finer;
+    for (const auto& [a, b, c] : faces) {
+      const std::uint32_t ab = middle(a, b);
+      const std::uint32_t bc = middle(b, c);
+      const std::uint32_t ca = middle(c, a);
+      finer.insert(finer.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+    }
+    faces = std::move(finer);
+  }
+  scenes::Scene scene;
+  scene.materials.emplace_back();
+  for (const glm::dvec3& p : points) {
+    scene.positions.push_back(p * scale + glm::dvec3(offset));
+  }
+  for (const auto& face : faces) {
+    scene.triangles.push_back({face, 0, static_cast<std::uint32_t>(scene.polygons++)});
+  }
+  return scene;
+}
+
+class Leaving : public testing::TestWithParam<std::tuple<double, double>> {};
+
+TEST_P(Leaving, OutwardsNothingIsHitAndInwardsTheFarSide) {
+  const auto [scale, offset] = GetParam();
+  const test::Built built(icosphere(3, scale, offset), "octree");
+  const glm::dvec3 center(offset);
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  const auto direction = [&] {
+    return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+  };
+  int left = 0;
+  for (int i = 0; i < 20000; ++i) {
+    // From outside towards a point near the centre.
+    const glm::dvec3 eye = center + direction() * (4.0 * scale);
+    const glm::dvec3 aim = center + direction() * (0.5 * scale);
+    const glm::dvec3 d = glm::normalize(aim - eye);
+    const accel::Hit hit = built.structure->closest({eye, d});
+    ASSERT_TRUE(hit.found());
+    const double weights[3] = {hit.u, hit.v, hit.w};
+    const Surface<double> surface = surface_at(built.scene, hit.primitive, weights, Vec3<double>(d));
+    ASSERT_TRUE(surface.outside);
+    Vec3<double> out(direction());
+    const double cosine = dot(out, surface.geometric);
+    if (std::abs(cosine) < 0.01) {
+      continue;
+    }
+    out = cosine < 0.0 ? -out : out;
+    const auto is_hit = [&](const Vec3<double>& to) {
+      const Vec3<double> from = leave(surface, to);
+      return built.structure->occluded(
+          {{from.x, from.y, from.z}, {to.x, to.y, to.z}, std::numeric_limits<double>::denorm_min()});
+    };
+    ASSERT_FALSE(is_hit(out)) << "a ray hits the surface it leaves";
+    ASSERT_TRUE(is_hit(-out)) << "a ray into the body passes the far side";
+    ++left;
+  }
+  EXPECT_GT(left, 19000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scales, Leaving,
+                         testing::Values(std::tuple(1.0, 0.0), std::tuple(1e-5, 0.0), std::tuple(1e5, 0.0),
+                                         std::tuple(1.0, 1e4), std::tuple(1.0, 1e5), std::tuple(1e-5, 1.0)));
+
+TEST(Leaving, NextTowardIsTheNeighbour) {
+  for (const double value : {1.0, -1.0, 0.0, -0.0, 1e-310, -3.5e200}) {
+    EXPECT_EQ(next_toward(value, 2.0), std::nextafter(value, std::numeric_limits<double>::infinity()));
+    EXPECT_EQ(next_toward(value, -2.0), std::nextafter(value, -std::numeric_limits<double>::infinity()));
+    EXPECT_EQ(next_toward(value, 0.0), value);
+  }
+}
+
+// Triangles in a coordinate plane have points without rounding error and so without offset.
+TEST(Leaving, PlanesThroughTheOriginDoNotShadowThemselves) {
+  scenes::Scene scene = test::looking_down(10.0);
+  scene.materials.emplace_back();
+  test::add_floor(scene, 0.0, 100.0, 0);
+  scene.lights.emplace_back();
+  scene.lights[0].position = {3.0, 2.0, 50.0};
+  for (const char* kind : {"none", "octree"}) {
+    const Frame frame = test::Built(scene, kind).render({.width = 64, .height = 64, .max_depth = 1});
+    EXPECT_EQ(frame.rays.traced[1], 4096U);
+    EXPECT_EQ(frame.rays.hit[1], 0U);
+  }
+}
+
+}  // namespace
+}  // namespace marti::processors

@@ -1,0 +1,286 @@
+// The timing world against closed forms, conservation laws and a second way of running it.
+#include "processors/replay.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <array>
+#include <set>
+
+#include "memory/layout.h"
+#include "processors/step_time.h"
+#include "sim/error.h"
+#include "tests/support/random_machine.h"
+
+namespace marti::processors {
+namespace {
+
+void expect_equal(const MachineResult& a, const MachineResult& b) {
+  ASSERT_EQ(a.end, b.end);
+  ASSERT_EQ(a.nodes.size(), b.nodes.size());
+  for (std::size_t n = 0; n < a.nodes.size(); ++n) {
+    ASSERT_EQ(a.nodes[n].time, b.nodes[n].time) << "node " << n;
+    ASSERT_EQ(a.nodes[n].references.hits, b.nodes[n].references.hits);
+    ASSERT_EQ(a.nodes[n].references.misses, b.nodes[n].references.misses);
+    ASSERT_EQ(a.nodes[n].finish, b.nodes[n].finish);
+  }
+  ASSERT_EQ(a.clusters.size(), b.clusters.size());
+  for (std::size_t c = 0; c < a.clusters.size(); ++c) {
+    ASSERT_EQ(a.clusters[c].interconnect.busy, b.clusters[c].interconnect.busy);
+    ASSERT_EQ(a.clusters[c].interconnect.waits.sum, b.clusters[c].interconnect.waits.sum);
+    ASSERT_EQ(a.clusters[c].interconnect.waits.max, b.clusters[c].interconnect.waits.max);
+    for (std::size_t i = 0; i < a.clusters[c].banks.size(); ++i) {
+      ASSERT_EQ(a.clusters[c].banks[i].waits.sum, b.clusters[c].banks[i].waits.sum);
+      ASSERT_EQ(a.clusters[c].banks[i].accesses, b.clusters[c].banks[i].accesses);
+    }
+  }
+}
+
+RC_GTEST_PROP(Replay, RunningAheadEqualsAnEventForEveryReference, (std::uint64_t seed)) {
+  tests::Random random(seed);
+  const WorkLog log = tests::random_log(random, static_cast<std::uint32_t>(tests::pick(random, 1, 12)),
+                                        static_cast<std::uint32_t>(tests::pick(random, 1, 12)));
+  const MachineConfig machine = tests::random_machine(random);
+  const MachineResult ahead = replay(log, machine);
+  const MachineResult stepped = replay(log, machine, {.step_by_step = true});
+  expect_equal(ahead, stepped);
+  RC_ASSERT(!::testing::Test::HasFatalFailure());
+  RC_ASSERT(ahead.events <= stepped.events);
+}
+
+RC_GTEST_PROP(Replay, TheOrderOfTheFirstEventsDoesNotMatter, (std::uint64_t seed)) {
+  tests::Random random(seed);
+  const WorkLog log = tests::random_log(random, 9, 7);
+  const MachineConfig machine = tests::random_machine(random);
+  expect_equal(replay(log, machine), replay(log, machine, {.start_seed = random() | 1U}));
+  RC_ASSERT(!::testing::Test::HasFatalFailure());
+}
+
+RC_GTEST_PROP(Replay, ScalingEveryDurationScalesEveryTimeExactly, (std::uint64_t seed)) {
+  tests::Random random(seed);
+  const WorkLog log = tests::random_log(random, 8, 8);
+  MachineConfig machine = tests::random_machine(random);
+  const MachineResult base = replay(log, machine);
+  for (std::int64_t scale = 10; scale <= 1'000'000'000; scale *= 10) {
+    MachineConfig slow = machine;
+    for (sim::Clock* clock :
+         {&slow.clock, &slow.interconnect.clock, &slow.banks.clock, &slow.host.clock, &slow.local.clock}) {
+      *clock = sim::Clock::from_period(clock->period() * scale);
+    }
+    const MachineResult scaled = replay(log, slow);
+    RC_ASSERT(scaled.end == base.end * scale);
+    RC_ASSERT(scaled.events == base.events);
+    for (std::size_t n = 0; n < base.nodes.size(); ++n) {
+      RC_ASSERT(scaled.nodes[n].finish == base.nodes[n].finish * scale);
+      for (std::size_t i = 0; i < activities; ++i) {
+        RC_ASSERT(scaled.nodes[n].time[i] == base.nodes[n].time[i] * scale);
+      }
+    }
+  }
+}
+
+// Compute time of the whole log, from the counts of the log itself.
+sim::Ticks compute_of(const WorkLog& log, const MachineConfig& machine) {
+  const StepTicks ticks = step_ticks(machine);
+  const LogTotals totals = totals_of(log);
+  const auto n = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
+  sim::Ticks sum = ticks.branch * n(totals.branches) + ticks.leaf * n(totals.leaves) +
+                   ticks.test * n(totals.tests) + ticks.shade * n(totals.shades) +
+                   ticks.light * n(totals.lights) + ticks.texel * n(totals.texels) +
+                   ticks.pixel * std::int64_t{log.width} * log.height;
+  for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
+    sum += ticks.ray[kind] * n(totals.rays[kind]);
+  }
+  return sum;
+}
+
+TEST(Replay, OneNodeIsComputePlusHitsPlusMissesTimesLatency) {
+  tests::Random random(11);
+  for (int round = 0; round < 60; ++round) {
+    const WorkLog log = tests::random_log(random, 16, 16);
+    MachineConfig machine = tests::random_machine(random);
+    machine.clusters = 1;
+    machine.nodes = 1;
+    machine.placement = Placement::shared;
+    machine.cache.organisation = round % 2 == 0 ? CacheOrganisation::unified : CacheOrganisation::split;
+    // Nothing to contend with: the node's own posted writes must not be in its way.
+    machine.layout.pixel_bytes = 1;
+    machine.interconnect.kind = memory::InterconnectKind::ideal;
+    machine.write_buffer = 4096;
+    machine.host.latency_cycles = 0;
+    machine.host.occupancy_cycles = 0;
+    const MachineResult result = replay(log, machine);
+    const ReferenceCounts references = result.references();
+    const sim::Ticks expected = compute_of(log, machine) +
+                                references.all_hits() * machine.clock.cycles(machine.cache.hit_cycles) +
+                                references.all_misses() * result.unloaded_miss;
+    EXPECT_EQ(result.nodes[0].finish, expected);
+  }
+}
+
+TEST(Replay, OneNodeOnABusWithSlowPixelsIsExactToo) {
+  // One pixel, so the only write comes last and no read can wait for it.
+  tests::Random random(12);
+  for (int round = 0; round < 100; ++round) {
+    const WorkLog log = tests::random_log(random, 1, 1, 2000);
+    MachineConfig machine = tests::random_machine(random);
+    machine.clusters = 1;
+    machine.nodes = 1;
+    machine.placement = Placement::shared;
+    machine.cache.organisation = CacheOrganisation::unified;
+    machine.host.latency_cycles = 0;
+    machine.host.occupancy_cycles = 0;
+    // A bank must be free again before the next read can reach it.
+    machine.banks.busy_cycles = machine.banks.access_cycles;
+    const MachineResult result = replay(log, machine);
+    const ReferenceCounts references = result.references();
+    EXPECT_EQ(result.nodes[0].finish,
+              compute_of(log, machine) +
+                  references.all_hits() * machine.clock.cycles(machine.cache.hit_cycles) +
+                  references.all_misses() * result.unloaded_miss);
+  }
+}
+
+TEST(Replay, CountsDoNotDependOnTheMachine) {
+  tests::Random random(13);
+  const WorkLog log = tests::random_log(random, 20, 13);
+  const LogTotals totals = totals_of(log);
+  for (int round = 0; round < 100; ++round) {
+    const MachineResult result = replay(log, tests::random_machine(random, 40));
+    const StepCounts steps = result.steps();
+    EXPECT_EQ(static_cast<std::uint64_t>(steps.branches), totals.branches);
+    EXPECT_EQ(static_cast<std::uint64_t>(steps.leaves), totals.leaves);
+    EXPECT_EQ(static_cast<std::uint64_t>(steps.tests), totals.tests);
+    EXPECT_EQ(static_cast<std::uint64_t>(steps.texels), totals.texels);
+    EXPECT_GE(result.references().references(),
+              static_cast<std::int64_t>(totals.branches + totals.leaves + totals.tests));
+  }
+}
+
+TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
+  tests::Random random(14);
+  const WorkLog log = tests::random_log(random, 24, 24);
+  MachineConfig machine;
+  machine.nodes = 1;
+  machine.cache.cache.size = 1 << 20;
+  machine.cache.cache.ways = memory::full_ways;
+  const MachineResult one = replay(log, machine);
+  // The lines of a single node: count them by hand, from the layout.
+  const memory::Layout layout(machine.layout, {log.topology.nodes.size(), log.topology.entries.size(),
+                                               log.primitives, log.materials, 356, 24 * 24});
+  std::set<std::uint64_t> lines;
+  const auto touch = [&](memory::RecordKind kind, std::uint64_t first, std::uint64_t count) {
+    if (count > 0) {
+      const memory::Address begin = layout.address(kind, first);
+      const memory::Address end = layout.address(kind, first + count - 1) + layout.record_bytes(kind);
+      for (std::uint64_t line = begin / 32; line <= (end - 1) / 32; ++line) {
+        lines.insert(line);
+      }
+    }
+  };
+  for (const LogRow& row : log.rows) {
+    for (std::size_t i = 0; i < row.words.size(); ++i) {
+      const std::uint32_t operand = operand_of(row.words[i]);
+      const accel::TopologyNode node =
+          operand < log.topology.nodes.size() ? log.topology.nodes[operand] : accel::TopologyNode{};
+      switch (step_of(row.words[i])) {
+        case Step::branch:
+          touch(memory::RecordKind::node, operand, 1);
+          break;
+        case Step::leaf:
+        case Step::partial_leaf: {
+          const std::uint32_t tests = step_of(row.words[i]) == Step::leaf ? node.count : row.words[i + 1];
+          touch(memory::RecordKind::node, operand, 1);
+          touch(memory::RecordKind::list, node.first, tests);
+          for (std::uint32_t t = 0; t < tests; ++t) {
+            touch(memory::RecordKind::primitive, log.topology.entries[node.first + t], 1);
+          }
+          break;
+        }
+        case Step::shade:
+          touch(memory::RecordKind::material, operand, 1);
+          break;
+        case Step::texel:
+          touch(memory::RecordKind::texel, log.texture_begin[operand] + row.words[i + 1], 1);
+          break;
+        case Step::ray:
+        case Step::light:
+          break;
+      }
+      i += has_second_word(step_of(row.words[i])) ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(one.references().all_misses(), static_cast<std::int64_t>(lines.size()));
+  machine.nodes = 7;
+  const MachineResult seven = replay(log, machine);
+  EXPECT_LE(seven.references().all_misses(), 7 * static_cast<std::int64_t>(lines.size()));
+  EXPECT_GE(seven.references().all_misses(), static_cast<std::int64_t>(lines.size()));
+}
+
+TEST(Replay, ZeroLatenciesFinishWithTheSameHitsUnderStaticAssignment) {
+  tests::Random random(15);
+  const WorkLog log = tests::random_log(random, 16, 16);
+  MachineConfig machine;
+  machine.host.assignment = Assignment::interleaved;
+  const MachineResult normal = replay(log, machine);
+  machine.operations = {0, 0, 0, 0, 0, 0, 0, 0};
+  machine.cache.hit_cycles = 0;
+  machine.interconnect.address_cycles = 0;
+  machine.interconnect.cycles_per_beat = 0;
+  machine.banks.access_cycles = 0;
+  machine.banks.busy_cycles = 0;
+  const MachineResult instant = replay(log, machine);
+  EXPECT_EQ(instant.end, 0);
+  EXPECT_EQ(instant.references().hits, normal.references().hits);
+  EXPECT_EQ(instant.references().misses, normal.references().misses);
+}
+
+TEST(Replay, LowerBoundsHoldAndMoreNodesThanPacketsStandIdle) {
+  tests::Random random(16);
+  const WorkLog log = tests::random_log(random, 16, 16);
+  for (const std::uint32_t nodes : {1U, 2U, 3U, 16U, 17U, 1024U, 65536U}) {
+    MachineConfig machine;
+    machine.nodes = nodes;
+    machine.packets = {4, 4, PacketOrder::scanline};
+    const MachineResult result = replay(log, machine);
+    EXPECT_GE(result.end, result.clusters[0].interconnect.busy);
+    std::int64_t working = 0;
+    for (const NodeStatistics& node : result.nodes) {
+      EXPECT_LE(node.finish, result.end);
+      working += node.packets > 0 ? 1 : 0;
+    }
+    EXPECT_EQ(working, std::min<std::int64_t>(nodes, 16));
+  }
+}
+
+TEST(Replay, RefusesWhatCannotBeBuiltOrTimed) {
+  tests::Random random(17);
+  const WorkLog log = tests::random_log(random, 4, 4);
+  MachineConfig machine;
+  machine.nodes = 0;
+  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  machine = {};
+  machine.clusters = 1U << 16U;
+  machine.nodes = 1U << 16U;
+  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  machine = {};
+  machine.cache.cache.line = 1;
+  machine.layout.section_alignment = 1U << 31U;
+  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  machine = {};
+  machine.clock = sim::Clock::from_period(std::int64_t{1} << 60U);
+  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  machine = {};
+  machine.host.latency_cycles = std::int64_t{1} << 62U;
+  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+}
+
+TEST(Replay, AnEmptyImageTakesNoTime) {
+  tests::Random random(18);
+  const WorkLog log = tests::random_log(random, 0, 0);
+  MachineConfig machine;
+  EXPECT_EQ(replay(log, machine).end, 0);
+}
+
+}  // namespace
+}  // namespace marti::processors
