@@ -1,0 +1,118 @@
+// Counting what is in a scene.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <sstream>
+
+#include <glm/geometric.hpp>
+
+#include "scenes/open.h"
+
+namespace marti::scenes {
+
+namespace {
+
+using PositionBits = std::array<std::uint64_t, 3>;
+
+PositionBits bits_of(const glm::dvec3& p) {
+  // + 0.0 makes -0 and +0 one position.
+  return {std::bit_cast<std::uint64_t>(p.x + 0.0), std::bit_cast<std::uint64_t>(p.y + 0.0),
+          std::bit_cast<std::uint64_t>(p.z + 0.0)};
+}
+
+/// For each vertex the rank of its position among the distinct ones.
+std::vector<std::uint32_t> position_ranks(const Scene& scene) {
+  std::vector<std::pair<PositionBits, std::uint32_t>> sorted;
+  sorted.reserve(scene.positions.size());
+  for (std::size_t i = 0; i < scene.positions.size(); ++i) {
+    sorted.emplace_back(bits_of(scene.positions[i]), static_cast<std::uint32_t>(i));
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<std::uint32_t> ranks(sorted.size());
+  std::uint32_t rank = 0;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    rank += i > 0 && sorted[i].first != sorted[i - 1].first ? 1U : 0U;
+    ranks[sorted[i].second] = rank;
+  }
+  return ranks;
+}
+
+bool has_no_area(const Scene& scene, const Triangle& triangle) {
+  const glm::dvec3& a = scene.positions[triangle.vertex[0]];
+  const glm::dvec3 normal =
+      glm::cross(scene.positions[triangle.vertex[1]] - a, scene.positions[triangle.vertex[2]] - a);
+  return normal == glm::dvec3(0.0);
+}
+
+std::string text_of(const glm::dvec3& v) {
+  std::ostringstream out;
+  out << "(" << v.x << ", " << v.y << ", " << v.z << ")";
+  return out.str();
+}
+
+}  // namespace
+
+std::uint64_t count_degenerate(const Scene& scene) {
+  return static_cast<std::uint64_t>(
+      std::count_if(scene.triangles.begin(), scene.triangles.end(),
+                    [&scene](const Triangle& triangle) { return has_no_area(scene, triangle); }));
+}
+
+SceneFacts facts_of(const Scene& scene) {
+  SceneFacts facts;
+  facts.name = scene.name;
+  facts.polygons = scene.polygons;
+  facts.triangles = scene.triangles.size();
+  facts.vertices = scene.positions.size();
+  facts.materials = scene.materials.size();
+  facts.textures = scene.textures.size();
+  facts.lights = scene.lights.size();
+  facts.bounds = bounds_of(scene);
+  facts.degenerate_triangles = count_degenerate(scene);
+  for (const Texture& texture : scene.textures) {
+    facts.texels += texture.texels.size();
+  }
+  const std::vector<std::uint32_t> ranks = position_ranks(scene);
+  std::vector<std::uint32_t> used;
+  std::vector<std::array<std::uint32_t, 3>> keys;
+  keys.reserve(scene.triangles.size());
+  for (const Triangle& triangle : scene.triangles) {
+    std::array<std::uint32_t, 3> key = {ranks[triangle.vertex[0]], ranks[triangle.vertex[1]],
+                                        ranks[triangle.vertex[2]]};
+    used.insert(used.end(), key.begin(), key.end());
+    std::sort(key.begin(), key.end());
+    keys.push_back(key);
+  }
+  std::sort(used.begin(), used.end());
+  facts.distinct_positions = static_cast<std::uint64_t>(std::unique(used.begin(), used.end()) - used.begin());
+  std::sort(keys.begin(), keys.end());
+  facts.duplicate_triangles =
+      keys.size() - static_cast<std::uint64_t>(std::unique(keys.begin(), keys.end()) - keys.begin());
+  return facts;
+}
+
+std::string describe(const Scene& scene) {
+  const SceneFacts facts = facts_of(scene);
+  std::ostringstream out;
+  out << "scene: " << facts.name << "\n"
+      << "polygons: " << facts.polygons << "\n"
+      << "triangles: " << facts.triangles << "\n"
+      << "vertices: " << facts.vertices << " (" << facts.distinct_positions << " distinct positions in use)\n"
+      << "degenerate triangles: " << facts.degenerate_triangles << "\n"
+      << "duplicate triangles: " << facts.duplicate_triangles << "\n"
+      << "materials: " << facts.materials << "\n"
+      << "textures: " << facts.textures << " (" << facts.texels << " texels)\n"
+      << "lights: " << facts.lights << "\n";
+  if (facts.bounds.empty()) {
+    out << "bounds: none\n";
+  } else {
+    out << "bounds: " << text_of(facts.bounds.lo) << " to " << text_of(facts.bounds.hi) << "\n";
+  }
+  out << "camera: at " << text_of(scene.camera.eye) << " looking at " << text_of(scene.camera.at) << "\n";
+  for (const std::string& note : scene.notes) {
+    out << "note: " << note << "\n";
+  }
+  return out.str();
+}
+
+}  // namespace marti::scenes

@@ -1,0 +1,50 @@
+// Reading glTF 2.0 scenes (.gltf and .glb), Khronos specification 2.0.1, in their static pose.
+//
+// Read: the chosen scene's nodes with their transforms; indexed and unindexed triangles, strips and fans;
+// sparse accessors; positions, normals, the base colour texture's coordinates; materials; perspective
+// cameras; KHR_lights_punctual, KHR_materials_transmission, KHR_materials_ior,
+// KHR_materials_emissive_strength. Left out with a note: points and lines, skins, morph targets, other
+// textures, alpha modes. One source triangle is one polygon. Indices below 0 read as "not given" where
+// glTF allows that.
+//
+// Materials. With base colour c, metallic m, roughness r, transmission t, index of refraction n,
+// F0 = ((n-1)/(n+1))^2 and gloss g = (1-r)^2, our weights are
+//   diffuse      = (1-m)(1-t)(1-g F0) + m (1-g)   rough metal scatters widely: diffuse of its own colour
+//   reflection   = g (m + (1-m) F0)
+//   transmission = (1-m) t (1-g F0)               (the three add up to 1)
+//   highlight    = m + (1-m) F0
+//   shininess    = 2/r^4 - 2, kept in 1 to 100,000  (Blinn-Phong for GGX of alpha = r^2: Walter et al.,
+//                  Microfacet Models for Refraction, EGSR 2007, section 5.2)
+//   specular colour = white mixed with c by m;  emission = emissive factor times its strength.
+// A material with valid `extras.marti` (see gltf_export.h) gets the exact weights written there.
+//
+// Lights keep colour times intensity (candela, lux) as it stands: there is no exposure. Point and spot
+// lights fall off with the square of the distance. A camera's aspect ratio is the image's own.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "scenes/scene.h"
+#include "scenes/texture.h"
+
+namespace marti::scenes {
+
+struct GltfOptions {
+  std::string scene;   ///< index or name; empty: the file's default, else the first
+  std::string camera;  ///< index or name of a camera of the file; empty: the scene's first perspective one
+  std::uint32_t frame = 0;                               ///< only 0, the static pose
+  std::uint64_t max_triangles = std::uint64_t{1} << 25;  ///< more than this is refused; vertices likewise
+  std::uint64_t max_file_bytes = (std::uint64_t{1} << 32) - 1;  ///< of each file read
+};
+
+/// Loads a file. A scene without a camera or a light gets one that frames it, and a note. Triangles with a
+/// position that is not finite are left out and counted in one note; degenerate ones are kept and counted.
+/// `decode` may be empty; then a material with a base colour texture is refused.
+/// Throws UserError, the path first, for anything missing, broken, out of range or not supported; no input
+/// makes it crash or loop.
+[[nodiscard]] Scene load_gltf(const std::filesystem::path& path, const GltfOptions& options,
+                              const ImageDecoder& decode);
+
+}  // namespace marti::scenes

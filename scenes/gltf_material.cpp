@@ -1,0 +1,237 @@
+#include "scenes/gltf_material.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include <glm/common.hpp>
+
+#include "sim/error.h"
+
+namespace marti::scenes::gltf {
+
+namespace {
+
+constexpr double largest_emission = 1e9;
+constexpr double largest_ior = 100.0;
+constexpr double largest_shininess = 1e5;
+
+const tinygltf::Value* extension(const tinygltf::ExtensionMap& map, const char* name) {
+  const auto found = map.find(name);
+  return found == map.end() ? nullptr : &found->second;
+}
+
+bool in_range(const std::optional<double>& value, double lowest, double highest) {
+  return value && *value >= lowest && *value <= highest;
+}
+
+/// Overwrites the weights by the exact ones, if all of them are there and in range.
+bool apply_own_weights(const tinygltf::Value& own, Material& material) {
+  const auto color = color_in(own, "color", 0.0, 1.0);
+  const auto specular = color_in(own, "specular_color", 0.0, 1.0);
+  const auto emission = color_in(own, "emission", 0.0, largest_emission);
+  const auto diffuse = number_in(own, "diffuse");
+  const auto reflection = number_in(own, "reflection");
+  const auto transmission = number_in(own, "transmission");
+  const auto highlight = number_in(own, "highlight");
+  const auto ior = number_in(own, "ior");
+  const auto shininess = number_in(own, "shininess");
+  if (!color || !specular || !emission || !in_range(diffuse, 0.0, 1.0) || !in_range(reflection, 0.0, 1.0) ||
+      !in_range(transmission, 0.0, 1.0) || !in_range(highlight, 0.0, 1.0) ||
+      !in_range(ior, 1.0, largest_ior) || !in_range(shininess, 0.0, 1e9)) {
+    return false;
+  }
+  material.color = *color;
+  material.specular_color = *specular;
+  material.emission = *emission;
+  material.diffuse = *diffuse;
+  material.reflection = *reflection;
+  material.transmission = *transmission;
+  material.highlight = *highlight;
+  material.ior = *ior;
+  material.shininess = *shininess;
+  return true;
+}
+
+/// The mapping of gltf.h.
+void set_weights(Material& material, double metallic, double roughness, double transmission) {
+  const double root = (material.ior - 1.0) / (material.ior + 1.0);
+  const double f0 = root * root;
+  const double gloss = (1.0 - roughness) * (1.0 - roughness);
+  const double dielectric = (1.0 - metallic) * (1.0 - gloss * f0);
+  material.diffuse = dielectric * (1.0 - transmission) + metallic * (1.0 - gloss);
+  material.reflection = gloss * (metallic + (1.0 - metallic) * f0);
+  material.transmission = dielectric * transmission;
+  material.highlight = metallic + (1.0 - metallic) * f0;
+  const double r2 = roughness * roughness;
+  material.shininess =
+      r2 * r2 > 0.0 ? std::clamp(2.0 / (r2 * r2) - 2.0, 1.0, largest_shininess) : largest_shininess;
+  material.specular_color = glm::mix(glm::dvec3(1.0), material.color, metallic);
+}
+
+}  // namespace
+
+std::optional<double> number_in(const tinygltf::Value& object, const char* key) {
+  if (!object.IsObject() || !object.Has(key) || !object.Get(key).IsNumber()) {
+    return std::nullopt;
+  }
+  const double value = object.Get(key).GetNumberAsDouble();
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::optional<glm::dvec3> color_in(const tinygltf::Value& object, const char* key, double lowest,
+                                   double highest) {
+  if (!object.IsObject() || !object.Has(key) || object.Get(key).ArrayLen() != 3) {
+    return std::nullopt;
+  }
+  glm::dvec3 color;
+  for (int i = 0; i < 3; ++i) {
+    const tinygltf::Value& channel = object.Get(key).Get(i);
+    if (!channel.IsNumber() ||
+        !(channel.GetNumberAsDouble() >= lowest && channel.GetNumberAsDouble() <= highest)) {
+      return std::nullopt;
+    }
+    color[i] = channel.GetNumberAsDouble();
+  }
+  return color;
+}
+
+const tinygltf::Value* own_extras(const tinygltf::Value& extras) {
+  return extras.IsObject() && extras.Has("marti") ? &extras.Get("marti") : nullptr;
+}
+
+Materials::Use Materials::use(int index) {
+  const auto known = used_.find(index);
+  if (known != used_.end()) {
+    return known->second;
+  }
+  Use use;
+  Material material = convert(index, use.texture_coordinates);
+  use.material = static_cast<std::uint32_t>(scene_.materials.size());
+  scene_.materials.push_back(std::move(material));
+  used_.emplace(index, use);
+  return use;
+}
+
+Material Materials::convert(int index, int& texture_coordinates) {
+  const std::string name = index < 0 ? "the default material" : "material " + std::to_string(index);
+  const tinygltf::Material fallback;
+  const tinygltf::Material& source =
+      index < 0 ? fallback : model_.at(model_.data().materials, index, "material", "a primitive");
+  const auto unit = [&](double value, const char* what) {
+    return checked_number(model_, value, 0.0, 1.0, name + ": " + what);
+  };
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  if (pbr.baseColorFactor.size() != 4 ||
+      (!source.emissiveFactor.empty() && source.emissiveFactor.size() != 3)) {
+    model_.fail(name + ": a base colour has 4 numbers and an emissive factor 3");
+  }
+  Material material;
+  material.name = source.name;
+  for (int i = 0; i < 3; ++i) {
+    material.color[i] = unit(pbr.baseColorFactor[static_cast<std::size_t>(i)], "the base colour");
+  }
+  material.ior = 1.5;
+  if (const tinygltf::Value* ior = extension(source.extensions, "KHR_materials_ior")) {
+    // 0 stands for an index without end in the extension: total reflection.
+    const double given = number_in(*ior, "ior").value_or(1.5);
+    material.ior = given == 0.0
+                       ? largest_ior
+                       : checked_number(model_, given, 1.0, largest_ior, name + ": the index of refraction");
+  }
+  double transmission = 0.0;
+  if (const tinygltf::Value* t = extension(source.extensions, "KHR_materials_transmission")) {
+    transmission = unit(number_in(*t, "transmissionFactor").value_or(0.0), "the transmission");
+    left_out_.features["transmission textures"] += t->Has("transmissionTexture") ? 1U : 0U;
+  }
+  double strength = 1.0;
+  if (const tinygltf::Value* e = extension(source.extensions, "KHR_materials_emissive_strength")) {
+    strength = checked_number(model_, number_in(*e, "emissiveStrength").value_or(1.0), 0.0, largest_emission,
+                              name + ": the emissive strength");
+  }
+  for (std::size_t i = 0; i < source.emissiveFactor.size(); ++i) {
+    material.emission[static_cast<int>(i)] = std::min(
+        largest_emission, strength * checked_number(model_, source.emissiveFactor[i], 0.0, largest_emission,
+                                                    name + ": the emissive factor"));
+  }
+  set_weights(material, unit(pbr.metallicFactor, "the metallic factor"),
+              unit(pbr.roughnessFactor, "the roughness factor"), transmission);
+  if (const tinygltf::Value* own = own_extras(source.extras);
+      own != nullptr && !apply_own_weights(*own, material)) {
+    left_out_.features["materials' own weights (extras.marti) that are incomplete or out of range"] += 1;
+  }
+  left_out_.features["textures other than the base colour"] +=
+      static_cast<std::uint64_t>(pbr.metallicRoughnessTexture.index >= 0) +
+      static_cast<std::uint64_t>(source.normalTexture.index >= 0) +
+      static_cast<std::uint64_t>(source.occlusionTexture.index >= 0) +
+      static_cast<std::uint64_t>(source.emissiveTexture.index >= 0);
+  left_out_.features["alpha modes other than OPAQUE"] += source.alphaMode == "OPAQUE" ? 0U : 1U;
+  if (pbr.baseColorTexture.index >= 0) {
+    material.texture = texture_index(pbr.baseColorTexture.index, name);
+    texture_coordinates = pbr.baseColorTexture.texCoord;
+    left_out_.features["texture transforms"] +=
+        extension(pbr.baseColorTexture.extensions, "KHR_texture_transform") != nullptr ? 1U : 0U;
+    if (texture_coordinates < 0 || texture_coordinates > 63) {
+      model_.fail(name + ": there is no set of texture coordinates " + std::to_string(texture_coordinates));
+    }
+  }
+  return material;
+}
+
+std::uint32_t Materials::texture_index(int texture, const std::string& user) {
+  const tinygltf::Texture& source = model_.at(model_.data().textures, texture, "texture", user);
+  const std::string name = "texture " + std::to_string(texture);
+  tinygltf::Sampler sampler;
+  if (source.sampler >= 0) {
+    sampler = model_.at(model_.data().samplers, source.sampler, "sampler", name);
+  }
+  const auto key = std::tuple(source.source, sampler.wrapS, sampler.wrapT);
+  const auto known = textures_.find(key);
+  if (known != textures_.end()) {
+    return known->second;
+  }
+  Texture decoded = decode_image(source.source, name);
+  decoded.srgb = true;
+  decoded.repeat_u = sampler.wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+  decoded.repeat_v = sampler.wrapT != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+  left_out_.features["mirrored texture repeats (repeated without mirroring)"] +=
+      sampler.wrapS == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ||
+              sampler.wrapT == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT
+          ? 1U
+          : 0U;
+  const auto index = static_cast<std::uint32_t>(scene_.textures.size());
+  scene_.textures.push_back(std::move(decoded));
+  textures_.emplace(key, index);
+  return index;
+}
+
+Texture Materials::decode_image(int image, const std::string& user) const {
+  const tinygltf::Image& source = model_.at(model_.data().images, image, "image", user);
+  const std::string name = !source.name.empty()  ? source.name
+                           : !source.uri.empty() ? source.uri
+                                                 : "image " + std::to_string(image);
+  std::span<const std::byte> bytes = std::as_bytes(std::span(source.image));
+  if (source.bufferView >= 0) {
+    bytes = model_.view_bytes(source.bufferView, "image " + std::to_string(image));
+  }
+  if (bytes.empty()) {
+    model_.fail("image '" + name + "' is missing, empty or cannot be read");
+  }
+  if (!decode_) {
+    model_.fail("it needs the texture '" + name + "', and no image decoder is at hand");
+  }
+  Texture texture;
+  try {
+    texture = decode_(bytes, name);
+  } catch (const sim::UserError& error) {
+    model_.fail("image '" + name + "': " + error.what());
+  }
+  sim::ensure(texture.width > 0 && texture.height > 0 &&
+                  texture.texels.size() == std::uint64_t{texture.width} * texture.height,
+              "an image decoder returned a texture whose size does not match its texels");
+  texture.name = name;
+  return texture;
+}
+
+}  // namespace marti::scenes::gltf

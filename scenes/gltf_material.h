@@ -1,0 +1,58 @@
+// Inside of the folder: glTF materials and textures as ours, converted when first used.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "scenes/gltf_model.h"
+#include "scenes/scene.h"
+#include "scenes/texture.h"
+
+namespace marti::scenes::gltf {
+
+/// Member `key` of an object as a number, or nothing.
+[[nodiscard]] std::optional<double> number_in(const tinygltf::Value& object, const char* key);
+
+/// Member `key` of an object as three numbers of `lowest` to `highest`, or nothing.
+[[nodiscard]] std::optional<glm::dvec3> color_in(const tinygltf::Value& object, const char* key,
+                                                 double lowest, double highest);
+
+/// The `extras.marti` object, or nullptr.
+[[nodiscard]] const tinygltf::Value* own_extras(const tinygltf::Value& extras);
+
+/// What the loader leaves out, counted for the notes.
+struct LeftOut {
+  std::map<std::string, std::uint64_t> features;  ///< by a description in the plural
+};
+
+class Materials {
+ public:
+  Materials(const Model& model, const ImageDecoder& decode, Scene& scene, LeftOut& left_out)
+      : model_(model), decode_(decode), scene_(scene), left_out_(left_out) {}
+
+  struct Use {
+    std::uint32_t material = 0;    ///< index into Scene::materials
+    int texture_coordinates = -1;  ///< the TEXCOORD set its texture needs, -1 for none
+  };
+  /// The material of a primitive; -1 is glTF's default material.
+  Use use(int index);
+
+ private:
+  Material convert(int index, int& texture_coordinates);
+  std::uint32_t texture_index(int texture, const std::string& user);
+  [[nodiscard]] Texture decode_image(int image, const std::string& user) const;
+
+  const Model& model_;
+  const ImageDecoder& decode_;
+  Scene& scene_;
+  LeftOut& left_out_;
+  std::map<int, Use> used_;
+  std::map<std::tuple<int, int, int>, std::uint32_t> textures_;  // by image and wrap modes
+};
+
+}  // namespace marti::scenes::gltf

@@ -1,0 +1,376 @@
+#include "scenes/gltf_model.h"
+
+#include <cmath>
+#include <cstring>
+#include <new>
+#include <sstream>
+#include <utility>
+
+#include "sim/error.h"
+#include "sim/files.h"
+
+namespace marti::scenes::gltf {
+
+namespace {
+
+constexpr std::uint64_t max_json_bytes = std::uint64_t{1} << 30;
+constexpr int max_json_depth = 128;  // tinygltf walks `extras` and `extensions` by recursion
+
+/// What the file callbacks need: where files may be read from, and how large they may be.
+struct FileAccess {
+  std::string base_directory;
+  std::int64_t max_bytes;
+};
+
+bool file_exists(const std::string& name, void* user) {
+  // tinygltf looks in the current directory as well; a file must not depend on where it is opened from.
+  const auto* access = static_cast<const FileAccess*>(user);
+  std::error_code error;
+  return name.starts_with(access->base_directory) && std::filesystem::is_regular_file(name, error);
+}
+
+std::string same_path(const std::string& name, void* /*user*/) { return name; }
+
+bool read_whole_file(std::vector<unsigned char>* out, std::string* error, const std::string& name,
+                     void* user) {
+  try {
+    const std::string text = sim::read_file(name, static_cast<const FileAccess*>(user)->max_bytes);
+    out->assign(text.begin(), text.end());
+    return true;
+  } catch (const sim::UserError& reason) {
+    *error += reason.what();
+    return false;
+  }
+}
+
+bool refuse_to_write(std::string* error, const std::string& /*name*/,
+                     const std::vector<unsigned char>& /*data*/, void* /*user*/) {
+  *error += "reading only";
+  return false;
+}
+
+/// Keeps an image file's bytes as they are. Bytes of buffer views are left alone: tinygltf has not checked
+/// that they lie inside their buffer.
+bool keep_image(tinygltf::Image* image, const int /*index*/, std::string* /*error*/, std::string* /*warning*/,
+                int /*width*/, int /*height*/, const unsigned char* bytes, int size, void* /*user*/) {
+  if (image->bufferView < 0 && size > 0) {
+    image->image.assign(bytes, bytes + size);
+  }
+  image->as_is = true;
+  return true;
+}
+
+int nesting_of(std::string_view json) {
+  int depth = 0;
+  int deepest = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (in_string) {
+      if (c == '\\') {
+        ++i;
+      } else if (c == '"') {
+        in_string = false;
+      }
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      deepest = std::max(deepest, ++depth);
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return deepest;
+}
+
+/// The JSON text of either kind of file; of a broken .glb as much as there is.
+std::string_view json_of(std::string_view file, bool binary) {
+  if (!binary) {
+    return file;
+  }
+  std::uint32_t length = 0;
+  if (file.size() < 20) {
+    return {};
+  }
+  std::memcpy(&length, file.data() + 12, sizeof length);
+  return file.substr(20, length);
+}
+
+/// tinygltf ends its messages with line breaks; ours are one line.
+std::string one_line(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) {
+    text.pop_back();
+  }
+  for (char& c : text) {
+    c = static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  constexpr std::size_t longest = 400;
+  return text.size() > longest ? text.substr(0, longest) + "..." : text;
+}
+
+bool is_component_type(int type) {
+  return type == TINYGLTF_COMPONENT_TYPE_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+         type == TINYGLTF_COMPONENT_TYPE_SHORT || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+         type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT || type == TINYGLTF_COMPONENT_TYPE_FLOAT;
+}
+
+std::size_t component_size(int type) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return 1;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return 2;
+    default:
+      return 4;
+  }
+}
+
+/// Unaligned little-endian read, as in the file and on the machines we build for.
+template <typename T>
+T load(const std::byte* from) {
+  T value;
+  std::memcpy(&value, from, sizeof value);
+  return value;
+}
+
+std::uint32_t load_unsigned(const std::byte* from, int type) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return load<std::uint8_t>(from);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return load<std::uint16_t>(from);
+    default:
+      return load<std::uint32_t>(from);
+  }
+}
+
+/// One component; the mapping of normalised integers is that of glTF 2.0, section 3.11.
+double load_value(const std::byte* from, int type, bool normalized) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE: {
+      const double c = load<std::int8_t>(from);
+      return normalized ? std::max(c / 127.0, -1.0) : c;
+    }
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: {
+      const double c = load<std::uint8_t>(from);
+      return normalized ? c / 255.0 : c;
+    }
+    case TINYGLTF_COMPONENT_TYPE_SHORT: {
+      const double c = load<std::int16_t>(from);
+      return normalized ? std::max(c / 32767.0, -1.0) : c;
+    }
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: {
+      const double c = load<std::uint16_t>(from);
+      return normalized ? c / 65535.0 : c;
+    }
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return load<std::uint32_t>(from);
+    default:
+      return static_cast<double>(load<float>(from));
+  }
+}
+
+}  // namespace
+
+Model::Model(std::filesystem::path path, const GltfOptions& options)
+    : path_(std::move(path)), options_(options) {
+  try {
+    parse();
+  } catch (const sim::UserError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    fail("there is not enough memory to read it");
+  } catch (const std::exception& error) {
+    fail("it cannot be parsed: " + one_line(error.what()));
+  }
+}
+
+void Model::parse() {
+  std::string file;
+  try {
+    file = sim::read_file(path_, static_cast<std::int64_t>(options_.max_file_bytes));
+  } catch (const sim::UserError& error) {
+    const std::string reason = error.what();
+    if (reason.starts_with(path_.string())) {
+      throw;
+    }
+    fail(reason);
+  }
+  const bool binary = file.starts_with("glTF");
+  const std::string_view json = json_of(file, binary);
+  if (json.size() > max_json_bytes || file.size() > 0xffffffffU) {
+    fail("it is too large: at most 1 GiB of JSON and 4 GiB in all can be read");
+  }
+  if (nesting_of(json) > max_json_depth) {
+    fail("its JSON is nested deeper than " + std::to_string(max_json_depth) + " levels");
+  }
+  std::string directory = path_.parent_path().empty() ? "." : path_.parent_path().string();
+  FileAccess access{directory.ends_with('/') ? directory : directory + "/",
+                    static_cast<std::int64_t>(options_.max_file_bytes)};
+  tinygltf::TinyGLTF parser;
+  parser.SetImageLoader(keep_image, nullptr);
+  parser.SetFsCallbacks({file_exists, same_path, read_whole_file, refuse_to_write, &access});
+  std::string error;
+  std::string warning;
+  const auto size = static_cast<unsigned int>(file.size());
+  const bool parsed =
+      binary
+          ? parser.LoadBinaryFromMemory(&data_, &error, &warning,
+                                        reinterpret_cast<const unsigned char*>(file.data()), size, directory)
+          : parser.LoadASCIIFromString(&data_, &error, &warning, file.data(), size, directory);
+  // Some faults only leave a message: a primitive that cannot be parsed is dropped, for example.
+  if (!parsed || !error.empty()) {
+    fail("it is no valid glTF 2.0: " + (error.empty() ? "unknown fault" : one_line(error)));
+  }
+}
+
+void Model::fail(const std::string& what) const { throw sim::UserError(path_.string() + ": " + what); }
+
+void Model::fail_reference(const char* kind, int index, std::size_t size, const std::string& user) const {
+  fail(user + " refers to " + kind + " " + std::to_string(index) + ", but the file has " +
+       std::to_string(size));
+}
+
+std::span<const std::byte> Model::view_bytes(int view, const std::string& user) const {
+  const tinygltf::BufferView& v = at(data_.bufferViews, view, "buffer view", user);
+  const std::string name = "buffer view " + std::to_string(view);
+  const tinygltf::Buffer& buffer = at(data_.buffers, v.buffer, "buffer", name);
+  const std::uint64_t size = buffer.data.size();
+  if (v.byteOffset > size || v.byteLength > size - v.byteOffset) {
+    fail(name + " takes " + std::to_string(v.byteLength) + " bytes from byte " +
+         std::to_string(v.byteOffset) + ", but its buffer is too short: " + std::to_string(size) + " bytes");
+  }
+  return std::as_bytes(std::span(buffer.data)).subspan(v.byteOffset, v.byteLength);
+}
+
+Model::Elements Model::elements(int view, std::uint64_t offset, std::uint64_t count, int component_type,
+                                int components, const std::string& user) const {
+  const std::span<const std::byte> bytes = view_bytes(view, user);
+  const std::size_t element = component_size(component_type) * static_cast<std::size_t>(components);
+  const std::size_t given = data_.bufferViews[static_cast<std::size_t>(view)].byteStride;
+  const std::size_t stride = given == 0 ? element : given;
+  if (stride < element || stride > 252 || stride % component_size(component_type) != 0) {
+    fail("buffer view " + std::to_string(view) + ": a stride of " + std::to_string(stride) +
+         " bytes does not fit the elements of " + user + ", " + std::to_string(element) + " bytes each");
+  }
+  // count <= bytes.size() <= 2^32 and stride <= 252: the product cannot overflow.
+  if (count == 0 || count > bytes.size() || offset > bytes.size() ||
+      stride * (count - 1) + element > bytes.size() - offset) {
+    fail(user + ": " + std::to_string(count) + " elements from byte " + std::to_string(offset) +
+         " do not fit into buffer view " + std::to_string(view) + " of " + std::to_string(bytes.size()) +
+         " bytes");
+  }
+  return {bytes.subspan(offset), stride, static_cast<std::size_t>(count), component_type};
+}
+
+std::vector<double> Model::read_values(int accessor, int components, const std::string& user) const {
+  const tinygltf::Accessor& a = at(data_.accessors, accessor, "accessor", user);
+  const std::string name = user + " (accessor " + std::to_string(accessor) + ")";
+  if (tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type)) != components ||
+      a.type >= TINYGLTF_TYPE_MAT2) {
+    if (!(components == 1 && a.type == TINYGLTF_TYPE_SCALAR)) {
+      fail(name + " has the wrong type: " + std::to_string(components) + " components are needed");
+    }
+  }
+  if (!is_component_type(a.componentType) || a.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+    fail(name + " has component type " + std::to_string(a.componentType) +
+         ", which is not allowed for vertex attributes");
+  }
+  if (a.count == 0 || a.count > options_.max_triangles) {
+    fail(name + " has " + std::to_string(a.count) + " elements; 1 to " +
+         std::to_string(options_.max_triangles) + " are accepted");
+  }
+  const auto width = static_cast<std::size_t>(components);
+  std::vector<double> values;
+  if (a.bufferView < 0) {
+    constexpr std::size_t most_zeros = std::size_t{1} << 22;
+    if (a.count > most_zeros) {
+      fail(name + " has " + std::to_string(a.count) + " elements and no buffer view");
+    }
+    values.assign(a.count * width, 0.0);
+  } else {
+    const Elements e = elements(a.bufferView, a.byteOffset, a.count, a.componentType, components, name);
+    const std::size_t step = component_size(a.componentType);
+    values.reserve(a.count * width);
+    for (std::size_t i = 0; i < e.count; ++i) {
+      for (std::size_t c = 0; c < width; ++c) {
+        values.push_back(load_value(e.bytes.data() + i * e.stride + c * step, a.componentType, a.normalized));
+      }
+    }
+  }
+  if (a.sparse.isSparse) {
+    apply_sparse(a, components, values, name);
+  }
+  return values;
+}
+
+void Model::apply_sparse(const tinygltf::Accessor& accessor, int components, std::vector<double>& values,
+                         const std::string& user) const {
+  const auto& sparse = accessor.sparse;
+  const int type = sparse.indices.componentType;
+  if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+      type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+    fail(user + ": sparse indices of component type " + std::to_string(type));
+  }
+  if (sparse.count < 1 || static_cast<std::size_t>(sparse.count) > accessor.count ||
+      sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) {
+    fail(user + ": " + std::to_string(sparse.count) + " sparse elements or a negative offset");
+  }
+  const auto count = static_cast<std::uint64_t>(sparse.count);
+  const Elements where = elements(
+      sparse.indices.bufferView, static_cast<std::uint64_t>(sparse.indices.byteOffset), count, type, 1, user);
+  const Elements what =
+      elements(sparse.values.bufferView, static_cast<std::uint64_t>(sparse.values.byteOffset), count,
+               accessor.componentType, components, user);
+  const auto width = static_cast<std::size_t>(components);
+  for (std::size_t i = 0; i < where.count; ++i) {
+    const std::uint32_t index = load_unsigned(where.bytes.data() + i * where.stride, type);
+    if (index >= accessor.count) {
+      fail(user + ": sparse index " + std::to_string(index) + " is out of range");
+    }
+    for (std::size_t c = 0; c < width; ++c) {
+      values[index * width + c] =
+          load_value(what.bytes.data() + i * what.stride + c * component_size(accessor.componentType),
+                     accessor.componentType, accessor.normalized);
+    }
+  }
+}
+
+std::vector<std::uint32_t> Model::read_indices(int accessor, const std::string& user) const {
+  const tinygltf::Accessor& a = at(data_.accessors, accessor, "accessor", user);
+  const std::string name = user + " (accessor " + std::to_string(accessor) + ")";
+  const int type = a.componentType;
+  if (a.type != TINYGLTF_TYPE_SCALAR ||
+      (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+       type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)) {
+    fail(name + " has the wrong type: unsigned scalars are needed");
+  }
+  if (a.sparse.isSparse) {
+    fail(name + ": sparse vertex indices are not supported");
+  }
+  if (a.count > 3 * options_.max_triangles) {
+    fail(name + " has " + std::to_string(a.count) + " elements; at most " +
+         std::to_string(3 * options_.max_triangles) + " are accepted");
+  }
+  const Elements e = elements(a.bufferView, a.byteOffset, a.count, type, 1, name);
+  std::vector<std::uint32_t> indices;
+  indices.reserve(e.count);
+  for (std::size_t i = 0; i < e.count; ++i) {
+    indices.push_back(load_unsigned(e.bytes.data() + i * e.stride, type));
+  }
+  return indices;
+}
+
+double checked_number(const Model& model, double value, double lowest, double highest,
+                      const std::string& what) {
+  if (!(value >= lowest && value <= highest)) {
+    std::ostringstream text;
+    text << what << " is " << value << "; it must lie in " << lowest << " to " << highest;
+    model.fail(text.str());
+  }
+  return value;
+}
+
+}  // namespace marti::scenes::gltf

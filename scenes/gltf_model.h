@@ -1,0 +1,76 @@
+// Inside of the folder: a parsed glTF file with the checks that every part of the loader needs. tinygltf
+// accepts indices out of range, recursive nodes and short buffers; nothing of the model is to be used
+// without going through these.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tiny_gltf.h>
+
+#include "scenes/gltf.h"
+
+namespace marti::scenes::gltf {
+
+class Model {
+ public:
+  /// Reads and parses the file and those it refers to. Throws UserError.
+  Model(std::filesystem::path path, const GltfOptions& options);
+
+  [[nodiscard]] const tinygltf::Model& data() const { return data_; }
+  [[nodiscard]] const GltfOptions& options() const { return options_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  /// Throws a UserError that begins with the file's path.
+  [[noreturn]] void fail(const std::string& what) const;
+
+  /// `list[index]`, or a UserError that says who refers to a missing `kind`.
+  template <typename T>
+  [[nodiscard]] const T& at(const std::vector<T>& list, int index, const char* kind,
+                            const std::string& user) const {
+    if (index < 0 || static_cast<std::size_t>(index) >= list.size()) {
+      fail_reference(kind, index, list.size(), user);
+    }
+    return list[static_cast<std::size_t>(index)];
+  }
+
+  /// The bytes of a buffer view; its range is checked against its buffer.
+  [[nodiscard]] std::span<const std::byte> view_bytes(int view, const std::string& user) const;
+
+  /// An accessor of `components` floating-point or integer values an element, with sparse replacements
+  /// applied and normalised integers mapped to 0..1 or -1..1: count * components values.
+  [[nodiscard]] std::vector<double> read_values(int accessor, int components, const std::string& user) const;
+
+  /// An accessor of unsigned scalars, for vertex indices.
+  [[nodiscard]] std::vector<std::uint32_t> read_indices(int accessor, const std::string& user) const;
+
+ private:
+  struct Elements {
+    std::span<const std::byte> bytes;
+    std::size_t stride;
+    std::size_t count;
+    int component_type;
+  };
+  [[noreturn]] void fail_reference(const char* kind, int index, std::size_t size,
+                                   const std::string& user) const;
+  [[nodiscard]] Elements elements(int view, std::uint64_t offset, std::uint64_t count, int component_type,
+                                  int components, const std::string& user) const;
+  void apply_sparse(const tinygltf::Accessor& accessor, int components, std::vector<double>& values,
+                    const std::string& user) const;
+  void parse();
+
+  std::filesystem::path path_;
+  GltfOptions options_;
+  tinygltf::Model data_;
+};
+
+/// `value` as a finite number in `lowest`..`highest`, else UserError naming `what`.
+double checked_number(const Model& model, double value, double lowest, double highest,
+                      const std::string& what);
+
+}  // namespace marti::scenes::gltf

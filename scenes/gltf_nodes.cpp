@@ -1,0 +1,176 @@
+#include "scenes/gltf_nodes.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "sim/nearest.h"
+
+namespace marti::scenes::gltf {
+
+namespace {
+
+std::string name_of_node(int node) { return "node " + std::to_string(node); }
+
+bool all_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+bool is_finite(const glm::dmat4& m) {
+  const double* values = glm::value_ptr(m);
+  return std::all_of(values, values + 16, [](double v) { return std::isfinite(v); });
+}
+
+glm::dmat4 local_transform(const Model& model, int index) {
+  const tinygltf::Node& node = model.data().nodes[static_cast<std::size_t>(index)];
+  const auto check = [&](const std::vector<double>& values, std::size_t size, const char* what) {
+    if ((!values.empty() && values.size() != size) || !all_finite(values)) {
+      model.fail(name_of_node(index) + ": its " + what + " must be " + std::to_string(size) +
+                 " finite numbers");
+    }
+  };
+  check(node.matrix, 16, "matrix");
+  check(node.translation, 3, "translation");
+  check(node.rotation, 4, "rotation");
+  check(node.scale, 3, "scale");
+  if (!node.matrix.empty()) {
+    const glm::dmat4 m = glm::make_mat4(node.matrix.data());
+    if (m[0][3] != 0.0 || m[1][3] != 0.0 || m[2][3] != 0.0 || m[3][3] != 1.0) {
+      model.fail(name_of_node(index) + ": the last row of its matrix must be 0 0 0 1");
+    }
+    return m;
+  }
+  glm::dmat4 m(1.0);
+  if (!node.rotation.empty()) {
+    const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+    const double length = glm::length(q);
+    if (!(length > 1e-6 && length < 1e6)) {
+      model.fail(name_of_node(index) + ": its rotation is no unit quaternion");
+    }
+    m = glm::mat4_cast(q / length);
+  }
+  for (int axis = 0; axis < 3 && !node.scale.empty(); ++axis) {
+    m[axis] *= node.scale[static_cast<std::size_t>(axis)];
+  }
+  for (int axis = 0; axis < 3 && !node.translation.empty(); ++axis) {
+    m[3][axis] = node.translation[static_cast<std::size_t>(axis)];
+  }
+  return m;
+}
+
+/// The parent of each node, -1 for none. A node has one parent at most, and following parents ends.
+std::vector<int> find_parents(const Model& model) {
+  const std::vector<tinygltf::Node>& nodes = model.data().nodes;
+  std::vector<int> parents(nodes.size(), -1);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const int parent = static_cast<int>(i);
+    for (const int child : nodes[i].children) {
+      static_cast<void>(model.at(nodes, child, "node", name_of_node(parent)));
+      int& known = parents[static_cast<std::size_t>(child)];
+      if (known >= 0) {
+        model.fail(name_of_node(child) + " is a child of two nodes, or twice of one: " +
+                   std::to_string(known) + " and " + std::to_string(parent));
+      }
+      known = parent;
+    }
+  }
+  // With one parent each, the nodes not reached from the roots are those in and below cycles.
+  std::vector<int> reached;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (parents[i] < 0) {
+      reached.push_back(static_cast<int>(i));
+    }
+  }
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    const std::vector<int>& children = nodes[static_cast<std::size_t>(reached[i])].children;
+    reached.insert(reached.end(), children.begin(), children.end());
+  }
+  if (reached.size() != nodes.size()) {
+    model.fail("its nodes are recursive: " + std::to_string(nodes.size() - reached.size()) +
+               " of them are their own ancestors or below such a node");
+  }
+  return parents;
+}
+
+std::vector<int> roots_of_scene(const Model& model, const std::vector<int>& parents) {
+  const tinygltf::Model& data = model.data();
+  std::vector<int> roots;
+  if (data.scenes.empty()) {
+    if (!model.options().scene.empty()) {
+      model.fail("scene '" + model.options().scene + "' is asked for, but the file has no scenes");
+    }
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+      if (parents[i] < 0) {
+        roots.push_back(static_cast<int>(i));
+      }
+    }
+    return roots;
+  }
+  int index = data.defaultScene == -1 ? 0 : data.defaultScene;
+  if (!model.options().scene.empty()) {
+    std::vector<std::string> names;
+    for (const tinygltf::Scene& scene : data.scenes) {
+      names.push_back(scene.name);
+    }
+    index = chosen_index(model, model.options().scene, "scene", names);
+  }
+  roots = model.at(data.scenes, index, "scene", "the file").nodes;
+  std::vector<char> seen(data.nodes.size(), 0);
+  for (const int root : roots) {
+    static_cast<void>(model.at(data.nodes, root, "node", "scene " + std::to_string(index)));
+    if (parents[static_cast<std::size_t>(root)] >= 0 || seen[static_cast<std::size_t>(root)] != 0) {
+      model.fail(name_of_node(root) + " is listed in scene " + std::to_string(index) +
+                 " twice, or although it is a child of another node");
+    }
+    seen[static_cast<std::size_t>(root)] = 1;
+  }
+  return roots;
+}
+
+}  // namespace
+
+std::vector<PlacedNode> place_nodes(const Model& model) {
+  const std::vector<int> roots = roots_of_scene(model, find_parents(model));
+  std::vector<PlacedNode> placed;
+  // A stack of our own: the depth of the hierarchy is the file's choice. Pushed in reverse to keep order.
+  std::vector<PlacedNode> open;
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
+    open.push_back({*root, glm::dmat4(1.0)});
+  }
+  while (!open.empty()) {
+    PlacedNode here = open.back();
+    open.pop_back();
+    here.world = here.world * local_transform(model, here.node);
+    if (!is_finite(here.world)) {
+      model.fail(name_of_node(here.node) + ": its transform to world space is not finite");
+    }
+    placed.push_back(here);
+    const std::vector<int>& children = model.data().nodes[static_cast<std::size_t>(here.node)].children;
+    for (auto child = children.rbegin(); child != children.rend(); ++child) {
+      open.push_back({*child, here.world});
+    }
+  }
+  return placed;
+}
+
+int chosen_index(const Model& model, const std::string& choice, const char* kind,
+                 const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == choice) {
+      return static_cast<int>(i);
+    }
+  }
+  int index = -1;
+  const char* end = choice.data() + choice.size();
+  const auto [stop, error] = std::from_chars(choice.data(), end, index);
+  if (error != std::errc{} || stop != end || index < 0 || static_cast<std::size_t>(index) >= names.size()) {
+    model.fail("it has no " + std::string(kind) + " '" + choice + "'" + sim::did_you_mean(choice, names) +
+               "; there are " + std::to_string(names.size()) + ", to be chosen by name or by number from 0");
+  }
+  return index;
+}
+
+}  // namespace marti::scenes::gltf

@@ -1,0 +1,37 @@
+// Scenes made by a recipe: the Standard Procedural Databases of E. Haines (A Proposal for Standard
+// Graphics Environments, IEEE CG&A 7(11), 1987; recipes and colours of SPD 3.14), with their cameras,
+// lights, materials and background.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "scenes/scene.h"
+
+namespace marti::scenes {
+
+/// What follows the size in a name, as `pot` in "teapot:12:pot".
+struct ProceduralVariant {
+  std::string_view name;
+  std::string_view meaning;
+};
+
+struct ProceduralScene {
+  std::string_view name;
+  std::uint32_t minimum_size;
+  std::uint32_t maximum_size;
+  std::uint32_t default_size;
+  std::string_view meaning;  ///< what it shows and what the size n does
+  std::span<const ProceduralVariant> variants;
+};
+
+/// Every procedural scene, in alphabetical order.
+[[nodiscard]] std::span<const ProceduralScene> procedural_scenes();
+
+/// Makes the scene of `spec` = name[:size[:variant]], for example "teapot", "gears:4", "teapot:12:pot".
+/// The same spec gives the same bytes. Throws UserError for an unknown name or variant (naming the nearest
+/// valid one) and for a size that is no whole number or outside its range.
+[[nodiscard]] Scene make_procedural(std::string_view spec);
+
+}  // namespace marti::scenes

@@ -1,0 +1,98 @@
+// The scene database: what every loader and generator produces and everything else reads.
+// World space, right-handed, lengths in the scene's own unit, colours linear RGB.
+// A Scene that left a loader is valid: finite positions, indices in range, materials that exist.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "scenes/camera.h"
+
+namespace marti::scenes {
+
+inline constexpr std::uint32_t no_texture = 0xffffffffU;
+
+/// One triangle of the intersection database. Its index in Scene::triangles is its primitive id.
+struct Triangle {
+  std::array<std::uint32_t, 3> vertex{};  ///< indices into Scene::positions (and normals, uvs)
+  std::uint32_t material = 0;             ///< index into Scene::materials
+  std::uint32_t polygon = 0;              ///< the source polygon it was cut from, counted from 0
+};
+
+/// Whitted's material with the weights of the Standard Procedural Databases.
+/// Shaded colour = emission + ambient + sum over visible lights (color * diffuse * n.l + highlight *
+/// (n.h)^shininess) * light + reflection * reflected ray + transmission * refracted ray.
+struct Material {
+  std::string name;
+  glm::dvec3 color{0.8};           ///< linear, 0 to 1; multiplied by the texture where there is one
+  glm::dvec3 specular_color{1.0};  ///< tint of highlight and reflection (white for dielectrics)
+  glm::dvec3 emission{0.0};
+  double diffuse = 1.0;       ///< Kd, 0 to 1
+  double reflection = 0.0;    ///< weight of the reflected ray, 0 to 1
+  double transmission = 0.0;  ///< weight of the refracted ray, 0 to 1
+  double ior = 1.0;           ///< index of refraction, at least 1
+  double highlight = 0.0;     ///< weight of the lights' highlights, 0 to 1
+  double shininess = 1.0;     ///< exponent of the highlight
+  std::uint32_t texture = no_texture;
+};
+
+/// 8-bit RGBA texels as decoded, rows from the top; `srgb` says whether sampling linearises them.
+struct Texture {
+  std::string name;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  bool srgb = true;
+  bool repeat_u = true;
+  bool repeat_v = true;
+  std::vector<std::array<std::uint8_t, 4>> texels;
+};
+
+enum class LightKind : std::uint8_t { point, directional, spot };
+
+struct Light {
+  LightKind kind = LightKind::point;
+  glm::dvec3 position{0.0};
+  glm::dvec3 direction{0.0, 0.0, -1.0};  ///< the way the light shines, unit length (directional, spot)
+  glm::dvec3 color{1.0};                 ///< colour times intensity
+  bool inverse_square = false;           ///< glTF punctual lights fall off; the SPD's do not
+  double range = 0.0;                    ///< 0: unlimited
+  double cos_inner_cone = 1.0;
+  double cos_outer_cone = 0.70710678118654752;
+};
+
+/// Everything a frame needs. `normals` and `uvs` are empty or as long as `positions`; a zero normal
+/// means "use the triangle's own".
+struct Scene {
+  std::string name;
+  std::vector<glm::dvec3> positions;
+  std::vector<glm::dvec3> normals;
+  std::vector<glm::dvec2> uvs;
+  std::vector<Triangle> triangles;
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  std::vector<Light> lights;
+  Camera camera;
+  glm::dvec3 background{0.0};
+  glm::dvec3 ambient{0.0};         ///< ambient light, multiplied by a material's colour and diffuse weight
+  std::uint64_t polygons = 0;      ///< polygons of the source, before triangulation
+  std::vector<std::string> notes;  ///< what the loader chose or left out, one sentence each
+};
+
+/// Axis-aligned bounds. Empty (lo > hi) until the first point.
+struct Bounds {
+  glm::dvec3 lo;
+  glm::dvec3 hi;
+  Bounds();
+  void include(const glm::dvec3& point);
+  [[nodiscard]] bool empty() const { return lo.x > hi.x; }
+};
+
+/// The bounds of the triangles' vertices (unreferenced vertices do not count).
+[[nodiscard]] Bounds bounds_of(const Scene& scene);
+
+}  // namespace marti::scenes

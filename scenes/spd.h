@@ -1,0 +1,49 @@
+// Inside of the folder: the recipes behind make_procedural, and what they share.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "scenes/scene.h"
+
+namespace marti::scenes::spd {
+
+/// The NFF highlight exponent of a lobe that falls to half its strength `degrees` off the mirror direction:
+/// ln 0.5 / ln cos(angle); 100,000 for 0 degrees.
+[[nodiscard]] double shininess_of_angle(double degrees);
+
+/// Point lights of the intensity sqrt(L) / (2 L) each for L lights, and as much ambient light.
+void set_lights(Scene& scene, std::span<const glm::dvec3> positions);
+
+/// A scene with the camera given, the SPD's field of 45 degrees and its sky-blue background.
+[[nodiscard]] Scene make_scene(const glm::dvec3& eye, const glm::dvec3& at, const glm::dvec3& up);
+
+/// Adds vertices, giving equal positions (with equal normals) one index, so that neighbouring triangles
+/// share vertices bit for bit.
+class VertexWelder {
+ public:
+  explicit VertexWelder(Scene& scene) : scene_(scene) {}
+  /// A vertex without a normal of its own.
+  std::uint32_t add(const glm::dvec3& position) { return add(position, glm::dvec3(0.0)); }
+  /// Normals that differ by at most 1e-9 count as equal: rounding, not a crease.
+  std::uint32_t add(const glm::dvec3& position, const glm::dvec3& normal);
+
+ private:
+  struct Hash {
+    std::size_t operator()(const glm::dvec3& p) const;
+  };
+  Scene& scene_;
+  std::unordered_map<glm::dvec3, std::vector<std::uint32_t>, Hash> at_;
+};
+
+[[nodiscard]] Scene make_gears(std::uint32_t n);
+[[nodiscard]] Scene make_teapot(std::uint32_t n, bool with_board);
+[[nodiscard]] Scene make_tetra(std::uint32_t n);
+
+}  // namespace marti::scenes::spd

@@ -1,0 +1,45 @@
+// Making and sampling textures. Files are decoded by the caller: this library links no image codec, it
+// takes a callback instead.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "scenes/scene.h"
+
+namespace marti::scenes {
+
+/// Decodes an image file held in memory (PNG, JPEG, ...). `name` is for messages only. Throws UserError
+/// when it cannot; only the size and the texels of what it returns are used.
+using ImageDecoder = std::function<Texture(std::span<const std::byte> file, std::string_view name)>;
+
+/// Encodes a texture as a PNG file in memory, without loss.
+using ImageEncoder = std::function<std::vector<std::byte>(const Texture& texture)>;
+
+/// A texture of 8-bit samples with any number of channels, interleaved, rows from the top: 1 is grey,
+/// 2 grey and alpha, 3 colour, 4 colour and alpha; further channels are dropped, a missing alpha is 255.
+/// Throws UserError when a size is 0 or above 65,536, or `samples` has the wrong length.
+[[nodiscard]] Texture texture_from_samples(std::string_view name, std::uint32_t width, std::uint32_t height,
+                                           std::uint32_t channels, std::span<const std::uint8_t> samples);
+
+struct TextureSample {
+  glm::dvec3 color{0.0};    ///< linear, 0 to 1
+  std::uint32_t texel = 0;  ///< which texel was read: row * width + column
+};
+
+/// The texel nearest to `uv`. (0, 0) is the upper left corner of the image, u to the right, v downwards;
+/// outside 0..1 the texture repeats or its edge goes on, as it says. A uv that is not finite reads as 0.
+/// The texture must have texels. One sample reads one texel, so that the log of a ray holds one reference.
+[[nodiscard]] TextureSample sample_nearest(const Texture& texture, const glm::dvec2& uv);
+
+/// The linear value of an sRGB-encoded byte (IEC 61966-2-1).
+[[nodiscard]] double srgb_to_linear(std::uint8_t encoded);
+
+}  // namespace marti::scenes

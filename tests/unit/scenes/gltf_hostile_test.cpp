@@ -1,0 +1,487 @@
+// Broken and malicious glTF files: each must be refused with its path and a reason; none may crash or hang.
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "gltf_file.h"
+#include "scenes/gltf.h"
+#include "scenes/gltf_export.h"
+#include "scenes/procedural.h"
+#include "sim/error.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/support/user_error.h"
+
+namespace marti::scenes {
+namespace {
+
+using nlohmann::json;
+using testing::GltfFile;
+
+struct Fault {
+  const char* name;
+  const char* reason;  ///< must occur in the message
+  std::function<void(GltfFile&)> damage;
+};
+
+json light(const json& properties) {
+  return {{"KHR_lights_punctual", {{"lights", json::array({properties})}}}};
+}
+
+void give_light(GltfFile& file, const json& properties) {
+  file.json["extensions"] = light(properties);
+  file.json["nodes"][0]["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}}};
+}
+
+void give_camera(GltfFile& file, double fov) {
+  file.json["cameras"] =
+      json::array({{{"type", "perspective"}, {"perspective", {{"yfov", fov}, {"znear", 0.1}}}}});
+  file.json["nodes"][0]["camera"] = 0;
+}
+
+void give_sparse(GltfFile& file, int count, const std::vector<std::uint8_t>& where) {
+  const int indices = file.add_view(where);
+  const int values = file.add_view<float>({0, 0, 0});
+  file.json["accessors"][0]["sparse"] = {{"count", count},
+                                         {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                                         {"values", {{"bufferView", values}}}};
+}
+
+json deep(int levels) {
+  json inner = 1;
+  for (int i = 0; i < levels; ++i) {
+    inner = json::array({inner});
+  }
+  return inner;
+}
+
+const std::vector<Fault>& faults() {
+  static const std::vector<Fault> list = {
+      {"index out of range", "index 4 is out of range",
+       [](GltfFile& f) {
+         f.primitive()["indices"] = f.add_indices({0, 1, 4});
+       }},
+      {"restart index", "65535",
+       [](GltfFile& f) {
+         f.primitive()["indices"] = f.add_indices({0, 1, 65535});
+       }},
+      {"indices not a multiple of three", "do not make triangles",
+       [](GltfFile& f) {
+         f.primitive()["indices"] = f.add_indices({0, 1, 2, 3});
+       }},
+      {"strip of two", "do not make triangles",
+       [](GltfFile& f) {
+         f.primitive()["mode"] = 5;
+         f.primitive()["indices"] = f.add_indices({0, 1});
+       }},
+      {"no such primitive mode", "mode 7", [](GltfFile& f) { f.primitive()["mode"] = 7; }},
+      {"signed indices", "unsigned scalars",
+       [](GltfFile& f) {
+         f.primitive()["indices"] = f.add_accessor<std::int16_t>({0, 1, 2}, 5122, "SCALAR", 1);
+       }},
+      {"float indices", "unsigned scalars",
+       [](GltfFile& f) {
+         f.primitive()["indices"] = f.add_accessor<float>({0, 1, 2}, 5126, "SCALAR", 1);
+       }},
+      {"vector indices", "unsigned scalars",
+       [](GltfFile& f) {
+         f.primitive()["indices"] = f.add_accessor<std::uint16_t>({0, 1, 2, 3}, 5123, "VEC2", 2);
+       }},
+      {"missing indices accessor", "out of bounds", [](GltfFile& f) { f.primitive()["indices"] = 99; }},
+      {"missing position accessor", "accessor 99",
+       [](GltfFile& f) { f.primitive()["attributes"]["POSITION"] = 99; }},
+      {"two-dimensional positions", "wrong type",
+       [](GltfFile& f) { f.json["accessors"][0]["type"] = "VEC2"; }},
+      {"matrix positions", "wrong type", [](GltfFile& f) { f.json["accessors"][0]["type"] = "MAT2"; }},
+      {"double positions", "component type 5130",
+       [](GltfFile& f) { f.json["accessors"][0]["componentType"] = 5130; }},
+      {"unknown component type", "componentType",
+       [](GltfFile& f) { f.json["accessors"][0]["componentType"] = 7; }},
+      {"unknown accessor type", "type", [](GltfFile& f) { f.json["accessors"][0]["type"] = "VEC9"; }},
+      {"accessor beyond its view", "do not fit", [](GltfFile& f) { f.json["accessors"][0]["count"] = 5; }},
+      {"accessor of nothing", "0 elements", [](GltfFile& f) { f.json["accessors"][0]["count"] = 0; }},
+      {"count that overflows", "elements",
+       [](GltfFile& f) { f.json["accessors"][0]["count"] = 0x5555555555555556ULL; }},
+      {"index count that overflows", "elements",
+       [](GltfFile& f) { f.json["accessors"][1]["count"] = 0x8000000000000001ULL; }},
+      {"offset that overflows", "do not fit",
+       [](GltfFile& f) { f.json["accessors"][0]["byteOffset"] = 0xfffffffffffffff0ULL; }},
+      {"offset beyond the view", "do not fit",
+       [](GltfFile& f) { f.json["accessors"][0]["byteOffset"] = 12; }},
+      {"negative count", "positive", [](GltfFile& f) { f.json["accessors"][0]["count"] = -4; }},
+      {"absurd count without a view", "no buffer view",
+       [](GltfFile& f) {
+         f.json["accessors"][0].erase("bufferView");
+         f.json["accessors"][0]["count"] = 30'000'000;
+       }},
+      {"missing buffer view", "buffer view 77",
+       [](GltfFile& f) { f.json["accessors"][0]["bufferView"] = 77; }},
+      {"view beyond its buffer", "too short",
+       [](GltfFile& f) { f.json["bufferViews"][0]["byteLength"] = 1'000'000; }},
+      {"view that overflows", "too short",
+       [](GltfFile& f) { f.json["bufferViews"][0]["byteOffset"] = 0xffffffffffffffffULL; }},
+      {"missing buffer", "buffer 5", [](GltfFile& f) { f.json["bufferViews"][0]["buffer"] = 5; }},
+      {"negative buffer", "buffer -1", [](GltfFile& f) { f.json["bufferViews"][0]["buffer"] = -1; }},
+      {"stride below the element", "stride of 4",
+       [](GltfFile& f) { f.json["bufferViews"][0]["byteStride"] = 4; }},
+      {"odd stride", "byteStride", [](GltfFile& f) { f.json["bufferViews"][0]["byteStride"] = 13; }},
+      {"huge stride", "byteStride",
+       [](GltfFile& f) { f.json["bufferViews"][0]["byteStride"] = 4'000'000'000U; }},
+      {"stride that runs out", "do not fit",
+       [](GltfFile& f) { f.json["bufferViews"][0]["byteStride"] = 16; }},
+      {"buffer longer than the data", "byteLength",
+       [](GltfFile& f) {
+         f.json["buffers"] = json::array({{{"byteLength", 1'000'000}}});
+       }},
+      {"buffer of nothing", "",
+       [](GltfFile& f) {
+         f.json["buffers"] = json::array({{{"byteLength", 0}}});
+       }},
+      {"missing buffer file", "not-there.bin",
+       [](GltfFile& f) {
+         f.json["buffers"] = json::array({{{"byteLength", 4}, {"uri", "not-there.bin"}}});
+       }},
+      {"buffer from a device", "File not found",
+       [](GltfFile& f) {
+         f.json["buffers"] = json::array({{{"byteLength", 4}, {"uri", "../../../../../../../dev/zero"}}});
+       }},
+      {"broken data URI", "uri",
+       [](GltfFile& f) {
+         f.json["buffers"] =
+             json::array({{{"byteLength", 4}, {"uri", "data:application/octet-stream;base64,####"}}});
+       }},
+      {"sparse index out of range", "sparse index 9", [](GltfFile& f) { give_sparse(f, 1, {9}); }},
+      {"more sparse values than elements", "sparse elements", [](GltfFile& f) { give_sparse(f, 50, {0}); }},
+      {"negative sparse count", "sparse elements", [](GltfFile& f) { give_sparse(f, -1, {0}); }},
+      {"sparse data too short", "do not fit",
+       [](GltfFile& f) {
+         give_sparse(f, 2, {0, 1});
+       }},
+      {"sparse without values", "values",
+       [](GltfFile& f) {
+         give_sparse(f, 1, {0});
+         f.json["accessors"][0]["sparse"].erase("values");
+       }},
+      {"normals of another number", "normals",
+       [](GltfFile& f) {
+         f.primitive()["attributes"]["NORMAL"] = f.add_positions({0, 0, 1});
+       }},
+      {"missing mesh", "mesh 3", [](GltfFile& f) { f.json["nodes"][0]["mesh"] = 3; }},
+      {"missing material", "material 2", [](GltfFile& f) { f.primitive()["material"] = 2; }},
+      {"missing child", "node 8", [](GltfFile& f) { f.json["nodes"][0]["children"] = {8}; }},
+      {"own child", "recursive",
+       [](GltfFile& f) {
+         f.json["nodes"].push_back({{"children", {1}}});
+       }},
+      {"own child as root", "child of another",
+       [](GltfFile& f) {
+         f.json["nodes"] = json::array({{{"mesh", 0}, {"children", {1}}}, {{"mesh", 0}}});
+         f.json["scenes"][0]["nodes"] = {0, 1};
+       }},
+      {"cycle of three", "recursive",
+       [](GltfFile& f) {
+         for (const int child : {2, 3, 1}) {
+           f.json["nodes"].push_back({{"children", {child}}});
+         }
+       }},
+      {"two parents", "child of two",
+       [](GltfFile& f) {
+         f.json["nodes"] = json::array({{{"children", {2}}}, {{"children", {2}}}, {{"mesh", 0}}});
+         f.json["scenes"][0]["nodes"] = {0, 1};
+       }},
+      {"twice a child", "child of two",
+       [](GltfFile& f) {
+         f.json["nodes"] = json::array({{{"children", {1, 1}}}, {{"mesh", 0}}});
+       }},
+      {"twice a root", "twice",
+       [](GltfFile& f) {
+         f.json["scenes"][0]["nodes"] = {0, 0};
+       }},
+      {"missing root", "node 12", [](GltfFile& f) { f.json["scenes"][0]["nodes"] = {12}; }},
+      {"missing scene", "scene 6", [](GltfFile& f) { f.json["scene"] = 6; }},
+      {"short matrix", "16 finite",
+       [](GltfFile& f) {
+         f.json["nodes"][0]["matrix"] = {1, 2, 3};
+       }},
+      {"projecting matrix", "last row",
+       [](GltfFile& f) { f.json["nodes"][0]["matrix"] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; }},
+      {"short rotation", "4 finite",
+       [](GltfFile& f) {
+         f.json["nodes"][0]["rotation"] = {0, 1};
+       }},
+      {"zero rotation", "quaternion",
+       [](GltfFile& f) {
+         f.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
+       }},
+      {"transform that overflows", "not finite",
+       [](GltfFile& f) {
+         f.json["nodes"] = json::array(
+             {{{"scale", {1e200, 1, 1}}, {"children", {1}}}, {{"scale", {1e200, 1, 1}}, {"mesh", 0}}});
+       }},
+      {"all positions too large", "finite positions",
+       [](GltfFile& f) {
+         f.json["nodes"][0]["translation"] = {1e200, 0, 0};
+       }},
+      {"negative colour", "base colour",
+       [](GltfFile& f) {
+         f.json["materials"] =
+             json::array({{{"pbrMetallicRoughness", {{"baseColorFactor", {-1, 0, 0, 1}}}}}});
+         f.primitive()["material"] = 0;
+       }},
+      {"short colour", "baseColorFactor",
+       [](GltfFile& f) {
+         f.json["materials"] = json::array({{{"pbrMetallicRoughness", {{"baseColorFactor", {1}}}}}});
+         f.primitive()["material"] = 0;
+       }},
+      {"index of refraction below one", "refraction",
+       [](GltfFile& f) {
+         f.json["materials"] = json::array({{{"extensions", {{"KHR_materials_ior", {{"ior", 0.5}}}}}}});
+         f.primitive()["material"] = 0;
+       }},
+      {"missing texture", "texture 4",
+       [](GltfFile& f) {
+         f.json["materials"] =
+             json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 4}}}}}}});
+         f.primitive()["material"] = 0;
+       }},
+      {"texture without an image", "image -1",
+       [](GltfFile& f) {
+         f.json["materials"] =
+             json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
+         f.json["textures"] = json::array({json::object()});
+         f.primitive()["material"] = 0;
+       }},
+      {"image outside its buffer", "too short",
+       [](GltfFile& f) {
+         f.json["materials"] =
+             json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
+         f.json["textures"] = json::array({{{"source", 0}}});
+         f.json["images"] = json::array({{{"bufferView", 2}, {"mimeType", "image/png"}}});
+         f.json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 1U << 30}, {"byteLength", 1U << 30}});
+         f.primitive()["material"] = 0;
+       }},
+      {"negative light", "intensity",
+       [](GltfFile& f) {
+         give_light(f, {{"type", "point"}, {"intensity", -1}});
+       }},
+      {"infinite light", "intensity",
+       [](GltfFile& f) {
+         give_light(f, {{"type", "point"}, {"intensity", 1e300}});
+       }},
+      {"unknown light", "area",
+       [](GltfFile& f) {
+         give_light(f, {{"type", "area"}});
+       }},
+      {"light colour of two", "3 numbers",
+       [](GltfFile& f) {
+         give_light(f, {{"type", "point"}, {"color", {1, 1}}});
+       }},
+      {"inverted cone", "inner cone",
+       [](GltfFile& f) {
+         give_light(f, {{"type", "spot"}, {"spot", {{"innerConeAngle", 1.0}, {"outerConeAngle", 0.5}}}});
+       }},
+      {"missing light", "light 5",
+       [](GltfFile& f) {
+         give_light(f, {{"type", "point"}});
+         f.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 5;
+       }},
+      {"absurd light index", "no light",
+       [](GltfFile& f) {
+         give_light(f, {{"type", "point"}});
+         f.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 1e30;
+       }},
+      {"sun without a direction", "no direction",
+       [](GltfFile& f) {
+         give_light(f, {{"type", "directional"}});
+         f.json["nodes"][0]["scale"] = {1, 1, 0};
+       }},
+      {"camera without an angle", "field of view", [](GltfFile& f) { give_camera(f, 0.0); }},
+      {"camera that sees behind", "field of view", [](GltfFile& f) { give_camera(f, 4.0); }},
+      {"missing camera", "camera 3", [](GltfFile& f) { f.json["nodes"][0]["camera"] = 3; }},
+      {"compressed geometry", "KHR_draco_mesh_compression",
+       [](GltfFile& f) { f.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }},
+      {"compressed buffers", "EXT_meshopt_compression",
+       [](GltfFile& f) { f.json["extensionsRequired"] = {"EXT_meshopt_compression"}; }},
+      {"no triangles", "no triangles", [](GltfFile& f) { f.primitive()["mode"] = 0; }},
+      {"no nodes", "no triangles", [](GltfFile& f) { f.json["scenes"][0]["nodes"] = json::array(); }},
+      {"no version", "asset", [](GltfFile& f) { f.json.erase("asset"); }},
+      {"nested extras", "nested deeper", [](GltfFile& f) { f.json["extras"] = deep(200); }},
+      {"nested extension", "nested deeper",
+       [](GltfFile& f) { f.json["nodes"][0]["extensions"]["X"]["y"] = deep(300); }},
+      {"meshes that are no objects", "object",
+       [](GltfFile& f) {
+         f.json["meshes"] = {1, 2};
+       }},
+      {"primitive without attributes", "attributes", [](GltfFile& f) { f.primitive().erase("attributes"); }},
+  };
+  return list;
+}
+
+TEST(Hostile, EveryFaultIsRefusedWithPathAndReason) {
+  const test::TemporaryDirectory directory;
+  EXPECT_GE(faults().size(), 25U);
+  for (const Fault& fault : faults()) {
+    SCOPED_TRACE(fault.name);
+    GltfFile file = GltfFile::square();
+    fault.damage(file);
+    const auto path = file.write_glb(directory.path(), "hostile.glb");
+    const std::string message = test::user_error_of([&] { static_cast<void>(load_gltf(path, {}, {})); });
+    EXPECT_EQ(message.rfind(path.string() + ": ", 0), 0U) << message;
+    EXPECT_NE(message.find(fault.reason), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+TEST(Hostile, FilesThatAreNoGltf) {
+  const test::TemporaryDirectory directory;
+  const auto message = [&](const std::string& name) {
+    return test::user_error_of([&] { static_cast<void>(load_gltf(directory.path() / name, {}, {})); });
+  };
+  EXPECT_NE(message("absent.glb").find("absent.glb"), std::string::npos);
+  std::filesystem::create_directory(directory.path() / "folder.glb");
+  EXPECT_NE(message("folder.glb").find("folder.glb"), std::string::npos);
+  const std::string good = GltfFile::square().glb();
+  const std::vector<std::string> contents = {"",       "g",    "glTF",        "{}",
+                                             "[]",     "null", "{\"asset\":", "\xff",
+                                             "glTF\2", "{{{{", "not a",       std::string(100, '\0')};
+  for (const std::string& content : contents) {
+    testing::write_bytes(directory.path() / "x.gltf", content);
+    EXPECT_EQ(message("x.gltf").rfind((directory.path() / "x.gltf").string(), 0), 0U) << message("x.gltf");
+  }
+  for (std::size_t length = 0; length < good.size(); length += 7) {
+    testing::write_bytes(directory.path() / "cut.glb", good.substr(0, length));
+    EXPECT_EQ(message("cut.glb").rfind((directory.path() / "cut.glb").string(), 0), 0U) << length;
+  }
+  testing::write_bytes(directory.path() / "deep.gltf", std::string(1'000'000, '['));
+  EXPECT_NE(message("deep.gltf").find("nested deeper"), std::string::npos);
+}
+
+TEST(Hostile, LimitsHold) {
+  const test::TemporaryDirectory directory;
+  GltfFile file = GltfFile::square();
+  file.json["nodes"] = json::array();
+  file.json["scenes"][0]["nodes"] = json::array();
+  for (int i = 0; i < 50; ++i) {
+    file.json["nodes"].push_back({{"mesh", 0}});
+    file.json["scenes"][0]["nodes"].push_back(i);
+  }
+  const auto path = file.write_glb(directory.path(), "many.glb");
+  const auto message = [&](const GltfOptions& options) {
+    return test::user_error_of([&] { static_cast<void>(load_gltf(path, options, {})); });
+  };
+  EXPECT_EQ(load_gltf(path, {}, {}).triangles.size(), 100U);
+  GltfOptions options;
+  options.max_triangles = 200;
+  EXPECT_EQ(message(options), "no UserError") << "100 triangles and 200 vertices are just accepted";
+  options.max_triangles = 199;
+  EXPECT_NE(message(options).find("more than 199"), std::string::npos);
+  options = {};
+  options.max_file_bytes = 100;
+  EXPECT_NE(message(options).find("many.glb"), std::string::npos);
+  options = {};
+  options.frame = 1;
+  EXPECT_NE(message(options).find("frame 1"), std::string::npos);
+}
+
+TEST(Hostile, ManyInstancesOfManyPointsEnd) {
+  const test::TemporaryDirectory directory;
+  GltfFile file = GltfFile::square();
+  const json points = {{"attributes", {{"POSITION", 0}}}, {"mode", 0}};
+  file.json["meshes"][0]["primitives"] = std::vector<json>(20'000, points);
+  file.json["nodes"] = std::vector<json>(20'000, {{"mesh", 0}});
+  file.json["scenes"] = json::array();
+  const auto path = file.write_glb(directory.path(), "points.glb");
+  const std::string message = test::user_error_of([&] { static_cast<void>(load_gltf(path, {}, {})); });
+  EXPECT_NE(message.find("primitives"), std::string::npos) << message;
+}
+
+TEST(Hostile, DeepHierarchiesNeedNoStack) {
+  const test::TemporaryDirectory directory;
+  GltfFile file = GltfFile::square();
+  constexpr int depth = 100'000;
+  file.json["nodes"] = json::array();
+  for (int i = 0; i < depth; ++i) {
+    file.json["nodes"].push_back({{"children", {i + 1}}});
+  }
+  file.json["nodes"].push_back({{"mesh", 0}});
+  EXPECT_EQ(load_gltf(file.write_glb(directory.path(), "deep.glb"), {}, {}).triangles.size(), 2U);
+}
+
+TEST(Hostile, FlippedBytesEitherLoadOrAreRefused) {
+  const test::TemporaryDirectory directory;
+  export_glb(make_procedural("teapot:2"), directory.path() / "good.glb");
+  const std::string good = testing::read_bytes(directory.path() / "good.glb");
+  const auto path = directory.path() / "flipped.glb";
+  int loaded = 0;
+  int refused = 0;
+  rc::check("no flip of bytes crashes the loader", [&] {
+    std::string bytes = good;
+    const int flips = *rc::gen::inRange(1, 6);
+    // Half of the flips hit the JSON, whose length is the fourth word.
+    std::uint32_t json_length = 0;
+    std::memcpy(&json_length, good.data() + 12, 4);
+    for (int i = 0; i < flips; ++i) {
+      const auto limit =
+          *rc::gen::arbitrary<bool>() ? 20 + json_length : static_cast<std::uint32_t>(good.size());
+      const auto at = *rc::gen::inRange<std::uint32_t>(0, limit);
+      bytes[at] = static_cast<char>(static_cast<unsigned char>(bytes[at]) ^ *rc::gen::inRange(1, 256));
+    }
+    testing::write_bytes(path, bytes);
+    try {
+      const Scene scene = load_gltf(path, {}, {});
+      for (const Triangle& triangle : scene.triangles) {
+        for (const std::uint32_t vertex : triangle.vertex) {
+          RC_ASSERT(vertex < scene.positions.size());
+        }
+        RC_ASSERT(triangle.material < scene.materials.size());
+      }
+      for (const glm::dvec3& p : scene.positions) {
+        RC_ASSERT(std::abs(p.x) <= 1e30 && std::abs(p.y) <= 1e30 && std::abs(p.z) <= 1e30);
+      }
+      ++loaded;
+    } catch (const sim::UserError& error) {
+      RC_ASSERT(std::string(error.what()).rfind(path.string() + ": ", 0) == 0U);
+      ++refused;
+    }
+  });
+  EXPECT_GT(loaded + refused, 0);
+}
+
+TEST(Hostile, ChangedNumbersEitherLoadOrAreRefused) {
+  // Whole numbers of the JSON replaced by odd ones: reaches deeper than flipped bytes.
+  const test::TemporaryDirectory directory;
+  GltfFile file = GltfFile::square();
+  give_sparse(file, 1, {1});
+  give_camera(file, 1.0);
+  file.json["materials"] = json::array({{{"extensions", {{"KHR_materials_ior", {{"ior", 1.5}}}}}}});
+  file.primitive()["material"] = 0;
+  const json flat = file.json.flatten();
+  std::vector<std::string> numbers;
+  for (const auto& [key, value] : flat.items()) {
+    if (value.is_number()) {
+      numbers.push_back(key);
+    }
+  }
+  const std::vector<json> odd = {
+      -1,          0,    1,     2,     3,    5,      255,  65536, 2147483647,           2147483648U,
+      4294967295U, 1e18, -1e18, 1e308, -0.0, 1e-320, 5126, 5121,  0xffffffffffffffffULL};
+  for (const std::string& key : numbers) {
+    for (const json& value : odd) {
+      GltfFile changed = file;
+      changed.json[json::json_pointer(key)] = value;
+      const auto path = changed.write_glb(directory.path(), "odd.glb");
+      try {
+        const Scene scene = load_gltf(path, {}, {});
+        EXPECT_FALSE(scene.triangles.empty());
+      } catch (const sim::UserError& error) {
+        EXPECT_EQ(std::string(error.what()).rfind(path.string() + ": ", 0), 0U) << error.what();
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace marti::scenes
