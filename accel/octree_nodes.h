@@ -1,0 +1,76 @@
+// The octree as its walks read it: compact nodes, and leaves' triangles gathered in fours.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <vector>
+
+#include "accel/triangles.h"
+#include "scenes/scene.h"
+
+namespace marti::accel {
+
+/// An array that begins on a cache line.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t alignment{64};
+
+  CacheLineAllocator() = default;
+  template <class U>
+  explicit CacheLineAllocator(const CacheLineAllocator<U>& /*other*/) {}
+
+  [[nodiscard]] T* allocate(std::size_t n) {
+    return static_cast<T*>(::operator new(n * sizeof(T), alignment));
+  }
+  void deallocate(T* p, std::size_t /*n*/) { ::operator delete(p, alignment); }
+  bool operator==(const CacheLineAllocator&) const = default;
+};
+template <class T>
+using CacheAligned = std::vector<T, CacheLineAllocator<T>>;
+
+/// Eight bytes. Branch: `first` is its first child's number, the low eight bits of `info` say which
+/// children are not empty leaves. Leaf: `first` is its first entry, `info` the number of entries | leaf_bit.
+struct OctreeNode {
+  static constexpr std::uint32_t leaf_bit = 0x80000000U;
+
+  std::uint32_t first = 0;
+  std::uint32_t info = 0;
+
+  [[nodiscard]] bool leaf() const { return (info & leaf_bit) != 0; }
+  [[nodiscard]] std::uint32_t entries() const { return info & ~leaf_bit; }
+};
+
+/// Nodes are stored from this index on: the eight children of a branch, which begin at 1 + 8k, then fill
+/// one cache line.
+inline constexpr std::size_t node_offset = 7;
+
+/// Four triangles side by side: coordinate[3 * corner + axis][lane]. A leaf's last pack repeats its last
+/// triangle in the lanes left over, which changes no result.
+struct alignas(64) TrianglePack {
+  std::array<std::array<double, 4>, 9> coordinate;
+  std::array<std::uint32_t, 4> id;
+};
+
+/// The root box and what follows from it.
+struct OctreeFrame {
+  scenes::Bounds box;  ///< enlarged; see Octree::bounds
+  double delta = 0.0;  ///< see octree.h
+  double far = 0.0;    ///< an origin farther than this from `center` on some axis takes the slow walk
+  glm::dvec3 center{0.0};
+  double largest_inverse = 0.0;  ///< cap on 1 / |direction component|, so that no plane's parameter overflows
+};
+
+/// What a walk needs, by reference.
+struct OctreeView {
+  const OctreeNode* nodes;   ///< nodes[0] is the root
+  const OctreeNode* packed;  ///< the same, with a leaf's first pack as its `first`; null without packs
+  const TrianglePack* packs;
+  const std::uint32_t* entries;  ///< triangle ids
+  const TriangleSet* triangles;
+  const OctreeFrame* frame;
+};
+
+}  // namespace marti::accel

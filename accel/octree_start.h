@@ -1,0 +1,98 @@
+// How a ray meets the root of the octree: what all but the slow walk begin with.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "accel/counted.h"
+#include "accel/octree_nodes.h"
+#include "accel/ray.h"
+#include "accel/watertight.h"
+
+namespace marti::accel {
+
+/// The ray's parameters at one node: at its planes nearer (s0) and farther (s1) along each axis, and where
+/// the walk enters and leaves it.
+template <class Real>
+struct NodeSpan {
+  std::array<Real, 3> s0;
+  std::array<Real, 3> s1;
+  Real in;
+  Real out;
+  std::uint32_t node = 0;
+};
+
+/// A ray at the root.
+template <class Real>
+struct WalkStart {
+  NodeSpan<Real> root;
+  IntegerOf<Real> mask = 0U;  ///< bit a: the direction is negative along axis a
+  Real slack{0.0};            ///< 4 delta as a parameter
+  bool hits_root = false;
+  bool far = false;  ///< take the slow walk instead; the rest is not set
+};
+
+template <class Real>
+[[nodiscard]] inline WalkStart<Real> start_walk(const OctreeFrame& frame, const Ray& ray,
+                                                const RaySetup<Real>& setup) {
+  using std::abs;
+  using std::max;
+  using std::min;
+  WalkStart<Real> start;
+  const std::array<Real, 3> o{Real(ray.origin.x), Real(ray.origin.y), Real(ray.origin.z)};
+  const std::array<Real, 3> d{Real(ray.direction.x), Real(ray.direction.y), Real(ray.direction.z)};
+  const std::array<double, 3> lo{frame.box.lo.x, frame.box.lo.y, frame.box.lo.z};
+  const std::array<double, 3> hi{frame.box.hi.x, frame.box.hi.y, frame.box.hi.z};
+  const Real scale = abs(setup.scale);
+  start.far = !(abs(o[0] - Real(frame.center.x)) <= Real(frame.far)) ||
+              !(abs(o[1] - Real(frame.center.y)) <= Real(frame.far)) ||
+              !(abs(o[2] - Real(frame.center.z)) <= Real(frame.far)) || !(scale <= Real(0x1p500)) ||
+              !(scale >= Real(0x1p-500));
+  if (start.far) [[unlikely]] {
+    return start;
+  }
+  start.slack = scale * Real(4.0 * frame.delta);
+  NodeSpan<Real>& root = start.root;
+  for (std::uint32_t a = 0; a < 3; ++a) {
+    // A zero component, of either sign, gives the cap: the planes' parameters are then huge, with the
+    // right sign, and so is the average of two.
+    const Real inverse = min(Real(1.0) / abs(d[a]), Real(frame.largest_inverse));
+    if (d[a] < Real(0.0)) {
+      start.mask = start.mask | (1U << a);
+      root.s0[a] = (o[a] - Real(hi[a])) * inverse;
+      root.s1[a] = (o[a] - Real(lo[a])) * inverse;
+    } else {
+      root.s0[a] = (Real(lo[a]) - o[a]) * inverse;
+      root.s1[a] = (Real(hi[a]) - o[a]) * inverse;
+    }
+  }
+  root.in = max(max(max(root.s0[0], root.s0[1]), root.s0[2]), setup.t_min - start.slack);
+  root.out = min(min(min(root.s1[0], root.s1[1]), root.s1[2]), setup.t_max + start.slack);
+  start.hits_root = root.in <= root.out;
+  return start;
+}
+
+/// For each outcome of the comparisons mx <= my, my <= mz, mx <= mz (bits 0 to 2): the axes in the order of
+/// their mid-planes, two bits each; x before y before z on ties. Outcomes 3 and 4 contradict themselves and
+/// do not occur.
+inline constexpr std::array<std::uint8_t, 8> plane_order = [] {
+  std::array<std::uint8_t, 8> table{};
+  for (unsigned bits = 0; bits < 8; ++bits) {
+    const bool xy = (bits & 1U) != 0;
+    const bool yz = (bits & 2U) != 0;
+    const bool xz = (bits & 4U) != 0;
+    const unsigned rank_x = (xy ? 0U : 1U) + (xz ? 0U : 1U);
+    const unsigned rank_y = (xy ? 1U : 0U) + (yz ? 0U : 1U);
+    const unsigned rank_z = (xz ? 1U : 0U) + (yz ? 1U : 0U);
+    table[bits] =
+        static_cast<std::uint8_t>((1U << (2 * rank_y)) | (2U << (2 * rank_z)) | (0U << (2 * rank_x)));
+  }
+  return table;
+}();
+
+/// A walk holds at most three waiting siblings a level.
+inline constexpr std::size_t walk_stack_size = std::size_t{3} * 21 + 1;
+
+}  // namespace marti::accel

@@ -1,0 +1,156 @@
+// The octree's walk after HERO (Agate, Grimsdale, Lister, "The HERO Algorithm for Ray-Tracing Octrees",
+// Advances in Computer Graphics Hardware IV, 1989): only the ray's parameters at a node's six planes are
+// carried; a mid-plane's parameter is the average of two; the children are met in the order of the
+// mid-planes crossed, at most four of them, front to back; one XOR mask per ray turns the order of the
+// planes into child numbers, whatever the signs of the direction. Nothing is mirrored, so nothing is
+// rounded for it.
+//
+// This file holds the walk for any scalar; octree_walk_avx2.h the same steps on vectors for doubles, and
+// octree_far.h the slow walk for rays from far away. All three give the same hits, and the first two the
+// same visits.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <type_traits>
+
+#include "accel/counted.h"
+#include "accel/octree_far.h"
+#include "accel/octree_nodes.h"
+#include "accel/octree_start.h"
+#include "accel/octree_walk_avx2.h"
+#include "accel/ray.h"
+#include "accel/visitor.h"
+#include "accel/watertight.h"
+
+namespace marti::accel {
+
+/// Tests a leaf's triangles in list order. True when an occlusion query (`Any`) found its hit.
+template <bool Any, class Real, class Visitor>
+inline bool test_leaf(const OctreeView& view, const OctreeNode& record, std::uint32_t node,
+                      const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) {
+  const std::uint32_t entries = record.entries();
+  for (std::uint32_t k = 0; k < entries; ++k) {
+    const std::uint32_t id = view.entries[record.first + k];
+    const bool hit = intersect(setup, (*view.triangles)[id], id, best);
+    if constexpr (Any) {
+      if (hit) {
+        visitor.leaf(node, k + 1, entries);
+        return true;
+      }
+    }
+  }
+  visitor.leaf(node, entries, entries);
+  return false;
+}
+
+/// The walk itself. True when an occlusion query found its hit.
+template <bool Any, class Real, class Visitor>
+bool walk_octree(const OctreeView& view, const WalkStart<Real>& start, const RaySetup<Real>& setup,
+                 Best<Real>& best, Visitor& visitor) {
+  using Integer = IntegerOf<Real>;
+  const Real half(0.5);
+  std::array<NodeSpan<Real>, walk_stack_size> stack;
+  std::size_t waiting = 0;
+  NodeSpan<Real> now = start.root;
+  for (;;) {
+    const OctreeNode record = view.nodes[now.node];
+    if (record.leaf()) {
+      if (test_leaf<Any>(view, record, now.node, setup, best, visitor)) {
+        return true;
+      }
+      if (waiting == 0) {
+        return false;
+      }
+      now = stack[--waiting];
+      // What waits below begins no earlier.
+      if (now.in > best.t + start.slack) {
+        return false;
+      }
+      continue;
+    }
+    visitor.branch(now.node);
+    std::array<Real, 3> m;
+    Integer side = 0U;
+    for (std::uint32_t a = 0; a < 3; ++a) {
+      m[a] = (now.s0[a] + now.s1[a]) * half;
+      if (m[a] <= now.in) {
+        side = side | (1U << a);
+      }
+    }
+    const std::uint32_t outcome =
+        (m[0] <= m[1] ? 1U : 0U) | (m[1] <= m[2] ? 2U : 0U) | (m[0] <= m[2] ? 4U : 0U);
+    const unsigned order = plane_order[outcome];
+    // Find the children in order of entry, then let the later ones wait.
+    std::array<NodeSpan<Real>, 4> children;
+    std::size_t found = 0;
+    Real in = now.in;
+    const auto enter = [&](Real until) {
+      NodeSpan<Real>& child = children[found++];
+      for (std::uint32_t a = 0; a < 3; ++a) {
+        const bool upper = ((plain(side) >> a) & 1U) != 0;
+        child.s0[a] = upper ? m[a] : now.s0[a];
+        child.s1[a] = upper ? now.s1[a] : m[a];
+      }
+      child.in = in;
+      child.out = until;
+      child.node = plain(Integer(record.first) + (side ^ start.mask));
+      in = until;
+    };
+    for (unsigned k = 0; k < 3; ++k) {
+      const unsigned a = (order >> (2 * k)) & 3U;
+      if (((plain(side) >> a) & 1U) != 0) {
+        continue;
+      }
+      if (!(m[a] < now.out)) {
+        break;
+      }
+      enter(m[a]);
+      side = side | (1U << a);
+    }
+    enter(now.out);
+    for (std::size_t k = found; k-- > 1;) {
+      stack[waiting++] = children[k];
+    }
+    now = children[0];
+  }
+}
+
+/// Chooses the walk for one ray. True when an occlusion query found its hit.
+template <bool Any, class Real, class Visitor>
+inline bool query_octree(const OctreeView& view, const Ray& ray, const RaySetup<Real>& setup,
+                         Best<Real>& best, Visitor& visitor) {
+  const WalkStart<Real> start = start_walk(*view.frame, ray, setup);
+  if (start.far) [[unlikely]] {
+    return walk_octree_far<Any>(view, ray, setup, best, visitor);
+  }
+  if (!start.hits_root) {
+    return false;
+  }
+#ifdef MARTI_ACCEL_AVX2
+  if constexpr (std::is_same_v<Real, double>) {
+    if (view.packed != nullptr) {
+      return walk_octree_avx2<Any>(view, start, setup, best, visitor);
+    }
+  }
+#endif
+  return walk_octree<Any>(view, start, setup, best, visitor);
+}
+
+template <class Real, class Visitor>
+[[nodiscard]] Hit octree_closest(const OctreeView& view, const Ray& ray, Visitor& visitor) {
+  const RaySetup<Real> setup(ray);
+  Best<Real> best(setup);
+  query_octree<false>(view, ray, setup, best, visitor);
+  return best.hit();
+}
+
+template <class Real, class Visitor>
+[[nodiscard]] bool octree_occluded(const OctreeView& view, const Ray& ray, Visitor& visitor) {
+  const RaySetup<Real> setup(ray);
+  Best<Real> best(setup);
+  return query_octree<true>(view, ray, setup, best, visitor);
+}
+
+}  // namespace marti::accel

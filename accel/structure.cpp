@@ -1,0 +1,28 @@
+#include "accel/structure.h"
+
+#include <array>
+
+namespace marti::accel {
+
+namespace {
+
+constexpr std::array<std::string_view, 2> kinds{Octree::kind_name, BruteForce::kind_name};
+
+}  // namespace
+
+std::span<const std::string_view> structure_kinds() { return kinds; }
+
+std::unique_ptr<Structure> make_structure(std::string_view kind, std::shared_ptr<const TriangleSet> triangles,
+                                          const StructureOptions& options) {
+  if (kind == Octree::kind_name) {
+    return std::make_unique<StructureOf<Octree>>(Octree::build(std::move(triangles), options.octree));
+  }
+  if (kind == BruteForce::kind_name) {
+    return std::make_unique<StructureOf<BruteForce>>(BruteForce(std::move(triangles)));
+  }
+  std::string message("unknown structure \"");
+  message.append(kind).append("\"; there are \"octree\" and \"none\" (brute force)");
+  throw sim::UserError(message);
+}
+
+}  // namespace marti::accel

@@ -1,0 +1,88 @@
+// The seam at which one structure is exchanged for another.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "accel/brute_force.h"
+#include "accel/octree.h"
+#include "accel/ray.h"
+#include "accel/topology.h"
+#include "accel/triangles.h"
+#include "sim/error.h"
+
+namespace marti::accel {
+
+/// A built structure over one triangle set. Immutable, so any number of threads may use it. All kinds give
+/// the same hits, bit for bit.
+class Structure {
+ public:
+  Structure() = default;
+  Structure(const Structure&) = delete;
+  Structure& operator=(const Structure&) = delete;
+  virtual ~Structure() = default;
+
+  [[nodiscard]] virtual std::string_view kind() const = 0;
+  [[nodiscard]] virtual const TriangleSet& triangles() const = 0;
+  [[nodiscard]] virtual const Topology& topology() const = 0;
+  /// The box outside which no ray is followed; empty without triangles.
+  [[nodiscard]] virtual const scenes::Bounds& bounds() const = 0;
+  /// The nearest hit.
+  [[nodiscard]] virtual Hit closest(const Ray& ray) const = 0;
+  /// Whether anything is hit.
+  [[nodiscard]] virtual bool occluded(const Ray& ray) const = 0;
+};
+
+/// A concrete structure behind the seam.
+template <class Concrete>
+class StructureOf final : public Structure {
+ public:
+  explicit StructureOf(Concrete concrete) : concrete_(std::move(concrete)) {}
+
+  [[nodiscard]] std::string_view kind() const override { return Concrete::kind_name; }
+  [[nodiscard]] const TriangleSet& triangles() const override { return concrete_.triangles(); }
+  [[nodiscard]] const Topology& topology() const override { return concrete_.topology(); }
+  [[nodiscard]] const scenes::Bounds& bounds() const override { return concrete_.bounds(); }
+  [[nodiscard]] Hit closest(const Ray& ray) const override {
+    NullVisitor visitor;
+    return concrete_.closest(ray, visitor);
+  }
+  [[nodiscard]] bool occluded(const Ray& ray) const override {
+    NullVisitor visitor;
+    return concrete_.occluded(ray, visitor);
+  }
+  [[nodiscard]] const Concrete& concrete() const { return concrete_; }
+
+ private:
+  Concrete concrete_;
+};
+
+/// Options of every kind; a kind reads its own.
+struct StructureOptions {
+  OctreeOptions octree;
+};
+
+/// The kinds make_structure knows: "octree" and "none" (brute force).
+[[nodiscard]] std::span<const std::string_view> structure_kinds();
+
+/// Builds a structure. Throws UserError for an unknown kind or an option out of range.
+[[nodiscard]] std::unique_ptr<Structure> make_structure(std::string_view kind,
+                                                        std::shared_ptr<const TriangleSet> triangles,
+                                                        const StructureOptions& options = {});
+
+/// Calls `f` with the concrete structure (const Octree& or const BruteForce&), so that code inside is
+/// compiled for each and the traversal is inlined.
+template <class F>
+decltype(auto) visit_structure(const Structure& structure, F&& f) {
+  if (const auto* octree = dynamic_cast<const StructureOf<Octree>*>(&structure)) {
+    return std::forward<F>(f)(octree->concrete());
+  }
+  if (const auto* brute = dynamic_cast<const StructureOf<BruteForce>*>(&structure)) {
+    return std::forward<F>(f)(brute->concrete());
+  }
+  throw sim::InternalError("a structure of a kind visit_structure does not know");
+}
+
+}  // namespace marti::accel

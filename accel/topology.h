@@ -1,0 +1,25 @@
+// A structure's tree without its geometry: what the timing world needs to turn "visit node n" and
+// "test the objects of leaf n" into addresses.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace marti::accel {
+
+/// A leaf holds object references; a branch holds children with consecutive node numbers.
+struct TopologyNode {
+  std::uint32_t first = 0;  ///< branch: number of the first child; leaf: index of its first entry
+  std::uint32_t count = 0;  ///< branch: number of children; leaf: number of entries
+  std::uint8_t level = 1;   ///< the root is level 1
+  bool leaf = true;
+};
+
+/// Nodes in breadth-first order (node 0 is the root); entries are primitive ids, leaf by leaf in node
+/// order, ascending within a leaf.
+struct Topology {
+  std::vector<TopologyNode> nodes;
+  std::vector<std::uint32_t> entries;
+};
+
+}  // namespace marti::accel

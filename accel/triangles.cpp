@@ -1,0 +1,57 @@
+#include "accel/triangles.h"
+
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "accel/ray.h"
+#include "sim/error.h"
+
+namespace marti::accel {
+
+namespace {
+
+// Products of three coordinates must stay far from overflow.
+constexpr double largest_coordinate = 0x1p300;
+
+}  // namespace
+
+TriangleSet::TriangleSet(const scenes::Scene& scene) {
+  triangles_.reserve(scene.triangles.size());
+  for (const scenes::Triangle& triangle : scene.triangles) {
+    TriangleCorners& corners = triangles_.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const glm::dvec3& p = scene.positions[triangle.vertex[k]];
+      corners[3 * k] = p.x;
+      corners[3 * k + 1] = p.y;
+      corners[3 * k + 2] = p.z;
+    }
+  }
+  check();
+}
+
+TriangleSet::TriangleSet(std::vector<TriangleCorners> triangles) : triangles_(std::move(triangles)) {
+  check();
+}
+
+void TriangleSet::check() {
+  if (triangles_.size() >= no_primitive) {
+    throw sim::UserError("too many triangles: " + std::to_string(triangles_.size()) + ", at most 4294967294");
+  }
+  for (std::uint32_t id = 0; id < size(); ++id) {
+    for (const double x : triangles_[id]) {
+      if (!(std::abs(x) <= largest_coordinate)) {
+        std::ostringstream message;
+        message << "triangle " << id
+                << " has a coordinate that is not a number of magnitude up to 2^300: " << x;
+        throw sim::UserError(message.str());
+      }
+    }
+    for (unsigned k = 0; k < 3; ++k) {
+      bounds_.include(corner(id, k));
+    }
+  }
+}
+
+}  // namespace marti::accel

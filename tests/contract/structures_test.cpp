@@ -1,0 +1,286 @@
+// What every structure owes: the hits of brute force, bit for bit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "accel/structure.h"
+#include "scenes/procedural.h"
+#include "tests/contract/hostile.h"
+
+namespace marti::tests {
+namespace {
+
+using accel::Hit;
+using accel::Ray;
+using accel::Structure;
+using accel::TriangleSet;
+
+/// A structure and how it was made.
+struct Built {
+  std::string name;
+  std::unique_ptr<Structure> structure;
+};
+
+/// Every kind, and the octree in several shapes: the default, as deep as it goes, shallow, one single leaf.
+std::vector<Built> build_all(const std::shared_ptr<const TriangleSet>& triangles) {
+  std::vector<Built> all;
+  const auto add = [&](std::string_view kind, std::uint32_t max_objects, std::uint32_t max_level) {
+    accel::StructureOptions options;
+    options.octree.max_objects = max_objects;
+    options.octree.max_level = max_level;
+    all.push_back({std::string(kind) + " " + std::to_string(max_objects) + "/" + std::to_string(max_level),
+                   accel::make_structure(kind, triangles, options)});
+  };
+  add("octree", 8, 12);
+  add("octree", 2, 11);
+  add("octree", 3, 5);
+  add("octree", 8, 1);
+  add("none", 8, 12);
+  return all;
+}
+
+::testing::AssertionResult same_bits(const Hit& expected, const Hit& got) {
+  const auto same = [](double a, double b) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+  };
+  if (expected.primitive == got.primitive && same(expected.t, got.t) && same(expected.u, got.u) &&
+      same(expected.v, got.v) && same(expected.w, got.w)) {
+    return ::testing::AssertionSuccess();
+  }
+  return ::testing::AssertionFailure() << "expected triangle " << expected.primitive << " at " << expected.t
+                                       << ", got " << got.primitive << " at " << got.t;
+}
+
+/// `rays` rays of each class; returns how many hit something.
+std::uint64_t compare_with_brute_force(std::vector<accel::TriangleCorners> corners, std::uint32_t rays,
+                                       std::uint64_t seed) {
+  const auto triangles = std::make_shared<const TriangleSet>(std::move(corners));
+  const accel::BruteForce oracle(triangles);
+  const std::vector<Built> all = build_all(triangles);
+  RayMaker maker(*triangles, all[0].structure->bounds(), seed);
+  accel::NullVisitor visitor;
+  std::uint64_t hits = 0;
+  for (const Aim aim : all_aims) {
+    for (std::uint32_t k = 0; k < rays; ++k) {
+      const Ray ray = maker.make(aim);
+      const Hit expected = oracle.closest(ray, visitor);
+      hits += expected.found() ? 1U : 0U;
+      for (const Built& built : all) {
+        if (built.structure->kind() == "none") {
+          continue;  // the oracle itself
+        }
+        const auto where = [&] {
+          std::ostringstream text;
+          text.precision(17);
+          text << built.name << ", aim " << static_cast<int>(aim) << ", ray " << k << ": o " << ray.origin.x
+               << " " << ray.origin.y << " " << ray.origin.z << " d " << ray.direction.x << " "
+               << ray.direction.y << " " << ray.direction.z << " t " << ray.t_min << " " << ray.t_max;
+          return text.str();
+        };
+        EXPECT_TRUE(same_bits(expected, built.structure->closest(ray))) << where();
+        EXPECT_EQ(expected.found(), built.structure->occluded(ray)) << where();
+        if (::testing::Test::HasFailure()) {
+          return hits;
+        }
+      }
+    }
+  }
+  return hits;
+}
+
+std::vector<accel::TriangleCorners> corners_of(std::string_view scene) {
+  const TriangleSet set(scenes::make_procedural(scene));
+  std::vector<accel::TriangleCorners> all;
+  for (std::uint32_t id = 0; id < set.size(); ++id) {
+    all.push_back(set[id]);
+  }
+  return all;
+}
+
+// 9 classes x 20,000 rays x 3 scenes and 9 x 10,000 x 8 soups are 1,260,000 rays.
+class SceneContract : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(SceneContract, SameHitsAsBruteForce) {
+  EXPECT_GT(compare_with_brute_force(corners_of(GetParam()), 20000, 7), 60000U);
+}
+INSTANTIATE_TEST_SUITE_P(Structures, SceneContract, ::testing::Values("teapot:3", "gears:1", "tetra:4"),
+                         [](const auto& tested) {
+                           std::string name = tested.param;
+                           name[name.find(':')] = '_';
+                           return name;
+                         });
+
+struct Soup {
+  double offset;
+  bool huge;
+};
+void PrintTo(const Soup& soup, std::ostream* out) {
+  *out << (soup.huge ? "huge " : "") << "soup at " << soup.offset;
+}
+class SoupContract : public ::testing::TestWithParam<Soup> {};
+
+TEST_P(SoupContract, SameHitsAsBruteForce) {
+  EXPECT_GT(compare_with_brute_force(hostile_soup(GetParam().offset, 11, GetParam().huge), 10000, 13),
+            20000U);
+}
+
+// All corners exactly in planes of the tree, down to level 6.
+TEST_P(SoupContract, SameHitsWithTrianglesInCellPlanes) {
+  std::vector<accel::TriangleCorners> soup = hostile_soup(GetParam().offset, 19, GetParam().huge);
+  const auto bounds = accel::make_structure("octree", std::make_shared<const TriangleSet>(soup))->bounds();
+  const TriangleSet tight(soup);
+  for (auto& triangle : soup) {
+    for (std::size_t k = 0; k < 9; ++k) {
+      const int a = static_cast<int>(k % 3);
+      if (triangle[k] != tight.bounds().lo[a] && triangle[k] != tight.bounds().hi[a]) {  // keep the root
+        const double extent = bounds.hi[a] - bounds.lo[a];
+        const double i = std::clamp(std::round((triangle[k] - bounds.lo[a]) / extent * 32.0), 1.0, 31.0);
+        triangle[k] = bounds.lo[a] + extent * (i / 32.0);
+      }
+    }
+  }
+  ASSERT_EQ(TriangleSet(soup).bounds().lo, tight.bounds().lo);
+  ASSERT_EQ(TriangleSet(soup).bounds().hi, tight.bounds().hi);
+  EXPECT_GT(compare_with_brute_force(soup, 3000, 29), 5000U);
+}
+INSTANTIATE_TEST_SUITE_P(Structures, SoupContract,
+                         ::testing::Values(Soup{0.0, false}, Soup{1e3, false}, Soup{-1e3, false},
+                                           Soup{1e6, false}, Soup{1e9, false}, Soup{0.0, true},
+                                           Soup{1e3, true}, Soup{1e6, true}),
+                         [](const auto& tested) { return std::to_string(tested.index); });
+
+// From 2^-60 to 2^60 nothing changes but the scale: the hits are the scaled ones, bit for bit.
+TEST(StructureContract, ScaleByPowersOfTwoIsExact) {
+  const std::vector<accel::TriangleCorners> unit = hostile_soup(0.0, 3);
+  const auto unit_set = std::make_shared<const TriangleSet>(unit);
+  const auto reference = accel::make_structure("octree", unit_set);
+  for (const int power : {-60, -30, -1, 1, 30, 60}) {
+    std::vector<accel::TriangleCorners> scaled = unit;
+    for (auto& triangle : scaled) {
+      for (double& x : triangle) {
+        x = std::ldexp(x, power);
+      }
+    }
+    const auto octree = accel::make_structure("octree", std::make_shared<const TriangleSet>(scaled));
+    EXPECT_EQ(octree->topology().nodes.size(), reference->topology().nodes.size());
+    RayMaker maker(*unit_set, reference->bounds(), 5);
+    for (int k = 0; k < 20000; ++k) {
+      Ray ray = maker.make(all_aims[static_cast<std::size_t>(k) % 6]);
+      const Hit expected = reference->closest(ray);
+      ray.origin *= std::ldexp(1.0, power);
+      ray.t_min = std::ldexp(ray.t_min, power);
+      ray.t_max = std::ldexp(ray.t_max, power);
+      Hit got = octree->closest(ray);
+      got.t = std::ldexp(got.t, -power);
+      ASSERT_TRUE(same_bits(expected, got)) << "2^" << power;
+    }
+  }
+}
+
+// Degenerate inputs that once broke somebody's structure.
+class DegenerateScene : public ::testing::TestWithParam<int> {};
+
+std::vector<accel::TriangleCorners> degenerate_scene(int which) {
+  std::vector<accel::TriangleCorners> all;
+  Random random(23);
+  switch (which) {
+    case 0:
+      all.push_back(corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
+      break;
+    case 1:
+      all.push_back(corners({1, 2, 3}, {1, 2, 3}, {1, 2, 3}));
+      break;
+    case 2:
+      all.push_back(corners({0, 0, 0}, {1, 1, 1}, {2, 2, 2}));
+      break;
+    case 3:
+    case 4:
+    case 5:
+      for (int i = 0; i < 200; ++i) {  // flat, in each axis plane
+        const glm::dvec3 flatten = glm::dvec3(which != 3, which != 4, which != 5);
+        const glm::dvec3 a = random.in_box(glm::dvec3(-1.0), glm::dvec3(1.0));
+        all.push_back(corners(a * flatten, (a + 0.3 * random.direction()) * flatten,
+                              (a + 0.3 * random.direction()) * flatten));
+      }
+      break;
+    case 6:
+      for (int i = 0; i < 200; ++i) {  // near the smallest and largest sizes at once
+        const double size = std::pow(10.0, random.between(-18.0, 18.0));
+        const glm::dvec3 a = size * random.direction();
+        all.push_back(corners(a, a + size * random.direction(), a + size * random.direction()));
+      }
+      break;
+    default:
+      for (int i = 0; i < 500; ++i) {  // coincident, in three orders
+        all.push_back(corners({-1, -1, -1}, {1, 0.3, 0.2}, {0.1, 1, 1}));
+        if (i % 3 == 0) {
+          all.push_back(corners({1, 0.3, 0.2}, {0.1, 1, 1}, {-1, -1, -1}));
+        }
+      }
+      break;
+  }
+  return all;
+}
+
+TEST_P(DegenerateScene, SameHitsAsBruteForce) {
+  const std::uint64_t hits = compare_with_brute_force(degenerate_scene(GetParam()), 1000, 17);
+  if (GetParam() == 1) {
+    EXPECT_EQ(hits, 0U);
+  } else if (GetParam() != 2) {
+    EXPECT_GT(hits, 100U);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Structures, DegenerateScene, ::testing::Range(0, 8));
+
+TEST(StructureContract, NothingToHit) {
+  const auto none = std::make_shared<const TriangleSet>();
+  for (const Built& built : build_all(none)) {
+    EXPECT_TRUE(built.structure->bounds().empty());
+    ASSERT_EQ(built.structure->topology().nodes.size(), 1U);
+    EXPECT_TRUE(built.structure->topology().nodes[0].leaf);
+    Random random(1);
+    EXPECT_FALSE(built.structure->closest({}).found());
+    for (int k = 0; k < 100; ++k) {
+      const Ray ray{random.direction(), random.direction()};
+      EXPECT_FALSE(built.structure->closest(ray).found());
+      EXPECT_FALSE(built.structure->occluded(ray));
+    }
+  }
+}
+
+TEST(StructureContract, RefusesRaysThatAreNone) {
+  const auto set = std::make_shared<const TriangleSet>(hostile_soup(0.0, 1));
+  const double inf = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Built& built : build_all(set)) {
+    for (const Ray& ray :
+         {Ray{{0, 0, 0}, {0, 0, 0}}, Ray{{0, 0, 0}, {0, -0.0, 0}}, Ray{{0, 0, 0}, {0, nan, 1}},
+          Ray{{0, 0, 0}, {inf, 0, 1}}, Ray{{nan, 0, 0}, {0, 0, 1}}, Ray{{0, inf, 0}, {0, 0, 1}},
+          Ray{{0, 0, 0}, {1e-310, 0, 0}}}) {
+      EXPECT_THROW((void)built.structure->closest(ray), sim::InternalError);
+      EXPECT_THROW((void)built.structure->occluded(ray), sim::InternalError);
+    }
+  }
+}
+
+TEST(StructureContract, KnowsItsKinds) {
+  const auto set = std::make_shared<const TriangleSet>(hostile_soup(0.0, 1));
+  for (const std::string_view kind : accel::structure_kinds()) {
+    const auto structure = accel::make_structure(kind, set);
+    EXPECT_EQ(structure->kind(), kind);
+    EXPECT_EQ(accel::visit_structure(*structure, [](const auto& concrete) { return concrete.kind_name; }),
+              kind);
+  }
+  EXPECT_THROW((void)accel::make_structure("quadtree", set), sim::UserError);
+}
+
+}  // namespace
+}  // namespace marti::tests

@@ -1,0 +1,367 @@
+#include "accel/octree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "accel/box_overlap.h"
+#include "sim/error.h"
+#include "tests/contract/hostile.h"
+
+namespace marti::tests {
+namespace {
+
+using accel::Counted;
+using accel::Hit;
+using accel::Octree;
+using accel::OctreeOptions;
+using accel::Ray;
+using accel::Topology;
+using accel::TopologyNode;
+using accel::TriangleCorners;
+using accel::TriangleSet;
+
+std::shared_ptr<const TriangleSet> set_of(std::vector<TriangleCorners> triangles) {
+  return std::make_shared<const TriangleSet>(std::move(triangles));
+}
+
+/// The boxes of all nodes, from the topology alone.
+std::vector<scenes::Bounds> boxes_of(const Octree& octree) {
+  const Topology& topology = octree.topology();
+  std::vector<scenes::Bounds> boxes(topology.nodes.size());
+  boxes[0] = octree.bounds();
+  for (std::size_t n = 0; n < boxes.size(); ++n) {
+    const TopologyNode& node = topology.nodes[n];
+    for (std::uint32_t child = 0; !node.leaf && child < 8; ++child) {
+      scenes::Bounds& box = boxes[node.first + child];
+      box = boxes[n];
+      const glm::dvec3 mid = 0.5 * (box.lo + box.hi);
+      for (int a = 0; a < 3; ++a) {
+        (((child >> a) & 1U) != 0 ? box.lo : box.hi)[a] = mid[a];
+      }
+    }
+  }
+  return boxes;
+}
+
+/// Writes down every visit.
+struct Recorder {
+  struct Visit {
+    std::uint32_t node;
+    std::uint32_t tests;
+    std::uint32_t entries;
+    bool leaf;
+    bool operator==(const Visit&) const = default;
+  };
+  std::vector<Visit> visits;
+  void branch(std::uint32_t node) { visits.push_back({node, 0, 0, false}); }
+  void leaf(std::uint32_t node, std::uint32_t tests, std::uint32_t entries) {
+    visits.push_back({node, tests, entries, true});
+  }
+};
+
+TEST(Octree, NodesAreBreadthFirstAndListsAscend) {
+  const Octree octree = Octree::build(set_of(hostile_soup(0.0, 1)), {4, 8});
+  const Topology& topology = octree.topology();
+  std::uint32_t next_child = 1;
+  std::uint32_t next_entry = 0;
+  std::vector<accel::LevelStatistics> levels(octree.levels().size());
+  for (const TopologyNode& node : topology.nodes) {
+    accel::LevelStatistics& level = levels.at(node.level - 1U);
+    if (!node.leaf) {
+      ++level.branches;
+      ASSERT_EQ(node.first, next_child);
+      ASSERT_EQ(node.count, 8U);
+      for (std::uint32_t child = 0; child < 8; ++child) {
+        ASSERT_EQ(topology.nodes.at(node.first + child).level, node.level + 1);
+      }
+      next_child += 8;
+      continue;
+    }
+    ++level.leaves;
+    level.empty_leaves += node.count == 0 ? 1U : 0U;
+    level.entries += node.count;
+    level.overfull_leaves += node.count > 4 ? 1U : 0U;
+    ASSERT_EQ(node.first, next_entry);
+    next_entry += node.count;
+    ASSERT_TRUE(std::is_sorted(topology.entries.begin() + node.first, topology.entries.begin() + next_entry,
+                               std::less_equal<>()));
+  }
+  EXPECT_EQ(next_child, topology.nodes.size());
+  EXPECT_EQ(next_entry, topology.entries.size());
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    EXPECT_EQ(levels[l].branches, octree.levels()[l].branches);
+    EXPECT_EQ(levels[l].leaves, octree.levels()[l].leaves);
+    EXPECT_EQ(levels[l].empty_leaves, octree.levels()[l].empty_leaves);
+    EXPECT_EQ(levels[l].entries, octree.levels()[l].entries);
+    EXPECT_EQ(levels[l].overfull_leaves, octree.levels()[l].overfull_leaves);
+  }
+}
+
+// A leaf above the last level has too many triangles only where splitting would separate none of them.
+TEST(Octree, OverfullLeavesCouldNotBeSeparated) {
+  const auto triangles = set_of(hostile_soup(0.0, 1));
+  const Octree octree = Octree::build(triangles, {4, 8});
+  const std::vector<scenes::Bounds> boxes = boxes_of(octree);
+  int overfull = 0;
+  for (std::size_t n = 0; n < boxes.size(); ++n) {
+    const TopologyNode& node = octree.topology().nodes[n];
+    if (!node.leaf || node.count <= 4 || node.level == 8) {
+      continue;
+    }
+    ++overfull;
+    int complete = 0;
+    const glm::dvec3 quarter = 0.25 * (boxes[n].hi - boxes[n].lo);
+    for (std::uint32_t child = 0; child < 8; ++child) {
+      glm::dvec3 center = boxes[n].lo + quarter;
+      for (int a = 0; a < 3; ++a) {
+        center[a] += ((child >> a) & 1U) != 0 ? 2.0 * quarter[a] : 0.0;
+      }
+      std::uint32_t met = 0;
+      for (std::uint32_t k = 0; k < node.count; ++k) {
+        const TriangleCorners& triangle = (*triangles)[octree.topology().entries[node.first + k]];
+        met += accel::overlaps(triangle, center, quarter + octree.delta()) ? 1U : 0U;
+      }
+      EXPECT_TRUE(met == 0 || met == node.count);
+      complete += met == node.count ? 1 : 0;
+    }
+    EXPECT_GE(complete, 2);
+  }
+  EXPECT_GT(overfull, 0);
+}
+
+// Every leaf lists every triangle that meets it, and none that stays more than 2 delta away from it.
+TEST(Octree, LeavesListWhatMeetsThem) {
+  for (const double offset : {0.0, 1e6}) {
+    const auto triangles = set_of(hostile_soup(offset, 2));
+    const Octree octree = Octree::build(triangles, {6, 6});
+    const std::vector<scenes::Bounds> boxes = boxes_of(octree);
+    for (std::size_t n = 0; n < boxes.size(); ++n) {
+      const TopologyNode& node = octree.topology().nodes[n];
+      if (!node.leaf) {
+        continue;
+      }
+      const auto begin = octree.topology().entries.begin() + node.first;
+      const std::set<std::uint32_t> listed(begin, begin + node.count);
+      const glm::dvec3 center = 0.5 * (boxes[n].lo + boxes[n].hi);
+      const glm::dvec3 half = 0.5 * (boxes[n].hi - boxes[n].lo);
+      for (std::uint32_t id = 0; id < triangles->size(); ++id) {
+        if (listed.contains(id)) {
+          ASSERT_TRUE(accel::overlaps((*triangles)[id], center, half + 2.0 * octree.delta()));
+        } else {
+          ASSERT_FALSE(accel::overlaps((*triangles)[id], center, half + 0.5 * octree.delta()));
+        }
+      }
+    }
+  }
+}
+
+/// Where a ray is inside a box enlarged by `margin`, in long double; empty when in > out.
+struct Inside {
+  long double in;
+  long double out;
+};
+Inside inside(const Ray& ray, const scenes::Bounds& box, double margin) {
+  Inside span{ray.t_min, ray.t_max};
+  for (int a = 0; a < 3; ++a) {
+    const long double lo = static_cast<long double>(box.lo[a]) - margin - ray.origin[a];
+    const long double hi = static_cast<long double>(box.hi[a]) + margin - ray.origin[a];
+    if (ray.direction[a] == 0.0) {
+      if (lo > 0 || hi < 0) {
+        return {1, 0};
+      }
+      continue;
+    }
+    const long double t0 = lo / ray.direction[a];
+    const long double t1 = hi / ray.direction[a];
+    span.in = std::max(span.in, std::min(t0, t1));
+    span.out = std::min(span.out, std::max(t0, t1));
+  }
+  return span;
+}
+
+// Front to back, at most four children of a branch, no leaf that the ray does not meet, none left out.
+TEST(Octree, WalksFrontToBackThroughTheLeavesOnTheRay) {
+  const auto triangles = set_of(hostile_soup(0.0, 4));
+  const Octree octree = Octree::build(triangles, {3, 7});
+  const std::vector<scenes::Bounds> boxes = boxes_of(octree);
+  std::vector<std::uint32_t> parent(boxes.size(), 0);
+  for (std::uint32_t n = 0; n < boxes.size(); ++n) {
+    const TopologyNode& node = octree.topology().nodes[n];
+    for (std::uint32_t child = 0; !node.leaf && child < 8; ++child) {
+      parent[node.first + child] = n;
+    }
+  }
+  RayMaker maker(*triangles, octree.bounds(), 6);
+  // Twice the largest error a parameter may have, as a distance.
+  const double margin = 8.0 * octree.delta();
+  std::uint64_t leaves = 0;
+  for (int k = 0; k < 6000; ++k) {
+    const Ray ray = maker.make(all_aims[static_cast<std::size_t>(k) % 6]);
+    Recorder recorder;
+    const Hit hit = octree.closest(ray, recorder);
+    std::map<std::uint32_t, int> children;
+    std::set<std::uint32_t> visited;
+    long double last_in = -std::numeric_limits<long double>::infinity();
+    const long double slack =
+        margin / std::sqrt(static_cast<long double>(glm::dot(ray.direction, ray.direction)));
+    for (const Recorder::Visit& visit : recorder.visits) {
+      ASSERT_TRUE(visited.insert(visit.node).second) << "visited twice";
+      ASSERT_EQ(visit.leaf, octree.topology().nodes[visit.node].leaf);
+      if (visit.node != 0) {
+        ASSERT_TRUE(visited.contains(parent[visit.node]));
+        ASSERT_LE(++children[parent[visit.node]], 4);
+      }
+      const Inside on = inside(ray, boxes[visit.node], margin);
+      ASSERT_LE(on.in, on.out + 2 * slack) << "a node the ray does not meet";
+      if (visit.leaf) {
+        ++leaves;
+        ASSERT_EQ(visit.tests, visit.entries);
+        ASSERT_EQ(visit.entries, octree.topology().nodes[visit.node].count);
+        const Inside exact = inside(ray, boxes[visit.node], -margin);
+        if (exact.in < exact.out) {  // thick enough to have an order
+          ASSERT_GE(exact.in, last_in) << "not front to back";
+          last_in = exact.in;
+        }
+      }
+    }
+    for (std::uint32_t n = 0; n < boxes.size(); ++n) {
+      if (!octree.topology().nodes[n].leaf) {
+        continue;
+      }
+      const Inside on = inside(ray, boxes[n], -margin);
+      const bool before_hit = !hit.found() || on.in < hit.t;
+      if (on.in < on.out && before_hit) {
+        ASSERT_TRUE(visited.contains(n)) << "a leaf on the ray was left out";
+      }
+    }
+  }
+  EXPECT_GT(leaves, 20000U);
+}
+
+// The walk on vectors and the walk for any scalar take the same steps and find the same hits.
+TEST(Octree, CountingChangesNothing) {
+  const auto triangles = set_of(hostile_soup(0.0, 8));
+  const Octree octree = Octree::build(triangles, {5, 10});
+  RayMaker maker(*triangles, octree.bounds(), 9);
+  for (int k = 0; k < 60000; ++k) {
+    const Ray ray = maker.make(all_aims[static_cast<std::size_t>(k) % all_aims.size()]);
+    Recorder plain;
+    Recorder counted;
+    const Hit expected = octree.closest(ray, plain);
+    const Hit got = octree.closest<Counted>(ray, counted);
+    ASSERT_EQ(plain.visits, counted.visits);
+    ASSERT_EQ(expected.primitive, got.primitive);
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(expected.t), std::bit_cast<std::uint64_t>(got.t));
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(expected.u), std::bit_cast<std::uint64_t>(got.u));
+
+    Recorder plain_shadow;
+    Recorder counted_shadow;
+    ASSERT_EQ(octree.occluded(ray, plain_shadow), octree.occluded<Counted>(ray, counted_shadow));
+    ASSERT_EQ(plain_shadow.visits, counted_shadow.visits);
+  }
+}
+
+// Per branch: three averages, as HERO has it, and the comparisons that order the children.
+TEST(Octree, ABranchCostsThreeAverages) {
+  const auto triangles = set_of(
+      {corners({-1, -1, -1}, {-0.9, -1, -1}, {-1, -0.9, -1}), corners({1, 1, 1}, {0.9, 1, 1}, {1, 0.9, 1})});
+  const Octree octree = Octree::build(triangles, {1, 12});
+  ASSERT_EQ(octree.topology().nodes.size(), 9U);
+  const auto operations = [&](const Octree& tree, const Ray& ray) {
+    accel::NullVisitor visitor;
+    const accel::OperationCounts before = accel::operation_counts();
+    EXPECT_FALSE(tree.closest<Counted>(ray, visitor).found());
+    return accel::operation_counts() - before;
+  };
+  // Through two empty children, against the same ray in a tree of one node that tests both triangles.
+  const Ray ray{{-2, 0.5, -0.5}, {1, 0, 0}};
+  const Octree leaf = Octree::build(triangles, {2, 12});
+  ASSERT_EQ(leaf.topology().nodes.size(), 1U);
+  const accel::OperationCounts branch = operations(octree, ray);
+  const accel::OperationCounts tests = operations(leaf, ray);
+  EXPECT_EQ(branch.add + 2 * 18, tests.add + 3 + 1);        // three averages, one limit
+  EXPECT_EQ(branch.multiply + 2 * 12, tests.multiply + 3);  // three halvings
+  EXPECT_GT(branch.integer, tests.integer);
+}
+
+TEST(Octree, CoincidentTrianglesDoNotMultiply) {
+  std::vector<TriangleCorners> same(10000, corners({-1, -1, -1}, {1, 0.3, 0.2}, {0.1, 1, 1}));
+  const Octree alone = Octree::build(set_of(same));
+  EXPECT_LT(alone.topology().entries.size(), 40U * same.size());
+  EXPECT_LT(alone.topology().nodes.size(), 10000U);
+  // Others among them do not undo it.
+  for (const TriangleCorners& other : hostile_soup(0.0, 5)) {
+    same.push_back(other);
+  }
+  OctreeOptions options;
+  options.max_entries = 4000000;
+  const Octree mixed = Octree::build(set_of(same), options);
+  EXPECT_LT(mixed.topology().entries.size(), 8U * options.max_entries);
+}
+
+TEST(Octree, StaysWithinItsEntries) {
+  const auto triangles = set_of(hostile_soup(0.0, 5));
+  const std::size_t unlimited = Octree::build(triangles, {1, 10}).topology().entries.size();
+  std::size_t last = 0;
+  for (const std::uint64_t limit : {std::uint64_t{1}, std::uint64_t{1000}, std::uint64_t{10000}}) {
+    const Octree octree = Octree::build(triangles, {1, 10, limit});
+    // One split may go over by what its eight children list.
+    EXPECT_LE(octree.topology().entries.size(), limit + 8 * triangles->size());
+    EXPECT_GE(octree.topology().entries.size(), last);
+    last = octree.topology().entries.size();
+  }
+  EXPECT_GT(unlimited, last);
+}
+
+TEST(Octree, FlatScenesAreNotCutInTheirPlane) {
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<TriangleCorners> sheet;
+    for (int i = 0; i < 32; ++i) {
+      for (int j = 0; j < 32; ++j) {
+        const auto at = [&](int x, int y) {
+          glm::dvec3 p(0.0);
+          p[(axis + 1) % 3] = x / 31.0;
+          p[(axis + 2) % 3] = y / 31.0;
+          return p;
+        };
+        sheet.push_back(corners(at(i, j), at(i + 1, j), at(i + 1, j + 1)));
+      }
+    }
+    const Octree octree = Octree::build(set_of(sheet), {4, 21});
+    // A quadtree of 1,024 triangles, not an octree of the empty space around them.
+    EXPECT_LT(octree.topology().nodes.size(), 8000U);
+    EXPECT_LT(octree.topology().entries.size(), 8U * sheet.size());
+    EXPECT_GT(octree.bounds().hi[axis], octree.bounds().lo[axis]);
+  }
+}
+
+TEST(Octree, RefusesOptionsOutOfRange) {
+  const auto triangles = set_of(hostile_soup(0.0, 5));
+  EXPECT_THROW((void)Octree::build(triangles, {0, 12}), sim::UserError);
+  EXPECT_THROW((void)Octree::build(triangles, {8, 0}), sim::UserError);
+  EXPECT_THROW((void)Octree::build(triangles, {8, 22}), sim::UserError);
+  EXPECT_THROW((void)Octree::build(triangles, {8, 12, 0}), sim::UserError);
+  EXPECT_NO_THROW((void)Octree::build(triangles, {1, 21, 1}));
+}
+
+TEST(Triangles, RefusesCoordinatesThatAreNone) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300}) {
+    TriangleCorners triangle = corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    triangle[4] = bad;
+    EXPECT_THROW(TriangleSet({corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), triangle}), sim::UserError);
+  }
+}
+
+}  // namespace
+}  // namespace marti::tests
