@@ -30,6 +30,9 @@ if(MARTI_SANITIZE)
   target_link_options(marti_options INTERFACE -fsanitize=address,undefined)
 endif()
 
+# The folders that are installed as libraries, each a component of the package (cmake/MartiPackage.cmake).
+set(MARTI_COMPONENTS sim scenes accel memory processors)
+
 # marti_add_library(<folder> SOURCES ... [PUBLIC libs...] [PRIVATE libs...]): the static library of one
 # folder, target marti_<folder>, alias marti::<folder>. Headers are included from the project's root.
 function(marti_add_library folder)
@@ -41,6 +44,13 @@ function(marti_add_library folder)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/marti>)
   target_compile_features(marti_${folder} PUBLIC cxx_std_20)
   target_link_libraries(marti_${folder} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:marti_options>)
+  if(folder IN_LIST MARTI_COMPONENTS)
+    # An export set of its own, so that a component can be loaded without the packages of the others.
+    install(TARGETS marti_${folder} EXPORT marti-${folder} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(EXPORT marti-${folder} NAMESPACE marti:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/marti)
+    install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/marti/${folder}
+            FILES_MATCHING PATTERN "*.h")
+  endif()
 endfunction()
 
 # marti_add_test(<name> SOURCES ... [LIBS ...] [TIMEOUT seconds]): one GoogleTest program; each of its

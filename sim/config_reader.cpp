@@ -243,7 +243,7 @@ class ConfigReader {
     std::vector<std::string> same;
     std::copy_if(config_.schema_.names().begin(), config_.schema_.names().end(), std::back_inserter(same),
                  [&](const std::string& name) { return name.ends_with(ending); });
-    const std::string near = did_you_mean(key, config_.schema_.names());
+    std::string near = did_you_mean(key, config_.schema_.names());
     if (near.empty() && same.size() == 1) {
       return " (did you mean \"" + same.front() + "\"?)";
     }

@@ -72,9 +72,10 @@ std::optional<double> Moments::mean() const {
     return std::nullopt;
   }
   // Whole part and remainder apart: the sum itself may need more bits than a long double has.
-  const auto whole = static_cast<long double>(sum_ / count_);
-  const auto rest = static_cast<long double>(sum_ % count_);
-  return static_cast<double>(whole + rest / static_cast<long double>(count_));
+  const __int128 whole = sum_ / count_;
+  const __int128 rest = sum_ % count_;
+  return static_cast<double>(static_cast<long double>(whole) +
+                             static_cast<long double>(rest) / static_cast<long double>(count_));
 }
 
 std::optional<double> Moments::variance() const {

@@ -8,7 +8,7 @@
 #include "processors/machine_config.h"
 #include "processors/program/work_log.h"
 
-namespace marti::tests {
+namespace marti::test {
 
 using Random = std::mt19937_64;
 
@@ -154,4 +154,4 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
   return machine;
 }
 
-}  // namespace marti::tests
+}  // namespace marti::test

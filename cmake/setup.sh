@@ -1,0 +1,66 @@
+# shellcheck shell=bash
+# Shared by marti-quickstart and test: messages, and the Debian packages. To be sourced by bash from the
+# project's root.
+
+if [ -t 1 ]; then bold=$'\e[1m' plain=$'\e[0m'; else bold='' plain=''; fi
+
+say() { printf '%s==> %s%s\n' "$bold" "$*" "$plain"; }
+
+die() {
+  printf '%s: %s\n' "$(basename "$0")" "$*" >&2
+  exit 1
+}
+
+# The packages of the given sections of cmake/debian-packages.txt that are not installed.
+missing_packages() {
+  local section='' line package
+  while read -r line; do
+    case $line in
+      '' | '#'*) continue ;;
+      '['*']') section=${line:1:-1} && continue ;;
+    esac
+    if [[ " $* " == *" $section "* ]]; then
+      package=$line
+      if [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" != installed ]; then
+        echo "$package"
+      fi
+    fi
+  done <cmake/debian-packages.txt
+}
+
+# Installs what the given sections need and is missing. Quick when nothing is.
+need_packages() {
+  if ! command -v dpkg-query >/dev/null; then
+    say "This is no Debian system: cmake/debian-packages.txt says what must be installed. Going on."
+    return
+  fi
+  local missing
+  mapfile -t missing < <(missing_packages "$@")
+  if [ ${#missing[@]} -eq 0 ]; then
+    return
+  fi
+  say "Installing Debian packages: ${missing[*]}"
+  command -v apt-get >/dev/null || die "apt-get is missing; install these packages by hand: ${missing[*]}"
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null ||
+      die "not root and no sudo; run as root: apt-get install ${missing[*]}"
+    as_root=(sudo)
+  fi
+  local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o Acquire::Retries=3)
+  if ! "${apt[@]}" update; then
+    say "The package lists could not be refreshed; trying with those at hand."
+  fi
+  "${apt[@]}" install -y --no-install-recommends "${missing[@]}" ||
+    die "apt-get could not install ${missing[*]} (see above). Is this machine off line, or not Debian 12?"
+}
+
+# Memory limits parallel compilation before the cores do on small machines: 1.5 GB for each compiler.
+build_jobs() {
+  local cores kilobytes
+  cores=$(nproc)
+  kilobytes=$(awk '/^MemAvailable:/ { print $2 }' /proc/meminfo 2>/dev/null)
+  local most=$((${kilobytes:-2000000} / 1500000))
+  if [ "$most" -lt 1 ]; then most=1; fi
+  echo $((cores < most ? cores : most))
+}

@@ -1,0 +1,263 @@
+// The program as its user meets it: exit status, messages, files.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/temporary_directory.h"
+
+namespace marti::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int status = -1;
+  std::string output;  // standard output and error
+};
+
+// Runs the program through a shell, so that a test can redirect and limit it.
+Outcome shell(const std::string& command) {
+  Outcome outcome;
+  FILE* pipe = popen(("( " + command + " ) 2>&1").c_str(), "r");
+  std::array<char, 4096> buffer{};
+  for (std::size_t n = 0; pipe != nullptr && (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+    outcome.output.append(buffer.data(), n);
+  }
+  const int status = pclose(pipe);
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return outcome;
+}
+
+std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
+
+Outcome marti(const std::string& arguments) { return shell(quoted(MARTI_PROGRAM) + " " + arguments); }
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+
+const std::string small = " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
+
+TEST(Command, EveryShippedConfigurationRuns) {
+  int configurations = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(MARTI_SOURCE) / "configs")) {
+    if (entry.path().extension() == ".toml") {
+      ++configurations;
+      const Outcome outcome = marti("run " + quoted(entry.path()) + small);
+      EXPECT_EQ(outcome.status, 0) << entry.path() << "\n" << outcome.output;
+      for (const char* line : {"frame time", "speed-up", "hit ratio", "limited by"}) {
+        EXPECT_NE(outcome.output.find(line), std::string::npos) << entry.path() << " lacks " << line;
+      }
+    }
+  }
+  EXPECT_GE(configurations, 4);
+}
+
+TEST(Command, ARunWritesItsFilesAndTheSameBytesAgain) {
+  const TemporaryDirectory directory;
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
+  const fs::path a = directory.path() / "a";
+  const fs::path b = directory.path() / "b" / "deeper";
+  ASSERT_EQ(marti("run " + quoted(config) + small + " -o " + quoted(a)).status, 0);
+  ASSERT_EQ(marti("run " + quoted(config) + small + " -o " + quoted(b)).status, 0);
+  for (const char* name : {"image.exr", "image.png", "result.json"}) {
+    EXPECT_FALSE(read(a / name).empty()) << name;
+  }
+  EXPECT_EQ(read(a / "result.json"), read(b / "result.json"));
+  EXPECT_EQ(read(a / "image.png"), read(b / "image.png"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(a), {}), 3) << "no temporary file may stay behind";
+}
+
+TEST(Command, JsonHoldsTheConservationLaws) {
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
+  const Outcome outcome = marti("run --json " + quoted(config) + small);
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const nlohmann::json result = nlohmann::json::parse(outcome.output);
+  const nlohmann::json& machine = result["machine"];
+  ASSERT_EQ(machine["per_node"].size(), 16U);
+  std::int64_t pixels = 0;
+  for (const nlohmann::json& node : machine["per_node"]) {
+    std::int64_t sum = 0;
+    for (const auto& [activity, time] : node["time_ps"].items()) {
+      sum += time.get<std::int64_t>();
+    }
+    EXPECT_EQ(sum, machine["frame_time_ps"].get<std::int64_t>());
+    pixels += node["pixels"].get<std::int64_t>();
+  }
+  EXPECT_EQ(pixels, 24 * 16);
+  std::int64_t misses = 0;
+  for (const auto& [kind, counts] : machine["references"].items()) {
+    misses += counts["misses"].get<std::int64_t>();
+  }
+  EXPECT_EQ(machine["per_cluster"][0]["interconnect"]["reads"].get<std::int64_t>(), misses);
+}
+
+TEST(Command, TheImageDoesNotDependOnTheMachineNorOnTheStructure) {
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
+  const auto hashes = [&](const std::string& options) {
+    const Outcome outcome = marti("run --json " + quoted(config) + small + options);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    const nlohmann::json result = nlohmann::json::parse(outcome.output);
+    return result["image"]["image_hash"].get<std::string>() + result["image"]["hit_hash"].get<std::string>();
+  };
+  const std::string expected = hashes("");
+  EXPECT_EQ(hashes(" --set machine.nodes=3 --set cache.size=\"1 KiB\" --set packets.width=5"), expected);
+  EXPECT_EQ(hashes(" --set structure.max_objects=2 --set structure.max_level=9"), expected);
+  EXPECT_NE(hashes(" --set image.max_depth=1"), expected);
+}
+
+struct Wrong {
+  const char* text;
+  std::vector<std::string> complaint;  // parts of the message
+};
+
+TEST(Command, WrongConfigurationsGetOneMessageWithFileLineAndKey) {
+  const TemporaryDirectory directory;
+  const fs::path config = directory.path() / "wrong.toml";
+  const std::vector<Wrong> cases = {
+      {"[cache]\nsiz = \"16 KiB\"\n", {"wrong.toml:2", "cache.siz", "cache.size"}},
+      {"[cache]\nsize = \"17 B\"\n", {"wrong.toml:2", "cache.size", "line"}},
+      {"[cache]\nsize = true\n", {"wrong.toml:2", "cache.size"}},
+      {"[cache]\nline = \"24 B\"\n", {"wrong.toml:2", "cache.line", "power of two"}},
+      {"[cache]\norganisation = \"none\"\nsize = \"1 KiB\"\n", {"wrong.toml:3", "cache.size", "none"}},
+      {"[cache]\nreplacement = \"lur\"\n", {"wrong.toml:2", "cache.replacement", "lru"}},
+      {"[machine]\nnodes = 0\n", {"wrong.toml:2", "machine.nodes"}},
+      {"[machine]\nnodes = -5\n", {"wrong.toml:2", "machine.nodes"}},
+      {"[machine]\nnodes = 16777216\nclusters = 2\n", {"wrong.toml:2", "machine.nodes", "2^24"}},
+      {"[machine]\nnodes = 1.5\n", {"wrong.toml:2", "machine.nodes"}},
+      {"[image]\nwidth = 99999999999999999999\n", {"wrong.toml:2"}},
+      {"[image]\nwidth = 32768\nheight = 32768\nmax_depth = 64\n", {"memory_limit"}},
+      {"[interconnect]\nkind = \"ideal\"\nwidth = \"8 B\"\n",
+       {"wrong.toml:3", "interconnect.width", "ideal"}},
+      {"[memory]\ninterleave = \"48 B\"\n", {"wrong.toml:2", "memory.interleave", "power of two"}},
+      {"[node]\nclock = \"33\"\n", {"wrong.toml:2", "node.clock"}},
+      {"[scene]\nsource = \"teepot:12\"\n", {"teepot", "teapot"}},
+      {"[scene]\nsource = \"teapot:0\"\n", {"teapot"}},
+      {"[scene]\nsource = \"missing.glb\"\n", {"missing.glb"}},
+      {"[scene]\nsource = \"teapot:2\"\nframe = 3\n", {"frame"}},
+      {"[structure]\nkind = \"none\"\nmax_level = 3\n", {"wrong.toml:3", "structure.max_level", "none"}},
+      {"nodes = 3\n", {"wrong.toml:1", "nodes"}},
+      {"[cache\n", {"wrong.toml:1"}},
+      {"[cache]\nsize = \"1 KiB\"\nsize = \"2 KiB\"\n", {"wrong.toml:3"}},
+  };
+  for (const Wrong& wrong : cases) {
+    write(config, wrong.text);
+    const Outcome outcome = marti("run " + quoted(config) + " -o " + quoted(directory.path() / "out"));
+    EXPECT_EQ(outcome.status, 2) << wrong.text << "\n" << outcome.output;
+    for (const std::string& part : wrong.complaint) {
+      EXPECT_NE(outcome.output.find(part), std::string::npos) << wrong.text << "says: " << outcome.output;
+    }
+    EXPECT_FALSE(fs::exists(directory.path() / "out" / "result.json"));
+  }
+}
+
+TEST(Command, ARefusalLeavesEarlierResultsAlone) {
+  const TemporaryDirectory directory;
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
+  const fs::path out = directory.path() / "out";
+  ASSERT_EQ(marti("run " + quoted(config) + small + " -o " + quoted(out)).status, 0);
+  const std::string before = read(out / "result.json");
+  EXPECT_EQ(marti("run " + quoted(config) + small + " --set cache.size=17 -o " + quoted(out)).status, 2);
+  EXPECT_EQ(read(out / "result.json"), before);
+}
+
+TEST(Command, UnwritablePlacesAreTheUsersAffair) {
+  const TemporaryDirectory directory;
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
+  write(directory.path() / "file", "in the way");
+  const Outcome blocked = marti("run " + quoted(config) + small + " -o " + quoted(directory.path() / "file"));
+  EXPECT_EQ(blocked.status, 2) << blocked.output;
+  // Files larger than a few blocks cannot be written, as on a full disk.
+  const Outcome full =
+      shell("ulimit -f 1; trap '' XFSZ; " + quoted(MARTI_PROGRAM) + " run " + quoted(config) +
+            " --set image.width=200 --set image.height=200 --set scene.source=teapot:2 -o " +
+            quoted(directory.path() / "full"));
+  EXPECT_EQ(full.status, 2) << full.output;
+  EXPECT_TRUE(fs::is_empty(directory.path() / "full")) << "nothing may be left behind";
+  const Outcome closed = shell(quoted(MARTI_PROGRAM) + " config > /dev/full");
+  EXPECT_EQ(closed.status, 2) << closed.output;
+}
+
+TEST(Command, UsageErrorsAreTwoAndHelpIsZero) {
+  EXPECT_EQ(marti("").status, 2);
+  EXPECT_EQ(marti("fly").status, 2);
+  EXPECT_EQ(marti("run").status, 2);
+  EXPECT_EQ(marti("run /nonexistent.toml").status, 2);
+  EXPECT_EQ(marti("run / ").status, 2);
+  EXPECT_EQ(marti("--help").status, 0);
+  EXPECT_EQ(marti("run --help").status, 0);
+  EXPECT_EQ(marti("--version").status, 0);
+}
+
+TEST(Command, ConfigListsEveryKeyAndTheReferenceIsUpToDate) {
+  const Outcome text = marti("config");
+  EXPECT_EQ(text.status, 0);
+  for (const char* key : {"cache.size", "machine.nodes", "scene.source", "host.assignment"}) {
+    EXPECT_NE(text.output.find(key), std::string::npos) << key;
+  }
+  const std::string reference = read(fs::path(MARTI_SOURCE) / "docs" / "configuration.md");
+  EXPECT_EQ(marti("config --markdown").output, reference)
+      << "run: marti config --markdown > docs/configuration.md";
+}
+
+TEST(Command, AnExportedSceneRendersLikeItsSource) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "teapot.glb";
+  ASSERT_EQ(marti("scene export teapot:2 " + quoted(file)).status, 0);
+  const Outcome info = marti("scene info " + quoted(file));
+  EXPECT_EQ(info.status, 0) << info.output;
+  const Outcome recipe = marti("scene info teapot:2");
+  EXPECT_NE(recipe.output.find("polygons"), std::string::npos);
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
+  const std::string size = " --set image.width=24 --set image.height=16 --set scene.source=";
+  const Outcome rendered = marti("run --json " + quoted(config) + size + quoted(file));
+  ASSERT_EQ(rendered.status, 0) << rendered.output;
+  const Outcome original = marti("run --json " + quoted(config) + size + "teapot:2");
+  // The file holds single-precision positions, so a few rays at edges may differ, and no more.
+  const auto camera_hits = [](const Outcome& outcome) {
+    return nlohmann::json::parse(outcome.output)["image"]["hits"]["camera"].get<int>();
+  };
+  EXPECT_NEAR(camera_hits(rendered), camera_hits(original), 3);
+  EXPECT_EQ(marti("scene export teapot:2 " + quoted(directory.path() / "teapot.obj")).status, 2);
+  EXPECT_EQ(marti("scene list").status, 0);
+}
+
+TEST(Command, BrokenGltfFilesAreRefused) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "broken.gltf";
+  for (const char* text :
+       {"", "{", "[]", "{\"asset\":{\"version\":\"2.0\"}}",
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":7,\"scenes\":[{\"nodes\":[0]}],\"nodes\":"
+        "[{\"children\":[0]}]}"}) {
+    write(file, text);
+    const Outcome outcome = marti("scene info " + quoted(file));
+    EXPECT_EQ(outcome.status, 2) << text << "\n" << outcome.output;
+    EXPECT_NE(outcome.output.find("broken.gltf"), std::string::npos) << outcome.output;
+  }
+}
+
+TEST(Command, AnInterruptedRunLeavesNoFile) {
+  const TemporaryDirectory directory;
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
+  const Outcome outcome =
+      shell("timeout --preserve-status -s INT 0.3 " + quoted(MARTI_PROGRAM) + " run " + quoted(config) +
+            " --set image.width=2000 --set image.height=2000 -o " + quoted(directory.path() / "out"));
+  EXPECT_EQ(outcome.status, 130) << outcome.output;
+  EXPECT_TRUE(!fs::exists(directory.path() / "out") || fs::is_empty(directory.path() / "out"));
+}
+
+}  // namespace
+}  // namespace marti::test
