@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "memory/hashed_tags.h"
+#include "memory/quad_tags.h"
 #include "memory/set_tags.h"
 
 namespace marti::memory {
@@ -31,7 +32,7 @@ decltype(auto) with_tag_store(Replacement replacement, const CacheShape& shape, 
     case 2:
       return use.template operator()<SetTags<Replacement::lru, 2>>();
     case 4:
-      return use.template operator()<SetTags<Replacement::lru, 4>>();
+      return use.template operator()<QuadTags>();
     case 8:
       return use.template operator()<SetTags<Replacement::lru, 8>>();
     default:

@@ -22,6 +22,7 @@ template <typename Real>
 struct Surface {
   Vec3<Real> point;
   Vec3<Real> error;      ///< bound of each coordinate's error
+  Real margin{0.0};      ///< bound of how far beside the triangle's plane the kernel still sees it hit
   Vec3<Real> geometric;  ///< the triangle's unit normal, on the viewer's side
   Vec3<Real> normal;     ///< the unit shading normal, on the viewer's side and facing the viewer
   Vec3<Real> color;      ///< the material's colour times the texture's
@@ -51,6 +52,10 @@ Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, con
   surface.point = t0 + t1 + t2;
   // Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 6.8.5.
   surface.error = (absolute(t0) + absolute(t1) + absolute(t2)) * Real(gamma_bound(7));
+  // The kernel's t has an error of some 8 roundings of the triangle's own extent, however small the
+  // coordinates are: a triangle in the plane z = 0 has no error in z, yet an oblique ray that starts exactly
+  // there would hit it by rounding. 2^-48 leaves a factor of two.
+  surface.margin = largest(absolute(p1 - p0) + absolute(p2 - p0)) * Real(0x1p-48);
 
   surface.geometric = normalized(cross(p1 - p0, p2 - p0));
   surface.outside = dot(surface.geometric, direction) < Real(0.0);
@@ -101,11 +106,11 @@ inline double next_toward(double value, double toward) {
 }
 
 /// Where a ray that leaves the surface into `direction` begins: the point moved along the triangle's
-/// normal out of its error box, each coordinate rounded outwards (Physically Based Rendering, 4th ed.,
-/// section 6.8.6). A fixed epsilon fails at both ends of scale.
+/// normal out of its error box and the kernel's margin, each coordinate rounded outwards (Physically Based
+/// Rendering, 4th ed., section 6.8.6). A fixed epsilon fails at both ends of scale.
 template <typename Real>
 Vec3<Real> leave(const Surface<Real>& surface, const Vec3<Real>& direction) {
-  Real distance = dot(absolute(surface.geometric), surface.error);
+  Real distance = dot(absolute(surface.geometric), surface.error) + surface.margin;
   if (dot(surface.geometric, direction) < Real(0.0)) {
     distance = -distance;
   }

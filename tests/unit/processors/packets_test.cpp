@@ -14,13 +14,13 @@ namespace marti::processors {
 namespace {
 
 TEST(Packets, CoverEveryPixelOnceInEveryOrder) {
-  tests::Random random(1);
+  test::Random random(1);
   for (int round = 0; round < 200; ++round) {
-    const auto width = static_cast<std::uint32_t>(tests::pick(random, 1, 40));
-    const auto height = static_cast<std::uint32_t>(tests::pick(random, 1, 40));
-    const PacketConfig config = {static_cast<std::uint32_t>(tests::pick(random, 1, 50)),
-                                 static_cast<std::uint32_t>(tests::pick(random, 1, 50)),
-                                 static_cast<PacketOrder>(tests::pick(random, 0, 2))};
+    const auto width = static_cast<std::uint32_t>(test::pick(random, 1, 40));
+    const auto height = static_cast<std::uint32_t>(test::pick(random, 1, 40));
+    const PacketConfig config = {static_cast<std::uint32_t>(test::pick(random, 1, 50)),
+                                 static_cast<std::uint32_t>(test::pick(random, 1, 50)),
+                                 static_cast<PacketOrder>(test::pick(random, 0, 2))};
     const PacketList packets(width, height, config);
     std::vector<int> seen(std::size_t{width} * height);
     for (std::uint64_t i = 0; i < packets.size(); ++i) {
@@ -100,8 +100,8 @@ TEST(Host, ABusyHostServesRequestsOneAfterTheOther) {
 }
 
 TEST(NodeOrder, DepthFirstIsAPermutationThatKeepsChildrenTogether) {
-  tests::Random random(2);
-  const accel::Topology topology = tests::random_topology(random, 30, 10, 3);
+  test::Random random(2);
+  const accel::Topology topology = test::random_topology(random, 30, 10, 3);
   const std::vector<std::uint32_t> rank = depth_first_rank(topology);
   std::vector<int> seen(rank.size());
   for (const std::uint32_t r : rank) {

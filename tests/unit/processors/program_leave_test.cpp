@@ -57,6 +57,50 @@ scenes::Scene icosphere(int levels, double scale, double offset) {
   return scene;
 }
 
+// A checkerboard in the plane `axis` = height, whose triangles have no error in that coordinate when the
+// height is 0: rays that leave it on either side must not meet it again.
+TEST(LeavingAPlane, NoRayMeetsTheBoardItLeft) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (const double height : {0.0, 1.0, -1e-9, 1e6}) {
+    for (glm::length_t axis = 0; axis < 3; ++axis) {
+      scenes::Scene scene;
+      scene.materials.emplace_back();
+      const auto point = [&](int i, int j) {
+        glm::dvec3 p(height);
+        p[(axis + 1) % 3] = -4.0 + 8.0 * i / 12.0;
+        p[(axis + 2) % 3] = -4.0 + 8.0 * j / 12.0;
+        return p;
+      };
+      for (std::uint32_t k = 0; k < 144; ++k) {
+        const int i = static_cast<int>(k / 12);
+        const int j = static_cast<int>(k % 12);
+        for (const glm::dvec3& p : {point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)}) {
+          scene.positions.push_back(p);
+        }
+        scene.triangles.push_back({{4 * k, 4 * k + 1, 4 * k + 2}, 0, k});
+        scene.triangles.push_back({{4 * k + 2, 4 * k + 3, 4 * k}, 0, k});
+      }
+      const test::Built built(scene, "octree");
+      for (int ray = 0; ray < 5000; ++ray) {
+        glm::dvec3 eye(unit(random) * 9.0, unit(random) * 9.0, unit(random) * 9.0);
+        eye[axis] = height + (ray % 2 == 0 ? 5.4 : -5.4);
+        glm::dvec3 aim(unit(random) * 3.9, unit(random) * 3.9, unit(random) * 3.9);
+        aim[axis] = height;
+        const glm::dvec3 d = glm::normalize(aim - eye);
+        const accel::Hit hit = built.structure->closest({eye, d});
+        ASSERT_TRUE(hit.found());
+        const double weights[3] = {hit.u, hit.v, hit.w};
+        const Surface<double> surface = surface_at(built.scene, hit.primitive, weights, Vec3<double>(d));
+        glm::dvec3 out(unit(random), unit(random), unit(random));
+        const Vec3<double> from = leave(surface, Vec3<double>(out));
+        ASSERT_FALSE(built.structure->occluded({{from.x, from.y, from.z}, out}))
+            << height << " axis " << axis;
+      }
+    }
+  }
+}
+
 class Leaving : public testing::TestWithParam<std::tuple<double, double>> {};
 
 TEST_P(Leaving, OutwardsNothingIsHitAndInwardsTheFarSide) {

@@ -37,10 +37,10 @@ void expect_equal(const MachineResult& a, const MachineResult& b) {
 }
 
 RC_GTEST_PROP(Replay, RunningAheadEqualsAnEventForEveryReference, (std::uint64_t seed)) {
-  tests::Random random(seed);
-  const WorkLog log = tests::random_log(random, static_cast<std::uint32_t>(tests::pick(random, 1, 12)),
-                                        static_cast<std::uint32_t>(tests::pick(random, 1, 12)));
-  const MachineConfig machine = tests::random_machine(random);
+  test::Random random(seed);
+  const WorkLog log = test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 12)),
+                                       static_cast<std::uint32_t>(test::pick(random, 1, 12)));
+  const MachineConfig machine = test::random_machine(random);
   const MachineResult ahead = replay(log, machine);
   const MachineResult stepped = replay(log, machine, {.step_by_step = true});
   expect_equal(ahead, stepped);
@@ -49,17 +49,17 @@ RC_GTEST_PROP(Replay, RunningAheadEqualsAnEventForEveryReference, (std::uint64_t
 }
 
 RC_GTEST_PROP(Replay, TheOrderOfTheFirstEventsDoesNotMatter, (std::uint64_t seed)) {
-  tests::Random random(seed);
-  const WorkLog log = tests::random_log(random, 9, 7);
-  const MachineConfig machine = tests::random_machine(random);
+  test::Random random(seed);
+  const WorkLog log = test::random_log(random, 9, 7);
+  const MachineConfig machine = test::random_machine(random);
   expect_equal(replay(log, machine), replay(log, machine, {.start_seed = random() | 1U}));
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 
 RC_GTEST_PROP(Replay, ScalingEveryDurationScalesEveryTimeExactly, (std::uint64_t seed)) {
-  tests::Random random(seed);
-  const WorkLog log = tests::random_log(random, 8, 8);
-  MachineConfig machine = tests::random_machine(random);
+  test::Random random(seed);
+  const WorkLog log = test::random_log(random, 8, 8);
+  MachineConfig machine = test::random_machine(random);
   const MachineResult base = replay(log, machine);
   for (std::int64_t scale = 10; scale <= 1'000'000'000; scale *= 10) {
     MachineConfig slow = machine;
@@ -95,10 +95,10 @@ sim::Ticks compute_of(const WorkLog& log, const MachineConfig& machine) {
 }
 
 TEST(Replay, OneNodeIsComputePlusHitsPlusMissesTimesLatency) {
-  tests::Random random(11);
+  test::Random random(11);
   for (int round = 0; round < 60; ++round) {
-    const WorkLog log = tests::random_log(random, 16, 16);
-    MachineConfig machine = tests::random_machine(random);
+    const WorkLog log = test::random_log(random, 16, 16);
+    MachineConfig machine = test::random_machine(random);
     machine.clusters = 1;
     machine.nodes = 1;
     machine.placement = Placement::shared;
@@ -120,10 +120,10 @@ TEST(Replay, OneNodeIsComputePlusHitsPlusMissesTimesLatency) {
 
 TEST(Replay, OneNodeOnABusWithSlowPixelsIsExactToo) {
   // One pixel, so the only write comes last and no read can wait for it.
-  tests::Random random(12);
+  test::Random random(12);
   for (int round = 0; round < 100; ++round) {
-    const WorkLog log = tests::random_log(random, 1, 1, 2000);
-    MachineConfig machine = tests::random_machine(random);
+    const WorkLog log = test::random_log(random, 1, 1, 2000);
+    MachineConfig machine = test::random_machine(random);
     machine.clusters = 1;
     machine.nodes = 1;
     machine.placement = Placement::shared;
@@ -142,11 +142,11 @@ TEST(Replay, OneNodeOnABusWithSlowPixelsIsExactToo) {
 }
 
 TEST(Replay, CountsDoNotDependOnTheMachine) {
-  tests::Random random(13);
-  const WorkLog log = tests::random_log(random, 20, 13);
+  test::Random random(13);
+  const WorkLog log = test::random_log(random, 20, 13);
   const LogTotals totals = totals_of(log);
   for (int round = 0; round < 100; ++round) {
-    const MachineResult result = replay(log, tests::random_machine(random, 40));
+    const MachineResult result = replay(log, test::random_machine(random, 40));
     const StepCounts steps = result.steps();
     EXPECT_EQ(static_cast<std::uint64_t>(steps.branches), totals.branches);
     EXPECT_EQ(static_cast<std::uint64_t>(steps.leaves), totals.leaves);
@@ -158,8 +158,8 @@ TEST(Replay, CountsDoNotDependOnTheMachine) {
 }
 
 TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
-  tests::Random random(14);
-  const WorkLog log = tests::random_log(random, 24, 24);
+  test::Random random(14);
+  const WorkLog log = test::random_log(random, 24, 24);
   MachineConfig machine;
   machine.nodes = 1;
   machine.cache.cache.size = 1 << 20;
@@ -218,8 +218,8 @@ TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
 }
 
 TEST(Replay, ZeroLatenciesFinishWithTheSameHitsUnderStaticAssignment) {
-  tests::Random random(15);
-  const WorkLog log = tests::random_log(random, 16, 16);
+  test::Random random(15);
+  const WorkLog log = test::random_log(random, 16, 16);
   MachineConfig machine;
   machine.host.assignment = Assignment::interleaved;
   const MachineResult normal = replay(log, machine);
@@ -236,8 +236,8 @@ TEST(Replay, ZeroLatenciesFinishWithTheSameHitsUnderStaticAssignment) {
 }
 
 TEST(Replay, LowerBoundsHoldAndMoreNodesThanPacketsStandIdle) {
-  tests::Random random(16);
-  const WorkLog log = tests::random_log(random, 16, 16);
+  test::Random random(16);
+  const WorkLog log = test::random_log(random, 16, 16);
   for (const std::uint32_t nodes : {1U, 2U, 3U, 16U, 17U, 1024U, 65536U}) {
     MachineConfig machine;
     machine.nodes = nodes;
@@ -254,8 +254,8 @@ TEST(Replay, LowerBoundsHoldAndMoreNodesThanPacketsStandIdle) {
 }
 
 TEST(Replay, RefusesWhatCannotBeBuiltOrTimed) {
-  tests::Random random(17);
-  const WorkLog log = tests::random_log(random, 4, 4);
+  test::Random random(17);
+  const WorkLog log = test::random_log(random, 4, 4);
   MachineConfig machine;
   machine.nodes = 0;
   EXPECT_THROW((void)replay(log, machine), sim::UserError);
@@ -276,8 +276,8 @@ TEST(Replay, RefusesWhatCannotBeBuiltOrTimed) {
 }
 
 TEST(Replay, AnEmptyImageTakesNoTime) {
-  tests::Random random(18);
-  const WorkLog log = tests::random_log(random, 0, 0);
+  test::Random random(18);
+  const WorkLog log = test::random_log(random, 0, 0);
   MachineConfig machine;
   EXPECT_EQ(replay(log, machine).end, 0);
 }

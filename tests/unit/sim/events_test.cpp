@@ -1,0 +1,156 @@
+// Time and the event kernel: total order, checked arithmetic, no progress in the past.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "sim/engine.h"
+#include "sim/error.h"
+#include "sim/event_queue.h"
+#include "sim/time.h"
+
+namespace marti::sim {
+namespace {
+
+std::vector<Event> some_events(std::mt19937_64& random, std::size_t count) {
+  std::vector<Event> events;
+  for (std::size_t i = 0; i < count; ++i) {
+    events.push_back(Event::make(static_cast<Ticks>(random() % 20), static_cast<std::uint8_t>(random() % 4),
+                                 static_cast<std::uint32_t>(random() % 5), static_cast<std::uint32_t>(i)));
+  }
+  return events;
+}
+
+RC_GTEST_PROP(EventQueue, PopsInTotalOrderWhateverTheOrderOfInsertion, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  std::vector<Event> events = some_events(random, random() % 200);
+  std::vector<Event> sorted = events;
+  std::sort(sorted.begin(), sorted.end());
+  for (int round = 0; round < 3; ++round) {
+    std::shuffle(events.begin(), events.end(), random);
+    EventQueue queue;
+    for (const Event& event : events) {
+      queue.push(event);
+    }
+    RC_ASSERT(queue.size() == events.size());
+    for (const Event& expected : sorted) {
+      const Event event = queue.pop();
+      RC_ASSERT(event.time == expected.time);
+      RC_ASSERT(event.order == expected.order);
+    }
+    RC_ASSERT(queue.empty());
+  }
+}
+
+// Pops and pushes interleaved, as in a simulation, against a sorted list.
+RC_GTEST_PROP(EventQueue, AgreesWithASortedListWhenPopsAndPushesMix, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  EventQueue queue;
+  std::vector<Event> list;
+  for (const Event& event : some_events(random, 400)) {
+    queue.push(event);
+    list.insert(std::upper_bound(list.begin(), list.end(), event), event);
+    while (!list.empty() && random() % 3 == 0) {
+      const Event popped = queue.pop();
+      RC_ASSERT(popped.time == list.front().time);
+      RC_ASSERT(popped.order == list.front().order);
+      list.erase(list.begin());
+    }
+    RC_ASSERT(queue.size() == list.size());
+    RC_ASSERT(queue.empty() == list.empty());
+  }
+}
+
+TEST(Event, KeepsItsFields) {
+  const Event event = Event::make(77, 200, 0xfffffffeU, 0xabcdef);
+  EXPECT_EQ(event.time, 77);
+  EXPECT_EQ(event.event_class(), 200);
+  EXPECT_EQ(event.component(), 0xfffffffeU);
+  EXPECT_EQ(event.sequence(), 0xabcdefU);
+}
+
+TEST(Event, OrdersByTimeThenClassThenComponentThenSequence) {
+  const std::vector<Event> ascending = {Event::make(1, 9, 9, 9), Event::make(2, 0, 9, 9),
+                                        Event::make(2, 1, 0, 9), Event::make(2, 1, 1, 0),
+                                        Event::make(2, 1, 1, 1)};
+  for (std::size_t i = 1; i < ascending.size(); ++i) {
+    EXPECT_TRUE(ascending[i - 1] < ascending[i]);
+    EXPECT_FALSE(ascending[i] < ascending[i - 1]);
+  }
+}
+
+// A component that posts its next event `delay` ticks later, `left` times.
+class Ticker final : public EventHandler {
+ public:
+  Ticker(Engine& engine, Ticks delay, int left) : engine_(engine), delay_(delay), left_(left) {}
+  void handle(const Event& event) override {
+    times.push_back(event.time);
+    if (--left_ > 0) {
+      engine_.post(Event::make(event.time + delay_, event.event_class(), event.component()));
+    }
+  }
+  std::vector<Ticks> times;
+
+ private:
+  Engine& engine_;
+  Ticks delay_;
+  int left_;
+};
+
+TEST(Engine, HandsEventsOutInTimeAndCountsThem) {
+  Engine engine;
+  Ticker slow(engine, 5, 3);
+  Ticker fast(engine, 2, 4);
+  engine.attach(0, slow);
+  engine.attach(1, fast);
+  engine.post(Event::make(0, 0, 0));
+  engine.post(Event::make(1, 1, 0));
+  engine.run(10);
+  EXPECT_EQ(slow.times, (std::vector<Ticks>{0, 5, 10}));
+  EXPECT_EQ(fast.times, (std::vector<Ticks>{1, 3, 5, 7}));
+  EXPECT_EQ(engine.events(), 7U);
+  EXPECT_EQ(engine.now(), 10);
+}
+
+TEST(Engine, NoticesALoopWithoutProgress) {
+  Engine engine;
+  Ticker stuck(engine, 0, std::numeric_limits<int>::max());
+  engine.attach(0, stuck);
+  engine.post(Event::make(3, 0, 0));
+  EXPECT_THROW(engine.run(1000), InternalError);
+}
+
+TEST(Engine, RefusesThePastAndUnknownClasses) {
+  Engine engine;
+  Ticker backwards(engine, -1, 2);
+  engine.attach(0, backwards);
+  engine.post(Event::make(3, 0, 0));
+  EXPECT_THROW(engine.run(10), InternalError);
+  Engine deaf;
+  deaf.post(Event::make(0, 5, 0));
+  EXPECT_THROW(deaf.run(10), InternalError);
+}
+
+TEST(Time, ArithmeticIsChecked) {
+  constexpr Ticks most = std::numeric_limits<Ticks>::max();
+  EXPECT_EQ(add_ticks(most - 5, 5), most);
+  EXPECT_THROW(add_ticks(most - 5, 6), UserError);
+  EXPECT_THROW(multiply_ticks(most / 2, 3), UserError);
+  EXPECT_EQ(multiply_ticks(1'000'000, 1'000'000), 1'000'000'000'000);
+}
+
+TEST(Time, ClocksTurnIntoWholePeriodsOnce) {
+  EXPECT_EQ(Clock::from_hertz(33e6).period(), 30303);
+  EXPECT_EQ(Clock::from_hertz(1e12).period(), 1);
+  EXPECT_EQ(Clock::from_hertz(1.0).cycles(2), 2 * ticks_per_second);
+  EXPECT_THROW(Clock::from_hertz(0.5), UserError);
+  EXPECT_THROW(Clock::from_hertz(2e12), UserError);
+  EXPECT_THROW(Clock::from_hertz(std::numeric_limits<double>::quiet_NaN()), UserError);
+  EXPECT_THROW(Clock::from_period(0), UserError);
+}
+
+}  // namespace
+}  // namespace marti::sim
