@@ -37,7 +37,8 @@ class Banks {
   explicit Banks(const BankConfig& config);
 
   [[nodiscard]] std::uint32_t bank_of(Address address) const {
-    return static_cast<std::uint32_t>((address >> interleave_shift_) % count_);
+    const Address unit = address >> interleave_shift_;
+    return static_cast<std::uint32_t>((count_ & (count_ - 1)) == 0 ? unit & (count_ - 1) : unit % count_);
   }
   /// Queues an access that arrives at `arrival`. Accesses to one bank must come in order of arrival.
   BankAccess access(std::uint32_t bank, sim::Ticks arrival);

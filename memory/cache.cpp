@@ -15,7 +15,7 @@ namespace {
 template <class Tags>
 struct TagStoreOf final : Cache::TagStore {
   TagStoreOf(const CacheShape& shape, std::uint64_t seed) : tags(shape, 1, seed) {}
-  bool access(std::uint32_t line) override { return tags.access(0, line); }
+  bool access(std::uint32_t line) override { return tags.view(0).access(line); }
   Tags tags;
 };
 

@@ -30,7 +30,19 @@ class HashedTags {
     }
   }
 
-  /// As SetTags::access.
+  /// As SetTags::View.
+  class View {
+   public:
+    View(HashedTags& tags, std::uint32_t cache) : tags_(&tags), cache_(cache) {}
+    bool access(std::uint32_t line) const { return tags_->access(cache_, line); }
+
+   private:
+    HashedTags* tags_;
+    std::uint32_t cache_;
+  };
+  [[nodiscard]] View view(std::uint32_t cache) { return {*this, cache}; }
+
+ private:
   bool access(std::uint32_t cache, std::uint32_t line) {
     const std::size_t set = std::size_t{cache} * sets_ + index_(line);
     Set& state = state_[set];
@@ -55,7 +67,6 @@ class HashedTags {
     return false;
   }
 
- private:
   static constexpr std::uint32_t empty = 0xffffffffU;
   struct Way {
     std::uint32_t line = no_line;

@@ -7,18 +7,25 @@
 
 namespace marti::memory {
 
-/// Time of `bytes` on a link of the configured width, in whole beats.
+/// Time of `bytes` on a link of the configured width, in whole beats. Nearly all transactions are of one
+/// size, so the last answer is kept.
 class BeatTime {
  public:
   explicit BeatTime(const InterconnectConfig& config)
       : width_(config.width), beat_(config.clock.cycles(config.cycles_per_beat)) {}
   [[nodiscard]] sim::Ticks operator()(std::uint32_t bytes) const {
-    return sim::multiply_ticks(beat_, (std::int64_t{bytes} + width_ - 1) / width_);
+    if (bytes != last_bytes_) {
+      last_bytes_ = bytes;
+      last_ticks_ = sim::multiply_ticks(beat_, (std::int64_t{bytes} + width_ - 1) / width_);
+    }
+    return last_ticks_;
   }
 
  private:
   std::int64_t width_;
   sim::Ticks beat_;
+  mutable std::uint32_t last_bytes_ = 0;
+  mutable sim::Ticks last_ticks_ = 0;
 };
 
 /// One server with a queue. Calls must come in the order of their arrivals.

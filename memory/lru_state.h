@@ -1,52 +1,59 @@
-// The recency order of a few ways as one small number, with the transition table that a hit needs.
+// The recency order of four ways as one small number, with the transition table that a look-up needs.
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 namespace marti::memory {
 
-/// All orders of `Ways` ways (at most 4, so at most 24 states). State 0 has way 0 as the most recent and
-/// the last way as the victim.
-template <std::uint32_t Ways>
+/// All 24 orders of four ways. A state is the number of its order times 16, so that state + match indexes
+/// the table, `match` being the look-up's result with one bit a way. State 0 has way 0 as the most recent
+/// and way 3 as the victim.
 struct LruStates {
-  static_assert(Ways >= 1 && Ways <= 4);
-  static constexpr std::size_t count = Ways == 4 ? 24 : (Ways == 3 ? 6 : Ways);
+  static constexpr std::uint32_t ways = 4;
+  static constexpr std::size_t orders = 24;
+  static constexpr std::size_t matches = 16;
 
-  std::array<std::array<std::uint8_t, 4>, count> after_use{};  ///< [state][way]: state after a use of the way
-  std::array<std::uint8_t, count> victim{};                    ///< [state]: the least recent way
+  /// [state + match]: the state after a hit of the lowest way in `match`, or, for match 0, after the victim
+  /// was replaced.
+  std::array<std::uint16_t, orders * matches> next{};
+  /// [state / 16]: the least recent way.
+  std::array<std::uint8_t, orders> victim{};
 
   constexpr LruStates() {
-    // Orders are found from state 0 by moving each way to the front, until no new order appears.
-    std::array<std::array<std::uint8_t, Ways>, count> orders{};
-    std::size_t known = 1;
-    for (std::uint8_t way = 0; way < Ways; ++way) {
-      orders[0][way] = way;
-    }
-    for (std::size_t state = 0; state < known; ++state) {
-      victim[state] = orders[state][Ways - 1];
-      for (std::uint8_t way = 0; way < Ways; ++way) {
-        std::array<std::uint8_t, Ways> next{way};
-        std::size_t at = 1;
-        for (const std::uint8_t other : orders[state]) {
-          if (other != way) {
-            next[at++] = other;
-          }
+    using Order = std::array<std::uint8_t, ways>;  // most recent first
+    std::array<Order, orders> known{Order{0, 1, 2, 3}};
+    std::size_t count = 1;
+    // Orders are found from the first on by moving each way to the front, until no new one appears.
+    const auto after = [&](const Order& order, std::uint8_t way) {
+      Order moved{way};
+      std::size_t at = 1;
+      for (const std::uint8_t other : order) {
+        if (other != way) {
+          moved[at++] = other;
         }
-        std::size_t found = 0;
-        while (found < known && orders[found] != next) {
-          ++found;
-        }
-        if (found == known) {
-          orders[known++] = next;
-        }
-        after_use[state][way] = static_cast<std::uint8_t>(found);
+      }
+      std::size_t found = 0;
+      while (found < count && known[found] != moved) {
+        ++found;
+      }
+      if (found == count) {
+        known[count++] = moved;
+      }
+      return static_cast<std::uint16_t>(found * matches);
+    };
+    for (std::size_t order = 0; order < count; ++order) {
+      const Order current = known[order];
+      victim[order] = current[ways - 1];
+      for (std::uint32_t match = 0; match < matches; ++match) {
+        const auto way = match == 0 ? victim[order] : static_cast<std::uint8_t>(std::countr_zero(match));
+        next[order * matches + match] = after(current, way);
       }
     }
   }
 };
 
-template <std::uint32_t Ways>
-inline constexpr LruStates<Ways> lru_states{};
+inline constexpr LruStates lru_states;
 
 }  // namespace marti::memory

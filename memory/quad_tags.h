@@ -2,7 +2,6 @@
 // The commonest cache of the field gets the one look-up without a loop or an unpredictable branch.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -19,30 +18,50 @@ namespace marti::memory {
 class QuadTags {
  public:
   QuadTags(const CacheShape& shape, std::uint32_t caches, std::uint64_t /*seed*/)
-      : index_(shape.sets), sets_(shape.sets), sets_of_caches_(std::size_t{caches} * shape.sets) {}
+      : index_(shape.sets),
+        sets_(shape.sets),
+        sets_of_caches_(std::size_t{caches} * shape.sets),
+        states_(sets_of_caches_.size()) {}
 
-  /// As SetTags::access.
-  [[gnu::always_inline]] bool access(std::uint32_t cache, std::uint32_t line) {
-    Set& set = sets_of_caches_[std::size_t{cache} * sets_ + index_(line)];
-    const std::uint32_t match = ways_that_hold(set, line);
-    if (match != 0) [[likely]] {
-      set.state = lru_states<4>.after_use[set.state][static_cast<std::uint32_t>(std::countr_zero(match))];
-      return true;
+  struct alignas(16) Set {
+    std::uint32_t tags[4] = {no_line, no_line, no_line, no_line};
+  };
+
+  /// One of the caches, with all that a look-up needs in registers.
+  class View {
+   public:
+    View(const SetIndex& index, Set* sets, std::uint16_t* states)
+        : index_(index), sets_(sets), states_(states) {}
+
+    /// As SetTags::View::access.
+    [[gnu::always_inline]] bool access(std::uint32_t line) const {
+      const std::size_t at = index_(line);
+      const std::uint32_t match = ways_that_hold(sets_[at], line);
+      const std::uint32_t state = states_[at];
+      states_[at] = lru_states.next[state + match];
+      const bool hit = match != 0;
+      if (!hit) [[unlikely]] {
+        sets_[at].tags[lru_states.victim[state / LruStates::matches]] = line;
+      }
+      return hit;
     }
-    replace(set, line);
-    return false;
+
+   private:
+    SetIndex index_;
+    Set* sets_;
+    std::uint16_t* states_;
+  };
+
+  [[nodiscard]] View view(std::uint32_t cache) {
+    const std::size_t first = std::size_t{cache} * sets_;
+    return {index_, sets_of_caches_.data() + first, states_.data() + first};
   }
 
  private:
-  struct Set {
-    std::uint32_t tags[4] = {no_line, no_line, no_line, no_line};
-    std::uint32_t state = 0;
-  };
-
   // One bit a way.
   static std::uint32_t ways_that_hold(const Set& set, std::uint32_t line) {
 #ifdef __SSE2__
-    const __m128i tags = _mm_loadu_si128(reinterpret_cast<const __m128i*>(set.tags));
+    const __m128i tags = _mm_load_si128(reinterpret_cast<const __m128i*>(set.tags));
     const __m128i equal = _mm_cmpeq_epi32(tags, _mm_set1_epi32(static_cast<int>(line)));
     return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_castsi128_ps(equal)));
 #else
@@ -51,15 +70,10 @@ class QuadTags {
 #endif
   }
 
-  static void replace(Set& set, std::uint32_t line) {
-    const std::uint32_t way = lru_states<4>.victim[set.state];
-    set.tags[way] = line;
-    set.state = lru_states<4>.after_use[set.state][way];
-  }
-
   SetIndex index_;
   std::uint32_t sets_;
   std::vector<Set> sets_of_caches_;
+  std::vector<std::uint16_t> states_;  // of LruStates, one for each set
 };
 
 }  // namespace marti::memory

@@ -46,7 +46,20 @@ class SetTags {
     }
   }
 
-  /// Looks `line` up in cache number `cache`; true when it is there. Brings it in when it is not.
+  /// One of the caches. It must not outlive the store.
+  class View {
+   public:
+    View(SetTags& tags, std::uint32_t cache) : tags_(&tags), cache_(cache) {}
+    /// Looks `line` up; true when it is there. Brings it in when it is not.
+    bool access(std::uint32_t line) const { return tags_->access(cache_, line); }
+
+   private:
+    SetTags* tags_;
+    std::uint32_t cache_;
+  };
+  [[nodiscard]] View view(std::uint32_t cache) { return {*this, cache}; }
+
+ private:
   bool access(std::uint32_t cache, std::uint32_t line) {
     const std::size_t set = std::size_t{cache} * sets_ + index_(line);
     const std::uint32_t ways = Ways == 0 ? ways_ : Ways;
@@ -77,7 +90,6 @@ class SetTags {
     }
   }
 
- private:
   // Empty ways are filled from the first on before a victim is drawn.
   void replace_at_random(std::uint32_t* tags, std::uint32_t ways, std::size_t set, std::uint32_t line) {
     std::uint32_t way = 0;

@@ -7,15 +7,12 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "memory/interconnect.h"
 #include "processors/accounting.h"
 #include "processors/host.h"
-#include "processors/machine_config.h"
-#include "processors/packets.h"
-#include "processors/program/work_log.h"
+#include "processors/replay_input.h"
 #include "sim/engine.h"
 
 namespace marti::processors {
@@ -23,16 +20,6 @@ namespace marti::processors {
 /// Event classes. At equal times local progress comes before requests to the host, replies before new
 /// requests (an interconnect's data do not wait for an address of the same instant), reads before writes.
 enum class EventClass : std::uint8_t { step, dispatch, reply, read, write };
-
-/// What all nodes share and none changes.
-struct ReplayInput {
-  const WorkLog& log;
-  const MachineConfig& config;
-  const memory::Layout& layout;
-  const PacketList& packets;
-  std::span<const std::uint32_t> node_rank;  ///< record number of each tree node; empty: its own number
-  bool step_by_step = false;                 ///< an event for every reference
-};
 
 /// The nodes of all clusters as one event handler; node n is port n % nodes of cluster n / nodes.
 class NodeArray : public sim::EventHandler {

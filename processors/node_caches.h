@@ -19,11 +19,20 @@ template <class Tags>
 class UnifiedCaches {
  public:
   static constexpr bool present = true;
+  static constexpr bool by_kind = false;  ///< the record kind does not matter
   UnifiedCaches(const MachineConfig& config, const memory::CacheShape& shape)
       : tags_(shape, config.all_nodes(), config.cache.cache.seed) {}
-  bool access(std::uint32_t node, memory::RecordKind /*kind*/, std::uint32_t line) {
-    return tags_.access(node, line);
-  }
+  class View {
+   public:
+    explicit View(typename Tags::View tags) : tags_(tags) {}
+    [[gnu::always_inline]] bool access(memory::RecordKind /*kind*/, std::uint32_t line) const {
+      return tags_.access(line);
+    }
+
+   private:
+    typename Tags::View tags_;
+  };
+  [[nodiscard]] View view(std::uint32_t node) { return View(tags_.view(node)); }
 
  private:
   Tags tags_;
@@ -34,15 +43,25 @@ template <class Tags>
 class SplitCaches {
  public:
   static constexpr bool present = true;
+  static constexpr bool by_kind = true;
   SplitCaches(const MachineConfig& config, const std::array<memory::CacheShape, split_caches>& shapes) {
     tags_.reserve(split_caches);
     for (const memory::CacheShape& shape : shapes) {
       tags_.emplace_back(shape, config.all_nodes(), config.cache.cache.seed);
     }
   }
-  bool access(std::uint32_t node, memory::RecordKind kind, std::uint32_t line) {
-    return tags_[split_cache_of[static_cast<std::size_t>(kind)]].access(node, line);
-  }
+  class View {
+   public:
+    View(std::vector<Tags>& tags, std::uint32_t node) : tags_(tags), node_(node) {}
+    bool access(memory::RecordKind kind, std::uint32_t line) const {
+      return tags_[split_cache_of[static_cast<std::size_t>(kind)]].view(node_).access(line);
+    }
+
+   private:
+    std::vector<Tags>& tags_;
+    std::uint32_t node_;
+  };
+  [[nodiscard]] View view(std::uint32_t node) { return {tags_, node}; }
 
  private:
   std::vector<Tags> tags_;
@@ -51,9 +70,11 @@ class SplitCaches {
 /// Nodes without a cache: every reference misses, and only its own bytes are moved.
 struct NoCaches {
   static constexpr bool present = false;
-  static bool access(std::uint32_t /*node*/, memory::RecordKind /*kind*/, std::uint32_t /*line*/) {
-    return false;
-  }
+  static constexpr bool by_kind = false;
+  struct View {
+    static bool access(memory::RecordKind /*kind*/, std::uint32_t /*line*/) { return false; }
+  };
+  [[nodiscard]] static View view(std::uint32_t /*node*/) { return {}; }
 };
 
 }  // namespace marti::processors

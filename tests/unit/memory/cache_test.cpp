@@ -110,7 +110,7 @@ TEST(Cache, ManyCachesInOneStoreDoNotDisturbEachOther) {
   for (int i = 0; i < 20000; ++i) {
     const auto which = static_cast<std::uint32_t>(random() % 5);
     const auto line = static_cast<std::uint32_t>(random() % 100);
-    ASSERT_EQ(together.access(which, line), apart[which].read(line * 16, 1) == 0);
+    ASSERT_EQ(together.view(which).access(line), apart[which].read(line * 16, 1) == 0);
   }
 }
 

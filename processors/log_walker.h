@@ -1,0 +1,405 @@
+// Walks a node through its log: spends the compute cycles of each step, looks its references up in the
+// node's cache, and stops where the node needs something shared. It knows no event and no queue.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "processors/accounting.h"
+#include "processors/node_caches.h"
+#include "processors/packets.h"
+#include "processors/program/work_log.h"
+#include "processors/replay_input.h"
+#include "processors/step_time.h"
+#include "processors/visit_plan.h"
+
+namespace marti::processors {
+
+/// Where a node is in its packet: the pixel, the word of the pixel's log, and within a step either a line of
+/// a planned visit or a byte of a record with, for a leaf, the objects still to come.
+struct Cursor {
+  sim::Ticks time = 0;
+  const std::uint32_t* word = nullptr;
+  const std::uint32_t* word_end = nullptr;
+  const std::uint32_t* line = nullptr;  ///< next line of the planned visit
+  const std::uint32_t* line_end = nullptr;
+  memory::Address at = 0;   ///< next byte of the current record
+  memory::Address end = 0;  ///< one past its last byte
+  const std::uint32_t* entry = nullptr;
+  const std::uint32_t* entry_end = nullptr;
+  std::uint32_t list_count = 0;   ///< entries of the current leaf's list, while its read is still to come
+  std::uint32_t tests_begun = 0;  ///< of the planned visit
+  std::uint32_t writes = 0;       ///< where the next pixel write goes in the write buffer
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  Packet packet;
+  memory::RecordKind kind = memory::RecordKind::node;
+};
+
+/// Why a walk stopped.
+enum class Stop : std::uint8_t { hit, miss, pixel };
+
+/// `Caches` is one of node_caches.h.
+template <class Caches>
+class LogWalker {
+ public:
+  LogWalker(const ReplayInput& input, Caches caches)
+      : input_(input),
+        caches_(std::move(caches)),
+        topology_(input.log.topology.nodes.data()),
+        entries_(input.log.topology.entries.data()),
+        rank_(input.node_rank.empty() ? nullptr : input.node_rank.data()),
+        node_bytes_(input.layout.record_bytes(memory::RecordKind::node)),
+        entry_bytes_(input.layout.record_bytes(memory::RecordKind::list)),
+        primitive_bytes_(input.layout.record_bytes(memory::RecordKind::primitive)),
+        line_bytes_(Caches::present ? input.config.cache.cache.line : input.config.banks.interleave),
+        unit_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
+        ticks_(step_ticks(input.config)),
+        local_access_(input.config.local.clock.cycles(input.config.local.access_cycles)),
+        local_beat_(input.config.local.clock.cycles(input.config.local.cycles_per_beat)),
+        local_database_(input.config.placement == Placement::replicated) {
+    if (Caches::present && !input.step_by_step) {
+      plan_ = plan_visits(input.log.topology, input.layout, input.node_rank, unit_shift_, ticks_);
+      plan_limit_ = plan_.empty() ? 0 : 2U << operand_bits;
+    }
+  }
+
+  [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
+
+  /// Takes `node` on from its cursor. Without RunAhead it stops after every reference.
+  template <bool RunAhead>
+  Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
+    Tally tally;
+    const Stop stop = walk<RunAhead>(caches_.view(node), cursor, statistics, tally);
+    flush(tally, statistics);
+    return stop;
+  }
+
+  /// Address and bytes of the reference that missed: a whole line with a cache, else its own part of the
+  /// interleave unit.
+  [[nodiscard]] memory::Address missed_address(const Cursor& cursor) const {
+    if (in_visit(cursor)) {
+      return memory::Address{*cursor.line} << unit_shift_;
+    }
+    return Caches::present ? (cursor.at >> unit_shift_) << unit_shift_ : cursor.at;
+  }
+  [[nodiscard]] std::uint32_t missed_bytes(const Cursor& cursor) const {
+    if (Caches::present) {
+      return line_bytes_;
+    }
+    const memory::Address next = ((cursor.at >> unit_shift_) + 1) << unit_shift_;
+    return static_cast<std::uint32_t>(std::min(cursor.end, next) - cursor.at);
+  }
+  /// The reference that missed has been served.
+  void pass(Cursor& cursor) const {
+    if (in_visit(cursor)) {
+      ++cursor.line;
+    } else {
+      cursor.at = ((cursor.at >> unit_shift_) + 1) << unit_shift_;
+    }
+  }
+
+ private:
+  using View = typename Caches::View;
+
+  // Sums over the planned visits of one walk that are not in the statistics yet.
+  struct Tally {
+    VisitCounts counts;
+    std::uint32_t visits = 0;
+  };
+
+  static bool in_visit(const Cursor& cursor) { return cursor.line != cursor.line_end; }
+
+  static void flush(Tally& tally, NodeStatistics& statistics) {
+    const auto of = [&](VisitCount what) { return std::int64_t{tally.counts.of(what)}; };
+    StepCounts& steps = statistics.steps;
+    steps.branches += of(VisitCount::branch);
+    steps.leaves += of(VisitCount::leaf);
+    steps.lists += of(VisitCount::list);
+    steps.tests += of(VisitCount::test);
+    hits_of(statistics, memory::RecordKind::node) += of(VisitCount::node_line);
+    hits_of(statistics, memory::RecordKind::list) += of(VisitCount::list_line);
+    hits_of(statistics, memory::RecordKind::primitive) += of(VisitCount::primitive_line);
+    tally = {};
+  }
+  static std::int64_t& hits_of(NodeStatistics& statistics, memory::RecordKind kind) {
+    return statistics.references.hits[static_cast<std::size_t>(kind)];
+  }
+  static std::int64_t& misses_of(NodeStatistics& statistics, memory::RecordKind kind) {
+    return statistics.references.misses[static_cast<std::size_t>(kind)];
+  }
+  static void spend(Cursor& cursor, sim::Ticks each, std::int64_t count) {
+    cursor.time = sim::add_ticks(cursor.time, sim::multiply_ticks(each, count));
+  }
+
+  template <bool RunAhead>
+  Stop walk(View cache, Cursor& cursor, NodeStatistics& statistics, Tally& tally) {
+    Stop stop = Stop::hit;
+    if ((Caches::present && !finish_visit(cache, cursor, statistics, stop)) ||
+        !touch<RunAhead>(cache, cursor, statistics, cursor.kind, stop) ||
+        !finish_leaf<RunAhead>(cache, cursor, statistics, stop)) {
+      return stop;
+    }
+    while (cursor.word != cursor.word_end) {
+      if constexpr (RunAhead && Caches::present) {
+        if (!visit_planned(cache, cursor, statistics, tally, stop)) {
+          return stop;
+        }
+        if (cursor.word == cursor.word_end) {
+          break;
+        }
+      }
+      if (!take_step<RunAhead>(cache, cursor, statistics, *cursor.word++, stop)) {
+        return stop;
+      }
+    }
+    ++statistics.steps.pixels;
+    spend(cursor, ticks_.pixel, 1);
+    return Stop::pixel;
+  }
+
+  // Takes all planned visits up to the next step that has to be taken record by record, with what it needs
+  // in registers. False when the node has to stop.
+  bool visit_planned(View cache, Cursor& cursor, NodeStatistics& statistics, Tally& tally, Stop& stop) {
+    const std::uint32_t* word = cursor.word;
+    const std::uint32_t* const word_end = cursor.word_end;
+    const std::uint32_t limit = plan_limit_;
+    sim::Ticks time = cursor.time;
+    Tally sum = tally;
+    for (; word != word_end && *word < limit; ++word) {
+      const Visit& visit = plan_.visits[operand_of(*word)];
+      if (visit.lines == 0) [[unlikely]] {
+        break;
+      }
+      const std::uint32_t* const first = plan_.lines.data() + visit.begin;
+      const std::uint32_t* const end = first + visit.lines;
+      const std::uint32_t* line = first;
+      while (line != end && look_up(cache, line)) {
+        ++line;
+      }
+      // Lines count as hits until they miss.
+      sum.counts += visit.counts;
+      if (++sum.visits == most_summed_visits) [[unlikely]] {
+        flush(sum, statistics);
+      }
+      if (line == end) [[likely]] {
+        time = sim::add_ticks(time, visit.time);
+        continue;
+      }
+      cursor.time =
+          sim::add_ticks(time, visit.counts.of(VisitCount::branch) != 0 ? ticks_.branch : ticks_.leaf);
+      cursor.word = word + 1;
+      cursor.tests_begun = 0;
+      cursor.line = first;
+      cursor.line_end = end;
+      if (!miss(cursor, statistics, line, stop) || !finish_visit(cache, cursor, statistics, stop)) {
+        tally = sum;
+        return false;
+      }
+      time = cursor.time;
+    }
+    cursor.word = word;
+    cursor.time = time;
+    tally = sum;
+    return true;
+  }
+
+  [[gnu::always_inline]] bool look_up(View cache, const std::uint32_t* line) const {
+    if constexpr (Caches::by_kind) {
+      return cache.access(kind_of_label(label_of(line)), *line);
+    } else {
+      return cache.access(memory::RecordKind::node, *line);  // such caches do not look at the kind
+    }
+  }
+
+  // What is left of a planned visit after a miss.
+  bool finish_visit(View cache, Cursor& cursor, NodeStatistics& statistics, Stop& stop) {
+    const std::uint32_t* const end = cursor.line_end;
+    while (cursor.line != end) {
+      const std::uint32_t* missed = cursor.line;
+      while (missed != end && look_up(cache, missed)) {
+        ++missed;
+      }
+      if (missed == end) {
+        settle(cursor, end, tests_of_label(label_of(end - 1)));
+      } else if (!miss(cursor, statistics, missed, stop)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // Brings the time of a visit up to `line`, before which `tests` tests have begun.
+  void settle(Cursor& cursor, const std::uint32_t* line, std::uint32_t tests) const {
+    spend(cursor, ticks_.test, tests - cursor.tests_begun);
+    spend(cursor, ticks_.hit, line - cursor.line);
+    cursor.tests_begun = tests;
+    cursor.line = line;
+  }
+
+  // `line` of a visit has missed. False when the node has to stop for it.
+  bool miss(Cursor& cursor, NodeStatistics& statistics, const std::uint32_t* line, Stop& stop) const {
+    const std::uint32_t label = label_of(line);
+    settle(cursor, line, tests_of_label(label));
+    --hits_of(statistics, kind_of_label(label));
+    ++misses_of(statistics, kind_of_label(label));
+    if (!local_database_) {
+      stop = Stop::miss;
+      return false;
+    }
+    read_local(cursor, statistics, line_bytes_);
+    ++cursor.line;
+    return true;
+  }
+
+  [[nodiscard]] std::uint32_t label_of(const std::uint32_t* line) const {
+    return plan_.labels[static_cast<std::size_t>(line - plan_.lines.data())];
+  }
+
+  // Makes record `index` the current one and reads it; `bytes` may span several records of an array.
+  template <bool RunAhead>
+  bool refer(View cache, Cursor& cursor, NodeStatistics& statistics, memory::RecordKind kind,
+             std::uint64_t index, std::uint64_t bytes, Stop& stop) {
+    cursor.at = input_.layout.address(kind, index);
+    cursor.end = cursor.at + bytes;
+    return touch<RunAhead>(cache, cursor, statistics, kind, stop);
+  }
+
+  // Reads what is left of the current record, unit by unit. False when the node has to stop.
+  template <bool RunAhead>
+  bool touch(View cache, Cursor& cursor, NodeStatistics& statistics, memory::RecordKind kind, Stop& stop) {
+    while (cursor.at < cursor.end) {
+      const memory::Address unit = cursor.at >> unit_shift_;
+      cursor.kind = kind;
+      if (cache.access(kind, static_cast<std::uint32_t>(unit))) {
+        ++hits_of(statistics, kind);
+        spend(cursor, ticks_.hit, 1);
+        cursor.at = (unit + 1) << unit_shift_;
+      } else {
+        ++misses_of(statistics, kind);
+        if (!local_database_) {
+          stop = Stop::miss;
+          return false;
+        }
+        read_local(cursor, statistics, missed_bytes(cursor));
+        cursor.at = (unit + 1) << unit_shift_;
+      }
+      if constexpr (!RunAhead) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // What is left of a leaf that is not planned: reading its list, then testing its objects one by one.
+  template <bool RunAhead>
+  bool finish_leaf(View cache, Cursor& cursor, NodeStatistics& statistics, Stop& stop) {
+    if (cursor.list_count != 0) {
+      const std::uint64_t bytes = std::uint64_t{cursor.list_count} * entry_bytes_;
+      cursor.list_count = 0;
+      const auto first = static_cast<std::uint64_t>(cursor.entry - entries_);
+      if (!refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::list, first, bytes, stop)) {
+        return false;
+      }
+    }
+    while (cursor.entry != cursor.entry_end) {
+      ++statistics.steps.tests;
+      spend(cursor, ticks_.test, 1);
+      if (!refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::primitive, *cursor.entry++,
+                           primitive_bytes_, stop)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  template <bool RunAhead>
+  bool refer_node(View cache, Cursor& cursor, NodeStatistics& statistics, std::uint32_t tree_node,
+                  Stop& stop) {
+    const std::uint32_t record = rank_ == nullptr ? tree_node : rank_[tree_node];
+    return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::node, record, node_bytes_, stop);
+  }
+
+  template <bool RunAhead>
+  bool take_leaf(View cache, Cursor& cursor, NodeStatistics& statistics, std::uint32_t leaf,
+                 std::uint32_t tests, Stop& stop) {
+    ++statistics.steps.leaves;
+    statistics.steps.lists += tests != 0 ? 1 : 0;
+    spend(cursor, ticks_.leaf, 1);
+    cursor.list_count = tests;
+    cursor.entry = entries_ + topology_[leaf].first;
+    cursor.entry_end = cursor.entry + tests;
+    return refer_node<RunAhead>(cache, cursor, statistics, leaf, stop) &&
+           finish_leaf<RunAhead>(cache, cursor, statistics, stop);
+  }
+
+  // Any step, record by record: its compute cycles first, then its references.
+  template <bool RunAhead>
+  bool take_step(View cache, Cursor& cursor, NodeStatistics& statistics, std::uint32_t word, Stop& stop) {
+    const std::uint32_t operand = operand_of(word);
+    StepCounts& steps = statistics.steps;
+    switch (step_of(word)) {
+      case Step::branch:
+        ++steps.branches;
+        spend(cursor, ticks_.branch, 1);
+        return refer_node<RunAhead>(cache, cursor, statistics, operand, stop);
+      case Step::leaf:
+        return take_leaf<RunAhead>(cache, cursor, statistics, operand, topology_[operand].count, stop);
+      case Step::partial_leaf: {
+        const std::uint32_t tests = *cursor.word++;
+        return take_leaf<RunAhead>(cache, cursor, statistics, operand, tests, stop);
+      }
+      case Step::ray:
+        ++steps.rays[operand & 3U];
+        spend(cursor, ticks_.ray[operand & 3U], 1);
+        return true;
+      case Step::shade:
+        ++steps.shades;
+        spend(cursor, ticks_.shade, 1);
+        return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::material, operand,
+                               input_.layout.record_bytes(memory::RecordKind::material), stop);
+      case Step::light:
+        ++steps.lights;
+        spend(cursor, ticks_.light, 1);
+        return true;
+      case Step::texel:
+        ++steps.texels;
+        spend(cursor, ticks_.texel, 1);
+        return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::texel,
+                               input_.log.texture_begin[operand] + *cursor.word++,
+                               input_.layout.record_bytes(memory::RecordKind::texel), stop);
+    }
+    return true;
+  }
+
+  void read_local(Cursor& cursor, NodeStatistics& statistics, std::uint32_t bytes) const {
+    const std::int64_t width = input_.config.local.width;
+    const sim::Ticks transfer = sim::multiply_ticks(local_beat_, (std::int64_t{bytes} + width - 1) / width);
+    statistics.time[static_cast<std::size_t>(Activity::transfer)] += transfer;
+    statistics.time[static_cast<std::size_t>(Activity::bank_access)] += local_access_;
+    cursor.time = sim::add_ticks(cursor.time, sim::add_ticks(transfer, local_access_));
+  }
+
+  ReplayInput input_;
+  Caches caches_;
+  // Branches and leaves are the two lowest steps, so one comparison tells a planned step; nothing is planned
+  // without a plan.
+  static_assert(static_cast<std::uint32_t>(Step::branch) == 0 && static_cast<std::uint32_t>(Step::leaf) == 1);
+  VisitPlan plan_;
+  std::uint32_t plan_limit_ = 0;
+  const accel::TopologyNode* topology_;
+  const std::uint32_t* entries_;
+  const std::uint32_t* rank_;  // null: records lie in the order of node numbers
+  std::uint32_t node_bytes_;
+  std::uint32_t entry_bytes_;
+  std::uint32_t primitive_bytes_;
+  std::uint32_t line_bytes_;
+  unsigned unit_shift_;
+  StepTicks ticks_;
+  sim::Ticks local_access_;
+  sim::Ticks local_beat_;
+  bool local_database_;
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,24 @@
+// What all nodes of a replay share and none changes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "memory/layout.h"
+#include "processors/machine_config.h"
+#include "processors/packets.h"
+#include "processors/program/work_log.h"
+
+namespace marti::processors {
+
+/// References to objects that outlive the replay.
+struct ReplayInput {
+  const WorkLog& log;
+  const MachineConfig& config;
+  const memory::Layout& layout;
+  const PacketList& packets;
+  std::span<const std::uint32_t> node_rank;  ///< record number of each tree node; empty: its own number
+  bool step_by_step = false;                 ///< an event for every reference
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,101 @@
+#include "processors/visit_plan.h"
+
+namespace marti::processors {
+
+namespace {
+
+using memory::RecordKind;
+
+// Collects the lines of one visit after the other.
+class Planner {
+ public:
+  Planner(const memory::Layout& layout, unsigned line_shift, const StepTicks& ticks, VisitPlan& plan)
+      : layout_(layout), line_shift_(line_shift), ticks_(ticks), plan_(plan) {}
+
+  void begin() {
+    begin_ = plan_.lines.size();
+    counts_ = {};
+    fits_ = true;
+  }
+
+  void count(VisitCount what) {
+    fits_ = fits_ && counts_.of(what) < most_of_a_count;
+    if (fits_) {
+      counts_.add(what);
+    }
+  }
+
+  // Records `first` to `first + records - 1` of a section, read in one go.
+  void read(RecordKind kind, std::uint64_t first, std::uint64_t records, VisitCount lines) {
+    const memory::Address begin = layout_.address(kind, first);
+    const memory::Address last = begin + records * layout_.record_bytes(kind) - 1;
+    const std::uint32_t label =
+        (static_cast<std::uint32_t>(kind) << label_bits) | counts_.of(VisitCount::test);
+    for (memory::Address line = begin >> line_shift_; line <= last >> line_shift_ && fits(); ++line) {
+      plan_.lines.push_back(static_cast<std::uint32_t>(line));
+      plan_.labels.push_back(label);
+      count(lines);
+    }
+  }
+
+  [[nodiscard]] bool fits() const { return fits_; }
+
+  void end() {
+    Visit& visit = plan_.visits.emplace_back();
+    if (!fits_) {
+      plan_.lines.resize(begin_);
+      plan_.labels.resize(begin_);
+      return;
+    }
+    visit.begin = static_cast<std::uint32_t>(begin_);
+    visit.lines = static_cast<std::uint32_t>(plan_.lines.size() - begin_);
+    visit.counts = counts_;
+    const auto spend = [&](sim::Ticks each, std::int64_t count) {
+      visit.time = sim::add_ticks(visit.time, sim::multiply_ticks(each, count));
+    };
+    spend(ticks_.branch, counts_.of(VisitCount::branch));
+    spend(ticks_.leaf, counts_.of(VisitCount::leaf));
+    spend(ticks_.test, counts_.of(VisitCount::test));
+    spend(ticks_.hit, visit.lines);
+  }
+
+ private:
+  const memory::Layout& layout_;
+  unsigned line_shift_;
+  const StepTicks& ticks_;
+  VisitPlan& plan_;
+  std::size_t begin_ = 0;
+  VisitCounts counts_;
+  bool fits_ = true;
+};
+
+}  // namespace
+
+VisitPlan plan_visits(const accel::Topology& topology, const memory::Layout& layout,
+                      std::span<const std::uint32_t> rank, unsigned line_shift, const StepTicks& ticks) {
+  VisitPlan plan;
+  plan.visits.reserve(topology.nodes.size());
+  Planner planner(layout, line_shift, ticks, plan);
+  for (std::uint32_t number = 0; number < topology.nodes.size(); ++number) {
+    const accel::TopologyNode& node = topology.nodes[number];
+    planner.begin();
+    planner.count(node.leaf ? VisitCount::leaf : VisitCount::branch);
+    planner.read(RecordKind::node, rank.empty() ? number : rank[number], 1, VisitCount::node_line);
+    if (node.leaf && node.count != 0) {
+      planner.count(VisitCount::list);
+      planner.read(RecordKind::list, node.first, node.count, VisitCount::list_line);
+      for (std::uint32_t entry = 0; entry < node.count && planner.fits(); ++entry) {
+        planner.count(VisitCount::test);
+        planner.read(RecordKind::primitive, topology.entries[node.first + entry], 1,
+                     VisitCount::primitive_line);
+      }
+    }
+    planner.end();
+    if (plan.lines.size() > most_planned_lines) {
+      return {};
+    }
+  }
+  return plan;
+}
+
+}  // namespace marti::processors
