@@ -91,8 +91,14 @@ void run(std::uint32_t size, int repeats) {
   const Timing base = time_replay(*frame.log, machine_of(64, 8), repeats);
   print("64 nodes, 8x8 packets", base, render, 0.0);
   const double per_reference = 1e9 * base.seconds / base.references;
+  processors::MachineConfig longer = machine_of(64, 8);
+  longer.cache.cache.line = 64;
+  longer.banks.interleave = 64;
+  print("64 nodes, 64-byte lines", time_replay(*frame.log, longer, repeats), render, 0.0);
   print("1 node, 8x8 packets", time_replay(*frame.log, machine_of(1, 8), repeats), render, per_reference);
   print("1,024 nodes, 8x8 packets", time_replay(*frame.log, machine_of(1024, 8), repeats), render,
+        per_reference);
+  print("65,536 nodes, 8x8 packets", time_replay(*frame.log, machine_of(65536, 8), repeats), render,
         per_reference);
   const Timing same = time_replay(*frame.log, machine_of(64, 2), repeats);
   print("64 nodes, 2x2 packets", same, render, 0.0);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #ifdef __SSE2__
 #include <emmintrin.h>
@@ -12,6 +11,7 @@
 #include "memory/cache_config.h"
 #include "memory/lru_state.h"
 #include "memory/set_tags.h"
+#include "sim/large_pages.h"
 
 namespace marti::memory {
 
@@ -72,8 +72,8 @@ class QuadTags {
 
   SetIndex index_;
   std::uint32_t sets_;
-  std::vector<Set> sets_of_caches_;
-  std::vector<std::uint16_t> states_;  // of LruStates, one for each set
+  sim::LargeVector<Set> sets_of_caches_;
+  sim::LargeVector<std::uint16_t> states_;  // of LruStates, one for each set
 };
 
 }  // namespace marti::memory

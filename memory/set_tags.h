@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "memory/cache_config.h"
+#include "sim/large_pages.h"
 
 namespace marti::memory {
 
@@ -102,7 +103,7 @@ class SetTags {
   SetIndex index_;
   std::uint32_t sets_;
   std::uint32_t ways_;
-  std::vector<std::uint32_t> tags_;
+  sim::LargeVector<std::uint32_t> tags_;
   std::vector<VictimStream> victims_;
 };
 

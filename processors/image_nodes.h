@@ -11,6 +11,7 @@
 #include "processors/node_array.h"
 #include "processors/node_caches.h"
 #include "processors/step_time.h"
+#include "sim/large_pages.h"
 
 namespace marti::processors {
 
@@ -69,6 +70,12 @@ class ImageNodes final : public NodeArray {
     }
   }
 
+  void prepare(const sim::Event& event) override {
+    const std::uint32_t node = event.component();
+    prefetch(cursors_[node]);
+    prefetch(statistics_[node]);
+  }
+
   sim::Ticks end() const override { return end_; }
 
   void finish() override {
@@ -78,7 +85,7 @@ class ImageNodes final : public NodeArray {
     }
   }
 
-  const std::vector<NodeStatistics>& statistics() const override { return statistics_; }
+  std::vector<NodeStatistics> statistics() const override { return {statistics_.begin(), statistics_.end()}; }
 
   std::size_t bytes_per_node() const override {
     return sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(sim::Event) +
@@ -99,6 +106,14 @@ class ImageNodes final : public NodeArray {
     ImageNodes& nodes_;
     std::uint32_t first_;
   };
+
+  template <class T>
+  static void prefetch(const T& object) {
+    const char* const bytes = reinterpret_cast<const char*>(&object);
+    for (std::size_t at = 0; at < sizeof(T); at += 64) {
+      __builtin_prefetch(bytes + at, 1);
+    }
+  }
 
   // One cluster is the common case, and a division at every event shows.
   std::uint32_t cluster_of(std::uint32_t node) const {
@@ -207,9 +222,9 @@ class ImageNodes final : public NodeArray {
   sim::Engine& engine_;
   Host& host_;
   LogWalker<Caches> walker_;
-  std::vector<Cursor> cursors_;
-  std::vector<NodeStatistics> statistics_;
-  std::vector<sim::Ticks> writes_;  // when each entry of each node's write buffer is free
+  sim::LargeVector<Cursor> cursors_;
+  sim::LargeVector<NodeStatistics> statistics_;
+  sim::LargeVector<sim::Ticks> writes_;  // when each entry of each node's write buffer is free
   std::vector<Client> clients_;
   std::vector<memory::Interconnect*> interconnects_;
   sim::Ticks end_ = 0;

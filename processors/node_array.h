@@ -35,7 +35,7 @@ class NodeArray : public sim::EventHandler {
   [[nodiscard]] virtual sim::Ticks end() const = 0;
   /// After the run: fills in idle time and the times that follow from counts.
   virtual void finish() = 0;
-  [[nodiscard]] virtual const std::vector<NodeStatistics>& statistics() const = 0;
+  [[nodiscard]] virtual std::vector<NodeStatistics> statistics() const = 0;
   /// Host bytes per simulated node beside its cache tags.
   [[nodiscard]] virtual std::size_t bytes_per_node() const = 0;
 };

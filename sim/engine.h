@@ -15,12 +15,17 @@ class EventHandler {
   virtual ~EventHandler() = default;
   /// `event.time` is the engine's current time. New events may be posted from here.
   virtual void handle(const Event& event) = 0;
+  /// `event` will probably be handled soon: a chance to fetch what it needs into the host's caches. Called
+  /// only when so many events are pending that they cannot all be there.
+  virtual void prepare(const Event& /*event*/) {}
 };
 
 /// Runs a simulation. Not shared between threads: each simulated machine has its own engine.
 class Engine {
  public:
   static constexpr std::size_t max_classes = 16;
+  /// With more pending events than this, handlers are asked to prepare for the next ones.
+  static constexpr std::size_t many_pending = 2048;
 
   /// All events of `event_class` (below max_classes) go to `handler`. Lower classes come first at equal
   /// times.

@@ -3,8 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
+#include "sim/large_pages.h"
 #include "sim/time.h"
 
 namespace marti::sim {
@@ -68,6 +68,15 @@ class EventQueue {
     heap_[at] = event;
   }
 
+  /// Calls visit(event) for the few events of which one is next, unless an earlier one is pushed. To be asked
+  /// between a pop and the push that follows it.
+  template <class Visit>
+  void each_likely_next(Visit&& visit) const {
+    for (std::size_t at = 1; at <= arity && at < heap_.size(); ++at) {
+      visit(heap_[at]);
+    }
+  }
+
   /// Removes and returns the earliest event. The queue must not be empty.
   Event pop() {
     fill_hole();
@@ -115,7 +124,7 @@ class EventQueue {
     heap_[at] = event;
   }
 
-  std::vector<Event> heap_;
+  LargeVector<Event> heap_;
   bool hole_ = false;
 };
 
