@@ -26,7 +26,7 @@ std::string codec_name(std::span<const std::byte> file) {
   return jpeg ? "texture.jpg" : "texture.png";
 }
 
-void write(const std::filesystem::path& file, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+void write(const std::filesystem::path& file, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
            const void* pixels) {
   const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(file.string());
   if (!out) {
