@@ -24,6 +24,12 @@ struct BankStatistics {
   std::int64_t accesses = 0;
   sim::Ticks busy = 0;
   WaitStatistics waits;  ///< from an access's arrival to its start
+
+  static constexpr auto counters() {
+    using C = sim::Counter<BankStatistics>;
+    return std::array{C{"accesses", "1", "reads and writes served", &BankStatistics::accesses},
+                      C{"busy", "ps", "busy time of these accesses", &BankStatistics::busy}};
+  }
 };
 
 /// When one access starts and when its data are ready.

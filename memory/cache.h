@@ -1,11 +1,13 @@
 // One cache on its own, for those who want the cache model without the rest of the simulator.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 
 #include "memory/cache_config.h"
 #include "memory/record_kind.h"
+#include "sim/statistics.h"
 
 namespace marti::memory {
 
@@ -15,7 +17,19 @@ struct CacheCounters {
   std::int64_t misses = 0;
 
   [[nodiscard]] std::int64_t references() const { return hits + misses; }
+
+  static constexpr auto counters() {
+    using C = sim::Counter<CacheCounters>;
+    return std::array{C{"hits", "1", "lines found", &CacheCounters::hits},
+                      C{"misses", "1", "lines brought in", &CacheCounters::misses}};
+  }
+  static constexpr auto formulas() {
+    using F = sim::Formula<CacheCounters>;
+    return std::array{F{"hit_ratio", "1", "hits / references",
+                        [](const CacheCounters& c) { return sim::ratio(c.hits, c.references()); }}};
+  }
 };
+static_assert(sim::declares_every_member<CacheCounters>());
 
 /// A cache of tags, the same model that the simulated nodes use.
 class Cache {

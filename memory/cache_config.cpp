@@ -1,7 +1,6 @@
 #include "memory/cache_config.h"
 
 #include <bit>
-#include <limits>
 #include <string>
 
 #include "sim/error.h"
@@ -18,8 +17,8 @@ CacheShape shape_of(const CacheConfig& config) {
                          " bytes");
   }
   const std::uint64_t lines = config.size / config.line;
-  if (lines > std::numeric_limits<std::uint32_t>::max() / 2) {
-    throw sim::UserError("a cache of more than 2^31 lines");
+  if (lines > most_lines) {
+    throw sim::UserError("a cache of " + std::to_string(lines) + " lines; at most 2^28 are possible");
   }
   const std::uint64_t ways = config.ways == full_ways ? lines : config.ways;
   if (ways > lines || lines % ways != 0) {

@@ -32,6 +32,9 @@ struct CacheShape {
   [[nodiscard]] std::uint64_t lines() const { return std::uint64_t{sets} * ways; }
 };
 
+/// The most lines one cache may have.
+inline constexpr std::uint64_t most_lines = std::uint64_t{1} << 28U;
+
 /// Throws UserError with the reason when no such cache can be built.
 [[nodiscard]] CacheShape shape_of(const CacheConfig& config);
 

@@ -12,7 +12,7 @@ Crossbar::Crossbar(const InterconnectConfig& config, const BankConfig& banks, co
       bank_access_(banks.clock.cycles(banks.access_cycles)),
       banks_(banks),
       links_(banks.count) {
-  statistics_.links = std::int64_t{2} * banks.count;
+  statistics_.links = banks.count;
 }
 
 Ticks Crossbar::unloaded_read(std::uint32_t bytes) const {
@@ -40,12 +40,10 @@ void Crossbar::read(const Transaction& transaction) {
 void Crossbar::write(const Transaction& transaction) {
   ++statistics_.writes;
   statistics_.bytes += transaction.bytes;
-  const Ticks data = beats_(transaction.bytes);
-  statistics_.busy = add_ticks(statistics_.busy, data);
   statistics_.waits.add(0);
   const Ticks arrival = add_ticks(site_.engine.now(), latency_);
   const BankAccess access = banks_.access(banks_.bank_of(transaction.address), arrival);
-  site_.client.write_done(transaction.port, add_ticks(access.ready, data));
+  site_.client.write_done(transaction.port, add_ticks(access.ready, beats_(transaction.bytes)));
 }
 
 }  // namespace marti::memory

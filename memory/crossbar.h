@@ -8,8 +8,8 @@ namespace marti::memory {
 
 /// A request reaches its bank's queue `latency_cycles` after it is issued. The bank serves it, the data
 /// leave over the bank's own link, and arrive `latency_cycles` after their last beat. A write takes its
-/// place in the bank's queue when its address arrives; its data travel over a link of their own while it
-/// waits there, so they never wait for another transaction's data.
+/// place in the bank's queue when its address arrives; its data follow after the bank's access over a path of
+/// their own that is never the bottleneck and is not counted as a link.
 class Crossbar final : public Interconnect {
  public:
   Crossbar(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site);

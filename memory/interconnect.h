@@ -67,6 +67,15 @@ struct InterconnectStatistics {
   std::int64_t links = 0;
   sim::Ticks busy = 0;
   WaitStatistics waits;
+
+  static constexpr auto counters() {
+    using C = sim::Counter<InterconnectStatistics>;
+    return std::array{C{"reads", "1", "read transactions", &InterconnectStatistics::reads},
+                      C{"writes", "1", "posted writes", &InterconnectStatistics::writes},
+                      C{"bytes", "byte", "data moved by both", &InterconnectStatistics::bytes},
+                      C{"links", "1", "transfers possible at the same time", &InterconnectStatistics::links},
+                      C{"busy", "ps", "transfer time of all links together", &InterconnectStatistics::busy}};
+  }
 };
 
 class Interconnect {

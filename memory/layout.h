@@ -2,7 +2,7 @@
 //
 // The sections lie one behind the other from address 0: nodes, object lists, primitives, materials,
 // texels, frame buffer. Records of a section are a stride apart: the record's size rounded up to the
-// record alignment (object lists and texels are packed arrays of entries, so they are not padded).
+// record alignment (object lists, texels and pixels are packed arrays, so they are not padded).
 #pragma once
 
 #include <array>

@@ -21,6 +21,13 @@ struct WaitStatistics {
     max = std::max(max, wait);
     histogram.add(wait);
   }
+
+  static constexpr auto counters() {
+    using C = sim::Counter<WaitStatistics>;
+    return std::array{C{"count", "1", "tenures, those that did not wait included", &WaitStatistics::count},
+                      C{"sum", "ps", "all waits together", &WaitStatistics::sum},
+                      C{"max", "ps", "the longest wait", &WaitStatistics::max, sim::MergeRule::maximum}};
+  }
 };
 
 }  // namespace marti::memory

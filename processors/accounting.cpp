@@ -4,21 +4,6 @@
 
 namespace marti::processors {
 
-StepCounts& StepCounts::operator+=(const StepCounts& other) {
-  for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
-    rays[kind] += other.rays[kind];
-  }
-  branches += other.branches;
-  leaves += other.leaves;
-  lists += other.lists;
-  tests += other.tests;
-  shades += other.shades;
-  lights += other.lights;
-  texels += other.texels;
-  pixels += other.pixels;
-  return *this;
-}
-
 std::int64_t ReferenceCounts::all_hits() const {
   return std::accumulate(hits.begin(), hits.end(), std::int64_t{0});
 }

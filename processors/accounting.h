@@ -7,6 +7,7 @@
 
 #include "memory/record_kind.h"
 #include "processors/program/work_log.h"
+#include "sim/statistics.h"
 #include "sim/time.h"
 
 namespace marti::processors {
@@ -37,7 +38,10 @@ using TimeDivision = std::array<sim::Ticks, activities>;
 
 /// How many of each kind of step a node took.
 struct StepCounts {
-  std::array<std::int64_t, ray_kinds> rays{};
+  std::int64_t camera_rays = 0;
+  std::int64_t shadow_rays = 0;
+  std::int64_t reflection_rays = 0;
+  std::int64_t refraction_rays = 0;
   std::int64_t branches = 0;
   std::int64_t leaves = 0;
   std::int64_t lists = 0;  ///< leaves whose object list was read: those with at least one test
@@ -47,8 +51,28 @@ struct StepCounts {
   std::int64_t texels = 0;
   std::int64_t pixels = 0;
 
-  StepCounts& operator+=(const StepCounts& other);
+  static constexpr auto counters() {
+    using C = sim::Counter<StepCounts>;
+    return std::array{C{"camera_rays", "1", "camera rays set up", &StepCounts::camera_rays},
+                      C{"shadow_rays", "1", "shadow rays set up", &StepCounts::shadow_rays},
+                      C{"reflection_rays", "1", "reflected rays set up", &StepCounts::reflection_rays},
+                      C{"refraction_rays", "1", "refracted rays set up", &StepCounts::refraction_rays},
+                      C{"branches", "1", "branch nodes visited", &StepCounts::branches},
+                      C{"leaves", "1", "leaf nodes visited, empty ones included", &StepCounts::leaves},
+                      C{"lists", "1", "object lists read", &StepCounts::lists},
+                      C{"tests", "1", "primitives tested", &StepCounts::tests},
+                      C{"shades", "1", "surface points shaded", &StepCounts::shades},
+                      C{"lights", "1", "light contributions added", &StepCounts::lights},
+                      C{"texels", "1", "texels read", &StepCounts::texels},
+                      C{"pixels", "1", "pixels finished", &StepCounts::pixels}};
+  }
 };
+static_assert(sim::declares_every_member<StepCounts>());
+
+/// The counter of each RayKind.
+inline constexpr std::array<std::int64_t StepCounts::*, ray_kinds> ray_counters = {
+    &StepCounts::camera_rays, &StepCounts::shadow_rays, &StepCounts::reflection_rays,
+    &StepCounts::refraction_rays};
 
 /// References count lines touched (parts of at most one interleave unit where there is no cache); one
 /// record may be several.
@@ -70,6 +94,13 @@ struct NodeStatistics {
   std::int64_t packets = 0;
   std::int64_t writes = 0;
   sim::Ticks finish = 0;  ///< when it learned that no packet is left
+
+  static constexpr auto counters() {
+    using C = sim::Counter<NodeStatistics>;
+    return std::array{C{"packets", "1", "packets traced", &NodeStatistics::packets},
+                      C{"writes", "1", "pixels written", &NodeStatistics::writes},
+                      C{"finish", "ps", "when no packet was left", &NodeStatistics::finish}};
+  }
 };
 
 /// Records read or written, by kind: they follow from the steps.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "processors/packets.h"
+#include "sim/statistics.h"
 #include "sim/time.h"
 
 namespace marti::processors {
@@ -33,7 +34,15 @@ struct Grant {
 struct HostStatistics {
   std::int64_t requests = 0;  ///< dynamic requests, those that found no packet left included
   sim::Ticks busy = 0;
+
+  static constexpr auto counters() {
+    using C = sim::Counter<HostStatistics>;
+    return std::array{C{"requests", "1", "requests of free nodes, those that found no packet left included",
+                        &HostStatistics::requests},
+                      C{"busy", "ps", "time that requests kept the host", &HostStatistics::busy}};
+  }
 };
+static_assert(sim::declares_every_member<HostStatistics>());
 
 /// Requests must come in the order of simulated time.
 class Host {

@@ -351,7 +351,7 @@ class LogWalker {
         return take_leaf<RunAhead>(cache, cursor, statistics, operand, tests, stop);
       }
       case Step::ray:
-        ++steps.rays[operand & 3U];
+        ++(steps.*ray_counters[operand & 3U]);
         spend(cursor, ticks_.ray[operand & 3U], 1);
         return true;
       case Step::shade:

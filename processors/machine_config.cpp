@@ -3,9 +3,37 @@
 #include <bit>
 #include <string>
 
+#include "memory/tags.h"
 #include "sim/error.h"
 
 namespace marti::processors {
+
+namespace {
+
+std::uint64_t tag_bytes(const memory::CacheConfig& cache) {
+  const memory::CacheShape shape = memory::shape_of(cache);
+  // Hashed sets keep a list entry and two to four table slots for each line.
+  const std::uint64_t bytes_a_line = shape.ways > memory::most_searched_ways ? 28 : 6;
+  return shape.lines() * bytes_a_line;
+}
+
+}  // namespace
+
+std::uint64_t host_bytes(const MachineConfig& config) {
+  constexpr std::uint64_t bytes_a_node = 600;
+  std::uint64_t tags = 0;
+  if (config.cache.organisation == CacheOrganisation::unified) {
+    tags = tag_bytes(config.cache.cache);
+  } else if (config.cache.organisation == CacheOrganisation::split) {
+    for (const std::uint64_t size : config.cache.split_sizes) {
+      memory::CacheConfig part = config.cache.cache;
+      part.size = size;
+      tags += tag_bytes(part);
+    }
+  }
+  // At most 2^24 nodes of four caches of 2^28 lines: this cannot overflow.
+  return config.all_nodes() * (bytes_a_node + config.write_buffer * sizeof(sim::Ticks) + tags);
+}
 
 void check(const MachineConfig& config) {
   if (config.clusters == 0 || config.nodes == 0) {

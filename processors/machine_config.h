@@ -1,4 +1,5 @@
-// A whole simulated machine, as values. Defaults are those of the configuration reference.
+// A whole simulated machine, as values. Defaults are those of the configuration reference, except for the
+// operations: here each takes one cycle.
 #pragma once
 
 #include <array>
@@ -67,6 +68,9 @@ struct MachineConfig {
 
 /// The most nodes a machine may have; event keys and node tables are sized by it.
 inline constexpr std::uint32_t most_nodes = 1U << 24U;
+
+/// Host bytes that a replay of the machine takes for its nodes and their tags, roughly.
+[[nodiscard]] std::uint64_t host_bytes(const MachineConfig& config);
 
 /// Throws UserError with the reason when the machine cannot be built.
 void check(const MachineConfig& config);

@@ -36,7 +36,7 @@ memory::Layout layout_of(const WorkLog& log, const MachineConfig& config) {
 StepCounts MachineResult::steps() const {
   StepCounts sum;
   for (const NodeStatistics& node : nodes) {
-    sum += node.steps;
+    sim::merge(sum, node.steps);
   }
   return sum;
 }

@@ -39,7 +39,7 @@ void add_counted_time(const StepTicks& ticks, const StepCounts& steps, std::int6
     sum = sim::add_ticks(sum, sim::multiply_ticks(each, count));
   };
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
-    add(Activity::traversal, ticks.ray[kind], steps.rays[kind]);
+    add(Activity::traversal, ticks.ray[kind], steps.*ray_counters[kind]);
   }
   add(Activity::traversal, ticks.branch, steps.branches);
   add(Activity::traversal, ticks.leaf, steps.leaves);

@@ -50,13 +50,17 @@ class Planner {
     visit.begin = static_cast<std::uint32_t>(begin_);
     visit.lines = static_cast<std::uint32_t>(plan_.lines.size() - begin_);
     visit.counts = counts_;
-    const auto spend = [&](sim::Ticks each, std::int64_t count) {
-      visit.time = sim::add_ticks(visit.time, sim::multiply_ticks(each, count));
+    // A visit too long for the clock may never be made: then it must not stop the run.
+    const auto fits = [&](sim::Ticks each, std::int64_t count) {
+      sim::Ticks time = 0;
+      return !__builtin_mul_overflow(each, count, &time) &&
+             !__builtin_add_overflow(visit.time, time, &visit.time);
     };
-    spend(ticks_.branch, counts_.of(VisitCount::branch));
-    spend(ticks_.leaf, counts_.of(VisitCount::leaf));
-    spend(ticks_.test, counts_.of(VisitCount::test));
-    spend(ticks_.hit, visit.lines);
+    if (!fits(ticks_.branch, counts_.of(VisitCount::branch)) ||
+        !fits(ticks_.leaf, counts_.of(VisitCount::leaf)) ||
+        !fits(ticks_.test, counts_.of(VisitCount::test)) || !fits(ticks_.hit, visit.lines)) {
+      visit.lines = 0;
+    }
   }
 
  private:

@@ -130,10 +130,26 @@ void Config::fail(std::string_view key, std::string_view message) const {
   throw UserError(place + ": " + std::string(key) + ": " + std::string(message));
 }
 
-void Config::mark_unused_reason(std::string_view key_or_section, std::string_view reason) {
+void Config::mark_unused_reason(std::string_view key_or_section, std::string_view reason,
+                                std::string_view decided_by) {
   ensure(schema_.find(key_or_section).has_value() || schema_.is_section(key_or_section),
          "a reason is given for a key that is not declared");
-  unused_reasons_.emplace_back(key_or_section, reason);
+  bool by_assignment = false;
+  if (!decided_by.empty()) {
+    const Entry& decider = entries_[index_of(decided_by)];
+    by_assignment = decider.given && decider.line == 0;
+  }
+  unused_reasons_.push_back({std::string(key_or_section), std::string(reason), by_assignment});
+}
+
+const Config::UnusedReason* Config::unused_reason(std::string_view key) const {
+  const UnusedReason* best = nullptr;
+  for (const UnusedReason& reason : unused_reasons_) {
+    if (covers(reason.covers, key) && (best == nullptr || reason.covers.size() >= best->covers.size())) {
+      best = &reason;
+    }
+  }
+  return best;
 }
 
 void Config::refuse_unused() const {
@@ -144,22 +160,22 @@ void Config::refuse_unused() const {
     // The first by line; assignments, which have line 0, only when nothing in the file is unused.
     const bool earlier =
         first == nullptr || (entry.line > 0 && (first->line == 0 || entry.line < first->line));
-    if (entry.given && !entry.used && earlier) {
-      first = &entry;
-      key = schema_.names()[i];
+    if (!entry.given || entry.used || !earlier) {
+      continue;
     }
+    const UnusedReason* reason = unused_reason(schema_.names()[i]);
+    if (entry.line > 0 && reason != nullptr && reason->by_assignment) {
+      continue;
+    }
+    first = &entry;
+    key = schema_.names()[i];
   }
   if (first == nullptr) {
     return;
   }
-  const std::pair<std::string, std::string>* best = nullptr;
-  for (const auto& reason : unused_reasons_) {
-    if (covers(reason.first, key) && (best == nullptr || reason.first.size() >= best->first.size())) {
-      best = &reason;
-    }
-  }
-  fail(key,
-       best == nullptr ? "is not used by this configuration; leave it out" : "is not used: " + best->second);
+  const UnusedReason* reason = unused_reason(key);
+  fail(key, reason == nullptr ? "is not used by this configuration; leave it out"
+                              : "is not used: " + reason->reason);
 }
 
 std::vector<EffectiveValue> Config::effective_values() const {

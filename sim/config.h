@@ -71,8 +71,11 @@ class Config {
   [[noreturn]] void fail(std::string_view key, std::string_view message) const;
 
   /// Why the key, or all keys below the section, are not used in this machine ("has no effect with
-  /// interconnect.kind = \"ideal\""). The longest matching name wins.
-  void mark_unused_reason(std::string_view key_or_section, std::string_view reason);
+  /// interconnect.kind = \"ideal\""). The longest matching name wins. `decided_by` is the key whose value
+  /// decided it: when that is set by an assignment, the file's keys that it makes useless are no error, so
+  /// that an assignment can switch off what the file describes.
+  void mark_unused_reason(std::string_view key_or_section, std::string_view reason,
+                          std::string_view decided_by = {});
   /// Throws a UserError when a key is given that nobody has read. Call it when the machine is assembled.
   void refuse_unused() const;
 
@@ -102,7 +105,14 @@ class Config {
   Schema schema_;
   std::string name_;
   std::vector<Entry> entries_;  // one for each key of the schema, in its order
-  std::vector<std::pair<std::string, std::string>> unused_reasons_;
+  struct UnusedReason {
+    std::string covers;  // key or section
+    std::string reason;
+    bool by_assignment = false;
+  };
+  [[nodiscard]] const UnusedReason* unused_reason(std::string_view key) const;
+
+  std::vector<UnusedReason> unused_reasons_;
 };
 
 }  // namespace marti::sim

@@ -57,8 +57,8 @@ FrameConfig read_frame(sim::Config& config) {
     frame.structure_options.octree.max_level =
         static_cast<std::uint32_t>(config.integer("structure.max_level"));
   }
-  config.mark_unused_reason("structure",
-                            "it has no effect with structure.kind = \"" + frame.structure + "\"");
+  config.mark_unused_reason("structure", "it has no effect with structure.kind = \"" + frame.structure + "\"",
+                            "structure.kind");
   frame.memory_limit = config.size("host_machine.memory_limit");
   return frame;
 }

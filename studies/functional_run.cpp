@@ -31,11 +31,12 @@ constexpr std::uint32_t sample_side = 64;
 void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
                           const accel::TriangleSet& triangles, const accel::Structure& structure) {
   processors::RenderOptions sample = config.render;
-  sample.width = std::min(sample.width, sample_side);
-  sample.height = std::min(sample.height, sample_side);
-  if (sample.width == config.render.width && sample.height == config.render.height) {
+  const std::uint32_t longer = std::max(sample.width, sample.height);
+  if (longer <= sample_side) {
     return;
   }
+  sample.width = std::max(1U, sample.width * sample_side / longer);
+  sample.height = std::max(1U, sample.height * sample_side / longer);
   sample.record = true;
   const processors::Frame frame = processors::render(scene, triangles, structure, sample);
   const double pixels = static_cast<double>(config.render.width) * config.render.height;

@@ -76,8 +76,7 @@ void declare_node(Schema& schema) {
   }
   schema.choice("costs.preset", presets.back(), presets, "the processor whose operation timings are taken");
   for (const auto& [name, member] : operations) {
-    schema.integer(name, -1, {-1, 1'000'000}, "cycles",
-                   "cycles of one " + std::string(name.substr(6)) + "; -1: the preset's");
+    schema.integer(name, -1, {-1, 1'000'000}, "cycles", "cycles of one such operation; -1: the preset's");
   }
 }
 
@@ -137,7 +136,8 @@ void declare_interconnect(Schema& schema) {
   schema.section("memory", "the banks of a cluster's shared memory");
   schema.integer("memory.banks", 4, {1, 65536}, "", "number of banks");
   schema.size("memory.interleave", "0 B", {"0 B", "1 GiB"},
-              "bytes in a row that share a bank, a power of two; 0: a cache line, or 32 B without a cache");
+              "bytes in a row that share a bank, a power of two, and without a cache the most that one "
+              "reference reads; 0: a cache line, or 32 B without a cache");
   clock(schema, "memory.clock", "clock of the banks");
   cycles(schema, "memory.access_cycles", 4, "cycles from the start of an access to its data");
   cycles(schema, "memory.busy_cycles", 6, "cycles from the start of an access to the next");
@@ -154,7 +154,8 @@ void declare_host(Schema& schema) {
       "dynamic: a free node asks for the next packet; interleaved: node i of n has packets i, i + n, "
       "...; blocks: each node has a run of packets");
   clock(schema, "host.clock", "clock of the host");
-  cycles(schema, "host.latency_cycles", 100, "cycles from a node's request to its packet");
+  cycles(schema, "host.latency_cycles", 100,
+         "cycles from a node's request to its packet; nodes ask when they are free, not before");
   cycles(schema, "host.occupancy_cycles", 0, "cycles that one request keeps the host from the next");
 }
 
@@ -211,7 +212,8 @@ void read_cache(sim::Config& config, processors::NodeCacheConfig& cache) {
   using processors::CacheOrganisation;
   cache.organisation = config.choice_as<CacheOrganisation>("cache.organisation");
   if (cache.organisation == CacheOrganisation::none) {
-    config.mark_unused_reason("cache", "it has no effect with cache.organisation = \"none\"");
+    config.mark_unused_reason("cache", "it has no effect with cache.organisation = \"none\"",
+                              "cache.organisation");
     return;
   }
   cache.cache.line = power_of_two(config, "cache.line");
@@ -221,17 +223,20 @@ void read_cache(sim::Config& config, processors::NodeCacheConfig& cache) {
   if (cache.cache.replacement == memory::Replacement::random) {
     cache.cache.seed = static_cast<std::uint64_t>(config.integer("cache.seed"));
   }
-  config.mark_unused_reason("cache.seed", "only cache.replacement = \"random\" draws numbers");
+  config.mark_unused_reason("cache.seed", "only cache.replacement = \"random\" draws numbers",
+                            "cache.replacement");
   if (cache.organisation == CacheOrganisation::unified) {
     read_cache_size(config, "cache.size", cache.cache, cache.cache.size);
   } else {
-    config.mark_unused_reason("cache.size", "a split cache has cache.node_size, cache.list_size, ...");
+    config.mark_unused_reason("cache.size", "a split cache has cache.node_size, cache.list_size, ...",
+                              "cache.organisation");
     for (std::size_t i = 0; i < split_keys.size(); ++i) {
       read_cache_size(config, split_keys[i], cache.cache, cache.split_sizes[i]);
     }
   }
   for (const std::string_view key : split_keys) {
-    config.mark_unused_reason(key, "it has no effect without cache.organisation = \"split\"");
+    config.mark_unused_reason(key, "it has no effect without cache.organisation = \"split\"",
+                              "cache.organisation");
   }
 }
 
@@ -243,7 +248,8 @@ void read_local(sim::Config& config, processors::MachineConfig& machine) {
     machine.local.access_cycles = config.integer("local.access_cycles");
     machine.local.cycles_per_beat = config.integer("local.cycles_per_beat");
   }
-  config.mark_unused_reason("local", "it has no effect without database.placement = \"replicated\"");
+  config.mark_unused_reason("local", "it has no effect without database.placement = \"replicated\"",
+                            "database.placement");
 }
 
 void read_interconnect(sim::Config& config, processors::MachineConfig& machine) {
@@ -274,8 +280,8 @@ void read_interconnect(sim::Config& config, processors::MachineConfig& machine) 
     }
   }
   const std::string kind = "with interconnect.kind = \"" + config.choice_name("interconnect.kind") + "\"";
-  config.mark_unused_reason("interconnect", "it has no effect " + kind);
-  config.mark_unused_reason("memory", "there are no banks " + kind);
+  config.mark_unused_reason("interconnect", "it has no effect " + kind, "interconnect.kind");
+  config.mark_unused_reason("memory", "there are no banks " + kind, "interconnect.kind");
 }
 
 }  // namespace
@@ -311,7 +317,8 @@ processors::MachineConfig read_machine(sim::Config& config) {
     machine.host.latency_cycles = config.integer("host.latency_cycles");
     machine.host.occupancy_cycles = config.integer("host.occupancy_cycles");
   }
-  config.mark_unused_reason("host", "nodes ask nobody without host.assignment = \"dynamic\"");
+  config.mark_unused_reason("host", "nodes ask nobody without host.assignment = \"dynamic\"",
+                            "host.assignment");
   processors::check(machine);
   return machine;
 }

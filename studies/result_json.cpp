@@ -13,8 +13,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int schema_version = 1;
-// Beyond this many nodes their own figures are left out: sums and extremes remain.
-constexpr std::size_t most_listed_nodes = 4096;
+// Beyond this many nodes or clusters their own figures are left out: sums remain.
+constexpr std::size_t most_listed = 4096;
 
 Json optional(std::optional<double> value) { return value ? Json(*value) : Json(nullptr); }
 
@@ -83,12 +83,24 @@ Json log_json(const processors::LogTotals& t) {
           {"shades", t.shades}, {"lights", t.lights},     {"texels", t.texels}};
 }
 
+// Every declared counter under its name; times say so in theirs.
+template <class S>
+Json counters_json(const S& statistics) {
+  Json object = Json::object();
+  sim::for_each_counter(statistics, [&](const sim::Counter<S>& counter, std::int64_t value) {
+    object[std::string(counter.name) + (counter.unit == "ps" ? "_ps" : "")] = value;
+  });
+  return object;
+}
+
 Json wait_json(const memory::WaitStatistics& w) {
+  Json object = counters_json(w);
   Json buckets = Json::array();
   for (const auto& bucket : w.histogram.buckets()) {
     buckets.push_back({bucket.lowest, bucket.highest, bucket.count});
   }
-  return {{"count", w.count}, {"sum_ps", w.sum}, {"max_ps", w.max}, {"histogram_ps", buckets}};
+  object["histogram_ps"] = buckets;
+  return object;
 }
 
 Json reference_json(const processors::MachineResult& result) {
@@ -103,38 +115,35 @@ Json reference_json(const processors::MachineResult& result) {
 }
 
 Json clusters_json(const processors::MachineResult& result) {
+  if (result.clusters.size() > most_listed) {
+    return nullptr;
+  }
   Json clusters = Json::array();
   for (const processors::ClusterResult& cluster : result.clusters) {
-    const memory::InterconnectStatistics& i = cluster.interconnect;
+    Json interconnect = counters_json(cluster.interconnect);
+    interconnect["waits"] = wait_json(cluster.interconnect.waits);
     Json banks = Json::array();
     for (const memory::BankStatistics& bank : cluster.banks) {
-      banks.push_back(
-          {{"accesses", bank.accesses}, {"busy_ps", bank.busy}, {"waits", wait_json(bank.waits)}});
+      banks.push_back(counters_json(bank));
+      banks.back()["waits"] = wait_json(bank.waits);
     }
-    clusters.push_back({{"interconnect",
-                         {{"reads", i.reads},
-                          {"writes", i.writes},
-                          {"bytes", i.bytes},
-                          {"links", i.links},
-                          {"busy_ps", i.busy},
-                          {"waits", wait_json(i.waits)}}},
-                        {"banks", banks}});
+    clusters.push_back({{"interconnect", interconnect}, {"banks", banks}});
   }
   return clusters;
 }
 
 Json nodes_json(const processors::MachineResult& result) {
-  if (result.nodes.size() > most_listed_nodes) {
+  if (result.nodes.size() > most_listed) {
     return nullptr;
   }
   Json nodes = Json::array();
   for (const processors::NodeStatistics& node : result.nodes) {
-    nodes.push_back({{"finish_ps", node.finish},
-                     {"packets", node.packets},
-                     {"pixels", node.steps.pixels},
-                     {"hits", node.references.all_hits()},
-                     {"misses", node.references.all_misses()},
-                     {"time_ps", named(processors::activity_names, node.time)}});
+    Json object = counters_json(node);
+    object["hits"] = node.references.all_hits();
+    object["misses"] = node.references.all_misses();
+    object["steps"] = counters_json(node.steps);
+    object["time_ps"] = named(processors::activity_names, node.time);
+    nodes.push_back(object);
   }
   return nodes;
 }
@@ -143,7 +152,7 @@ Json nodes_json(const processors::MachineResult& result) {
 
 std::string json_of(const RunResult& r) {
   const processors::MachineResult& timed = r.timed;
-  const Utilisation used = utilisation_of(timed);
+  const Utilisation used = utilisation_of(r.machine, timed);
   Json machine = {
       {"scheme", "image"},
       {"clusters", r.machine.clusters},
@@ -156,15 +165,16 @@ std::string json_of(const RunResult& r) {
       {"karp_flatt_serial_fraction", optional(r.scaling.serial_fraction)},
       {"limit",
        {{"what", name_of(r.finding.limit)}, {"share", r.finding.share}, {"sentence", r.finding.sentence}}},
-      {"interconnect_utilisation", used.interconnect},
+      {"interconnect_utilisation", optional(used.interconnect)},
       {"busiest_bank_utilisation", used.bank},
       {"mean_bank_utilisation", used.mean_bank},
       {"packets", timed.packets},
-      {"host_requests", timed.host.requests},
+      {"host", counters_json(timed.host)},
       {"database_bytes", timed.database_bytes},
       {"database_copies", timed.copies},
       {"unloaded_miss_ps", timed.unloaded_miss},
       {"time_ps", named(processors::activity_names, timed.time())},
+      {"steps", counters_json(timed.steps())},
       {"references", reference_json(timed)},
       {"per_cluster", clusters_json(timed)},
       {"per_node", nodes_json(timed)}};

@@ -1,9 +1,25 @@
+#include <string>
 #include <utility>
 
+#include "sim/units.h"
 #include "studies/machine_keys.h"
 #include "studies/run_result.h"
 
 namespace marti::studies {
+
+namespace {
+
+void refuse_beyond_memory(const sim::Config& config, const RunResult& result) {
+  const std::uint64_t bytes = processors::host_bytes(result.machine);
+  if (bytes > static_cast<std::uint64_t>(result.frame_config.memory_limit)) {
+    config.fail("machine.nodes", "simulating these nodes and their caches takes about " +
+                                     sim::print_size(static_cast<std::int64_t>(bytes >> 20U << 20U)) +
+                                     ", more than host_machine.memory_limit = " +
+                                     sim::print_size(result.frame_config.memory_limit));
+  }
+}
+
+}  // namespace
 
 sim::Schema run_schema() {
   sim::Schema schema;
@@ -18,6 +34,7 @@ RunResult run(sim::Config& config) {
   result.frame_config = read_frame(config);
   result.machine = read_machine(config);
   config.refuse_unused();
+  refuse_beyond_memory(config, result);
   result.values = config.effective_values();
 
   result.functional = run_functional(result.frame_config);

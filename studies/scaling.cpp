@@ -25,7 +25,7 @@ std::string describe(Limit limit, double part, const Utilisation& used,
       return fmt::format(
           "the {} is {:.1f} % busy and nodes spend {:.1f} % of their time waiting for it; fewer misses "
           "(larger cache), a wider {} or more clusters would help",
-          bus ? "bus" : "crossbar", 100.0 * used.interconnect, percent, bus ? "bus" : "link");
+          bus ? "bus" : "crossbar", 100.0 * used.interconnect.value_or(0.0), percent, bus ? "bus" : "link");
     case Limit::bank:
       return fmt::format(
           "the busiest bank is {:.1f} % busy and nodes spend {:.1f} % of their time waiting for banks; more "
@@ -73,15 +73,18 @@ Scaling scaling_of(sim::Ticks one_node_end, sim::Ticks end, std::uint32_t nodes)
   return scaling;
 }
 
-Utilisation utilisation_of(const processors::MachineResult& result) {
+Utilisation utilisation_of(const processors::MachineConfig& machine,
+                           const processors::MachineResult& result) {
   Utilisation used;
   std::int64_t banks = 0;
   double busy = 0.0;
   const double end = static_cast<double>(result.end);
   for (const processors::ClusterResult& cluster : result.clusters) {
-    used.interconnect =
-        std::max(used.interconnect,
-                 share(cluster.interconnect.busy, end * static_cast<double>(cluster.interconnect.links)));
+    if (machine.interconnect.kind != memory::InterconnectKind::ideal) {
+      const double links = static_cast<double>(cluster.interconnect.links);
+      used.interconnect =
+          std::max(used.interconnect.value_or(0.0), share(cluster.interconnect.busy, end * links));
+    }
     for (const memory::BankStatistics& bank : cluster.banks) {
       // A bank that is still recovering when the frame ends counts as busy until then.
       const double utilisation = std::min(1.0, share(bank.busy, end));
@@ -120,7 +123,7 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
   Finding finding;
   finding.limit = largest->first;
   finding.share = largest->second / all;
-  finding.sentence = describe(finding.limit, finding.share, utilisation_of(result), machine, result);
+  finding.sentence = describe(finding.limit, finding.share, utilisation_of(machine, result), machine, result);
   return finding;
 }
 

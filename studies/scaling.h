@@ -21,14 +21,17 @@ struct Scaling {
 
 [[nodiscard]] Scaling scaling_of(sim::Ticks one_node_end, sim::Ticks end, std::uint32_t nodes);
 
-/// The busiest link of a cluster's interconnect set and the busiest bank, as shares of the frame time.
+/// How busy interconnects and banks were, as shares of the frame time.
 struct Utilisation {
-  double interconnect = 0.0;  ///< transfer time over links times frame time, the busiest cluster's
-  double bank = 0.0;          ///< the busiest bank's
+  /// Transfer time over links times frame time, the busiest cluster's; nothing for an ideal interconnect,
+  /// which has no links to be busy.
+  std::optional<double> interconnect;
+  double bank = 0.0;  ///< the busiest bank's
   double mean_bank = 0.0;
 };
 
-[[nodiscard]] Utilisation utilisation_of(const processors::MachineResult& result);
+[[nodiscard]] Utilisation utilisation_of(const processors::MachineConfig& machine,
+                                         const processors::MachineResult& result);
 
 enum class Limit { nothing, interconnect, bank, memory_latency, dispatch, imbalance, write_buffer, compute };
 

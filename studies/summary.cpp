@@ -74,9 +74,7 @@ void scene_lines(Lines out, const RunResult& r) {
                  grouped(totals.rays[1]), grouped(totals.rays[2]), grouped(totals.rays[3]));
   fmt::format_to(out, "work log      {}, {:.1f} bytes and {:.1f} steps a ray\n",
                  bytes(static_cast<double>(totals.bytes)), static_cast<double>(totals.bytes) / rays,
-                 static_cast<double>(totals.branches + totals.leaves + totals.tests + totals.shades +
-                                     totals.lights + totals.texels) /
-                     rays);
+                 static_cast<double>(totals.all_steps()) / rays);
 }
 
 void machine_lines(Lines out, const RunResult& r) {
@@ -123,7 +121,7 @@ void memory_lines(Lines out, const RunResult& r) {
   }
   line("all", references.all_hits(), references.all_misses());
 
-  const Utilisation used = utilisation_of(r.timed);
+  const Utilisation used = utilisation_of(r.machine, r.timed);
   memory::WaitStatistics waits;
   memory::WaitStatistics bank_waits;
   const auto gather = [](memory::WaitStatistics& into, const memory::WaitStatistics& from) {
@@ -154,8 +152,8 @@ void memory_lines(Lines out, const RunResult& r) {
     fmt::format_to(out, "ideal, {} moved\n", bytes(static_cast<double>(moved)));
     return;
   }
-  fmt::format_to(out, "{:.1f} % busy, {}, {} moved\n", 100.0 * used.interconnect, waiting(waits),
-                 bytes(static_cast<double>(moved)));
+  fmt::format_to(out, "{:.1f} % busy, {}, {} moved\n", 100.0 * used.interconnect.value_or(0.0),
+                 waiting(waits), bytes(static_cast<double>(moved)));
   fmt::format_to(out, "banks         {:.1f} % busy (the busiest {:.1f} %), {}\n", 100.0 * used.mean_bank,
                  100.0 * used.bank, waiting(bank_waits));
 }

@@ -95,7 +95,7 @@ TEST(Command, JsonHoldsTheConservationLaws) {
       sum += time.get<std::int64_t>();
     }
     EXPECT_EQ(sum, machine["frame_time_ps"].get<std::int64_t>());
-    pixels += node["pixels"].get<std::int64_t>();
+    pixels += node["writes"].get<std::int64_t>();
   }
   EXPECT_EQ(pixels, 24 * 16);
   std::int64_t misses = 0;
@@ -151,6 +151,9 @@ TEST(Command, WrongConfigurationsGetOneMessageWithFileLineAndKey) {
       {"[structure]\nkind = \"none\"\nmax_level = 3\n", {"wrong.toml:3", "structure.max_level", "none"}},
       {"nodes = 3\n", {"wrong.toml:1", "nodes"}},
       {"[cache\n", {"wrong.toml:1"}},
+      {"[cache]\nsize = \"1536 MiB\"\nline = \"1 B\"\nways = 0\n", {"wrong.toml:2", "cache.size", "2^28"}},
+      {"[machine]\nnodes = 16000000\n[cache]\nsize = \"1 MiB\"\n",
+       {"wrong.toml:2", "machine.nodes", "memory_limit"}},
       {"[cache]\nsize = \"1 KiB\"\nsize = \"2 KiB\"\n", {"wrong.toml:3"}},
   };
   for (const Wrong& wrong : cases) {
@@ -162,6 +165,18 @@ TEST(Command, WrongConfigurationsGetOneMessageWithFileLineAndKey) {
     }
     EXPECT_FALSE(fs::exists(directory.path() / "out" / "result.json"));
   }
+}
+
+TEST(Command, AnAssignmentMaySwitchOffWhatTheFileDescribes) {
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
+  for (const char* assignment : {"cache.organisation=none", "cache.organisation=split", "structure.kind=none",
+                                 "interconnect.kind=ideal", "interconnect.kind=crossbar"}) {
+    const Outcome outcome = marti("run " + quoted(config) + small + " --set " + assignment);
+    EXPECT_EQ(outcome.status, 0) << assignment << "\n" << outcome.output;
+  }
+  const Outcome both =
+      marti("run " + quoted(config) + small + " --set cache.organisation=none --set cache.size=1KiB");
+  EXPECT_EQ(both.status, 2) << "what the same command line gives must be used";
 }
 
 TEST(Command, ARefusalLeavesEarlierResultsAlone) {

@@ -40,7 +40,7 @@ double deep_share(const Octree& octree) {
 // merely touch (23,937, 39.9 %). Our root is enlarged by a margin of its own, which leaves only
 // the central planes in place. There they touch exactly, and the margin of the cells adds nothing to that
 // (27,137 with and without it).
-TEST(Structures, TeapotOctreeHasThePublishedSize) {
+TEST(Structures, TeapotOctreeHasTheSizeOfExactClipping) {
   const auto pot = triangles_of("teapot:12:pot");
   ASSERT_EQ(pot->size(), 9120U);
   const Octree octree = Octree::build(pot, OctreeOptions{9, 12});

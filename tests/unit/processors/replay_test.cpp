@@ -275,6 +275,18 @@ TEST(Replay, RefusesWhatCannotBeBuiltOrTimed) {
   EXPECT_THROW((void)replay(log, machine), sim::UserError);
 }
 
+TEST(Replay, PixelWritesThatSwampACrossbarKeepTheLawsToo) {
+  test::Random random(19);
+  const WorkLog log = test::random_log(random, 12, 12, 4);
+  MachineConfig machine;
+  machine.placement = Placement::replicated;
+  machine.interconnect.kind = memory::InterconnectKind::crossbar;
+  machine.interconnect.cycles_per_beat = 100'000;
+  machine.banks.count = 1;
+  machine.banks.busy_cycles = 0;
+  EXPECT_GT(replay(log, machine).end, 0) << "replay checks its result itself";
+}
+
 TEST(Replay, AnEmptyImageTakesNoTime) {
   test::Random random(18);
   const WorkLog log = test::random_log(random, 0, 0);
