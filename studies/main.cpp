@@ -115,7 +115,10 @@ int parse_and_run(int argc, char** argv) {
   run->add_option("--set", run_arguments.assignments, "key=value, overrides the file; may be repeated")
       ->allow_extra_args(false);
   run->add_option("-o,--output", run_arguments.directory,
-                  "directory for image.exr, image.png and result.json");
+                  "directory for image.exr, image.png and result.json")
+      ->check([](const std::string& name) {
+        return std::string(name.empty() ? "the name of a directory must not be empty" : "");
+      });
   run->add_flag("--json", run_arguments.json, "print the result as JSON instead of the summary");
   run->callback([&] { run_command(run_arguments); });
 

@@ -43,7 +43,7 @@ std::string describe(Limit limit, double part, const Utilisation& used,
           percent);
     case Limit::imbalance:
       return fmt::format(
-          "imbalance: nodes are idle {:.1f} % of the time, {} packets for {} nodes; smaller packets would "
+          "imbalance: nodes are idle {:.1f} % of the time, {} packet(s) for {} nodes; smaller packets would "
           "help",
           percent, result.packets, result.nodes.size());
     case Limit::write_buffer:

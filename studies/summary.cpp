@@ -26,6 +26,11 @@ std::string grouped(std::int64_t value) {
 
 std::string grouped(std::uint64_t value) { return grouped(static_cast<std::int64_t>(value)); }
 
+// "1 node", "16 nodes"
+std::string counted(std::uint64_t count, std::string_view what) {
+  return fmt::format("{} {}{}", grouped(count), what, count == 1 ? "" : "s");
+}
+
 std::string seconds(sim::Ticks ticks) {
   const double s = static_cast<double>(ticks) / static_cast<double>(sim::ticks_per_second);
   if (s >= 1.0) {
@@ -79,18 +84,17 @@ void scene_lines(Lines out, const RunResult& r) {
 
 void machine_lines(Lines out, const RunResult& r) {
   const processors::MachineConfig& machine = r.machine;
-  fmt::format_to(out, "machine       {} cluster{} of {} node{}, image scheme, {} packets of {} x {}\n",
-                 machine.clusters, machine.clusters == 1 ? "" : "s", machine.nodes,
-                 machine.nodes == 1 ? "" : "s", grouped(r.timed.packets), machine.packets.width,
-                 machine.packets.height);
+  fmt::format_to(out, "machine       {} of {}, image scheme, {} of {} x {}\n",
+                 counted(machine.clusters, "cluster"), counted(machine.nodes, "node"),
+                 counted(r.timed.packets, "packet"), machine.packets.width, machine.packets.height);
   fmt::format_to(out, "database      {}, {} cop{}: {} in all\n",
                  bytes(static_cast<double>(r.timed.database_bytes)), grouped(r.timed.copies),
                  r.timed.copies == 1 ? "y" : "ies",
                  bytes(static_cast<double>(r.timed.database_bytes) * static_cast<double>(r.timed.copies)));
   fmt::format_to(out, "\nframe time    {} = {} node cycles\n", seconds(r.timed.end),
                  grouped(r.timed.end / machine.clock.period()));
-  fmt::format_to(out, "speed-up      {} on {} nodes, efficiency {}, serial fraction (Karp-Flatt) {}\n",
-                 ratio(r.scaling.speed_up, 2), grouped(std::int64_t{r.scaling.nodes}),
+  fmt::format_to(out, "speed-up      {} on {}, efficiency {}, serial fraction (Karp-Flatt) {}\n",
+                 ratio(r.scaling.speed_up, 2), counted(r.scaling.nodes, "node"),
                  ratio(r.scaling.efficiency, 3), ratio(r.scaling.serial_fraction, 4));
   fmt::format_to(out, "one node      {}\n", seconds(r.scaling.one_node_end));
 }

@@ -212,6 +212,7 @@ TEST(Command, UsageErrorsAreTwoAndHelpIsZero) {
   EXPECT_EQ(marti("run").status, 2);
   EXPECT_EQ(marti("run /nonexistent.toml").status, 2);
   EXPECT_EQ(marti("run / ").status, 2);
+  EXPECT_EQ(marti("run x.toml -o ''").status, 2);
   EXPECT_EQ(marti("--help").status, 0);
   EXPECT_EQ(marti("run --help").status, 0);
   EXPECT_EQ(marti("--version").status, 0);
