@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -29,7 +30,7 @@ struct Built {
   std::unique_ptr<Structure> structure;
 };
 
-/// Every kind, and the octree in several shapes: the default, as deep as it goes, shallow, one single leaf.
+/// Every kind, in several shapes: the default, as deep as it goes, shallow, one single leaf.
 std::vector<Built> build_all(const std::shared_ptr<const TriangleSet>& triangles) {
   std::vector<Built> all;
   const auto add = [&](std::string_view kind, std::uint32_t max_objects, std::uint32_t max_level) {
@@ -43,6 +44,16 @@ std::vector<Built> build_all(const std::shared_ptr<const TriangleSet>& triangles
   add("octree", 2, 11);
   add("octree", 3, 5);
   add("octree", 8, 1);
+  const auto add_grid = [&](double density, std::array<std::uint32_t, 3> resolution) {
+    accel::StructureOptions options;
+    options.grid.density = density;
+    options.grid.resolution = resolution;
+    all.push_back({"grid", accel::make_structure("grid", triangles, options)});
+  };
+  add_grid(4.0, {0, 0, 0});
+  add_grid(1.0, {32, 32, 32});  // its planes are the octree's
+  add_grid(1.0, {1, 7, 64});
+  add_grid(1.0, {1, 1, 1});
   add("none", 8, 12);
   return all;
 }
