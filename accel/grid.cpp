@@ -23,6 +23,9 @@ glm::dvec3 extent_of(const RootFrame& frame) { return frame.box.hi - frame.box.l
 Resolution resolution_for(const RootFrame& frame, double cells) {
   const glm::dvec3 extent = extent_of(frame);
   Resolution n{0, 0, 0};  // 0: not yet settled
+  for (int a = 0; a < 3; ++a) {
+    n[static_cast<std::size_t>(a)] = extent[a] > 0.0 ? 0U : 1U;  // no extent at all: a point in the origin
+  }
   for (;;) {
     double log_volume = 0.0;  // a product of three extents could overflow
     int open = 0;
