@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 #include "accel/box_overlap.h"
@@ -21,44 +20,13 @@ constexpr std::uint64_t packed_entries_per_triangle = 16;
 constexpr std::size_t most_nodes = (std::size_t{1} << 28) - 8;
 constexpr std::uint64_t packed_entries_always = std::uint64_t{1} << 16;
 
-// By how many delta the root reaches beyond the triangles. More than the 2 that hits need: then corners on a
-// dyadic plane of the tight box, common in models, lie clearly on one side of the moved plane instead of
-// within delta of it, and their triangles are not listed twice. And no power of two, so that the flat side of
-// a flat scene is in no plane of any level.
-constexpr double root_margin = 192.0;
-
 using Cell = std::array<std::uint32_t, 3>;
-
-OctreeFrame make_frame(const TriangleSet& triangles) {
-  OctreeFrame frame;
-  const scenes::Bounds& tight = triangles.bounds();
-  if (tight.empty()) {
-    return frame;
-  }
-  const glm::dvec3 extent = tight.hi - tight.lo;
-  const double diagonal = std::hypot(extent.x, extent.y, extent.z);
-  double largest = 0.0;
-  for (int a = 0; a < 3; ++a) {
-    largest = std::max({largest, std::abs(tight.lo[a]), std::abs(tight.hi[a])});
-  }
-  frame.delta = 0x1p-40 * diagonal + 8.0 * 0x1p-52 * largest;
-  frame.box.lo = tight.lo - root_margin * frame.delta;
-  frame.box.hi = tight.hi + root_margin * frame.delta;
-  for (int a = 0; a < 3; ++a) {
-    frame.box.hi[a] = std::max(frame.box.hi[a], frame.box.lo[a] + 0x1p-12 * diagonal);
-  }
-  frame.center = 0.5 * frame.box.lo + 0.5 * frame.box.hi;
-  // 64 on each axis keeps the distance below 128 diagonals.
-  frame.far = 64.0 * diagonal;
-  frame.largest_inverse = 0x1p1014 / std::max(1.0, diagonal);
-  return frame;
-}
 
 /// Builds level by level. Nodes of a level are numbered in the order of their parents; `lists` holds what
 /// each of them lists.
 class Builder {
  public:
-  Builder(const TriangleSet& triangles, const OctreeOptions& options, const OctreeFrame& frame,
+  Builder(const TriangleSet& triangles, const OctreeOptions& options, const RootFrame& frame,
           Topology& topology, std::vector<LevelStatistics>& levels)
       : triangles_(triangles), options_(options), frame_(frame), topology_(topology), levels_(levels) {}
 
@@ -219,27 +187,19 @@ class Builder {
 
   const TriangleSet& triangles_;
   const OctreeOptions& options_;
-  const OctreeFrame& frame_;
+  const RootFrame& frame_;
   Topology& topology_;
   std::vector<LevelStatistics>& levels_;
   std::array<std::vector<std::uint32_t>, 8> lists_of_children_;
 };
 
-void require_range(const char* name, std::uint64_t value, std::uint64_t lo, std::uint64_t hi) {
-  if (value < lo || value > hi) {
-    std::ostringstream message;
-    message << "octree: " << name << " is " << value << ", must be from " << lo << " to " << hi;
-    throw sim::UserError(message.str());
-  }
-}
-
 }  // namespace
 
 Octree Octree::build(std::shared_ptr<const TriangleSet> triangles, const OctreeOptions& options) {
   sim::ensure(triangles != nullptr, "an octree needs a triangle set, even an empty one");
-  require_range("max_objects", options.max_objects, 1, 0x7fffffffU);
-  require_range("max_level", options.max_level, 1, deepest_level);
-  require_range("max_entries", options.max_entries, 1, std::uint64_t{1} << 30);
+  require_range(kind_name, "max_objects", options.max_objects, 1, 0x7fffffffU);
+  require_range(kind_name, "max_level", options.max_level, 1, deepest_level);
+  require_range(kind_name, "max_entries", options.max_entries, 1, std::uint64_t{1} << 30);
   Octree tree;
   tree.triangles_ = std::move(triangles);
   tree.options_ = options;

@@ -108,7 +108,7 @@ class Octree {
   std::shared_ptr<const TriangleSet> triangles_;
   OctreeOptions options_;
   Topology topology_;
-  OctreeFrame frame_;
+  RootFrame frame_;
   std::vector<LevelStatistics> levels_;
   CacheAligned<OctreeNode> nodes_;
   CacheAligned<OctreeNode> packed_nodes_;

@@ -3,13 +3,11 @@
 // enlarged by the ray's own error and tested against the ray; those met are visited in order of entry.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
+#include "accel/far_ray.h"
 #include "accel/octree_nodes.h"
 #include "accel/ray.h"
 #include "accel/visitor.h"
@@ -20,59 +18,6 @@ namespace marti::accel {
 template <bool Any, class Real, class Visitor>
 inline bool test_leaf(const OctreeView& view, const OctreeNode& record, std::uint32_t node,
                       const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor);
-
-/// A ray's parameters inside an enlarged box; empty when in > out. Never NaN.
-struct FarSpan {
-  double in;
-  double out;
-};
-
-/// What the slow walk knows of its ray.
-struct FarRay {
-  std::array<double, 3> origin;
-  std::array<double, 3> direction;
-  double t_min;
-  double margin;  ///< by how much boxes are enlarged: kernel, slab and cell errors together
-  double slack;   ///< the same as a parameter
-
-  FarRay(const OctreeFrame& frame, const Ray& ray)
-      : origin{ray.origin.x, ray.origin.y, ray.origin.z},
-        direction{ray.direction.x, ray.direction.y, ray.direction.z},
-        t_min(ray.t_min) {
-    const std::array<double, 3> center{frame.center.x, frame.center.y, frame.center.z};
-    double reach = frame.far;
-    double speed = 0.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      reach = std::max(reach, std::abs(origin[a] - center[a]));
-      speed = std::max(speed, std::abs(direction[a]));
-    }
-    margin = 4.0 * frame.delta + 32.0 * 0x1p-53 * reach;
-    slack = 4.0 * margin / speed;
-  }
-
-  [[nodiscard]] FarSpan span(const glm::dvec3& box_lo, const glm::dvec3& box_hi) const {
-    FarSpan span{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-    for (int a = 0; a < 3; ++a) {
-      const auto k = static_cast<std::size_t>(a);
-      const double lo = box_lo[a] - margin - origin[k];
-      const double hi = box_hi[a] + margin - origin[k];
-      if (direction[k] == 0.0) {
-        if (lo > 0.0 || hi < 0.0) {
-          return {1.0, 0.0};
-        }
-        continue;
-      }
-      double near = lo / direction[k];
-      double far = hi / direction[k];
-      if (near > far) {
-        std::swap(near, far);
-      }
-      span.in = std::max(span.in, near);
-      span.out = std::min(span.out, far);
-    }
-    return span;
-  }
-};
 
 /// One branch of the slow walk. True when an occlusion query found its hit.
 template <bool Any, class Real, class Visitor>

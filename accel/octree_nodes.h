@@ -7,8 +7,8 @@
 #include <new>
 #include <vector>
 
+#include "accel/frame.h"
 #include "accel/triangles.h"
-#include "scenes/scene.h"
 
 namespace marti::accel {
 
@@ -54,15 +54,6 @@ struct alignas(64) TrianglePack {
   std::array<std::uint32_t, 4> id;
 };
 
-/// The root box and what follows from it.
-struct OctreeFrame {
-  scenes::Bounds box;  ///< enlarged; see Octree::bounds
-  double delta = 0.0;  ///< see octree.h
-  double far = 0.0;    ///< an origin farther than this from `center` on some axis takes the slow walk
-  glm::dvec3 center{0.0};
-  double largest_inverse = 0.0;  ///< cap on 1 / |direction component|, so that no plane's parameter overflows
-};
-
 /// What a walk needs, by reference.
 struct OctreeView {
   const OctreeNode* nodes;   ///< nodes[0] is the root
@@ -70,7 +61,7 @@ struct OctreeView {
   const TrianglePack* packs;
   const std::uint32_t* entries;  ///< triangle ids
   const TriangleSet* triangles;
-  const OctreeFrame* frame;
+  const RootFrame* frame;
 };
 
 }  // namespace marti::accel

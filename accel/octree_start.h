@@ -35,7 +35,7 @@ struct WalkStart {
 };
 
 template <class Real>
-[[nodiscard]] inline WalkStart<Real> start_walk(const OctreeFrame& frame, const Ray& ray,
+[[nodiscard]] inline WalkStart<Real> start_walk(const RootFrame& frame, const Ray& ray,
                                                 const RaySetup<Real>& setup) {
   using std::abs;
   using std::max;

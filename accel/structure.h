@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "accel/brute_force.h"
+#include "accel/bsp.h"
+#include "accel/grid.h"
 #include "accel/octree.h"
 #include "accel/ray.h"
 #include "accel/topology.h"
@@ -62,9 +64,11 @@ class StructureOf final : public Structure {
 /// Options of every kind; a kind reads its own.
 struct StructureOptions {
   OctreeOptions octree;
+  BspOptions bsp;
+  GridOptions grid;
 };
 
-/// The kinds make_structure knows: "octree" and "none" (brute force).
+/// The kinds make_structure knows: "octree", "bsp", "grid" and "none" (brute force).
 [[nodiscard]] std::span<const std::string_view> structure_kinds();
 
 /// Builds a structure. Throws UserError for an unknown kind or an option out of range.
@@ -72,12 +76,18 @@ struct StructureOptions {
                                                         std::shared_ptr<const TriangleSet> triangles,
                                                         const StructureOptions& options = {});
 
-/// Calls `f` with the concrete structure (const Octree& or const BruteForce&), so that code inside is
+/// Calls `f` with the concrete structure (const Octree&, and so on), so that code inside is
 /// compiled for each and the traversal is inlined.
 template <class F>
 decltype(auto) visit_structure(const Structure& structure, F&& f) {
   if (const auto* octree = dynamic_cast<const StructureOf<Octree>*>(&structure)) {
     return std::forward<F>(f)(octree->concrete());
+  }
+  if (const auto* bsp = dynamic_cast<const StructureOf<Bsp>*>(&structure)) {
+    return std::forward<F>(f)(bsp->concrete());
+  }
+  if (const auto* grid = dynamic_cast<const StructureOf<Grid>*>(&structure)) {
+    return std::forward<F>(f)(grid->concrete());
   }
   if (const auto* brute = dynamic_cast<const StructureOf<BruteForce>*>(&structure)) {
     return std::forward<F>(f)(brute->concrete());

@@ -27,10 +27,18 @@ void declare_frame_keys(sim::Schema& schema) {
   for (const std::string_view kind : accel::structure_kinds()) {
     kinds.emplace_back(kind);
   }
-  schema.choice("structure.kind", "octree", kinds, "octree, or none: every ray tests every primitive");
+  schema.choice(
+      "structure.kind", "octree", kinds,
+      "octree; bsp, a binary tree with the octree's planes; grid of equal cells; or none: every ray tests "
+      "every primitive");
   schema.integer("structure.max_objects", 8, {1, 1'000'000}, "primitives",
-                 "a node with more than this many is split");
-  schema.integer("structure.max_level", 12, {1, 21}, "", "deepest level; the root is level 1");
+                 "octree and bsp: a node with more than this many is split");
+  schema.integer(
+      "structure.max_level", 12, {1, 21}, "",
+      "octree and bsp: deepest level of the octree, whose root is level 1; three levels of the binary "
+      "tree make one of the octree");
+  schema.real("structure.grid_density", 4.0, {0.001, 1000.0}, "cells",
+              "grid: cells for each primitive, about");
   schema.section("host_machine", "the computer that runs the simulation");
   schema.size("host_machine.memory_limit", "8 GiB", {"1 MiB", "1024 TiB"},
               "refuse a frame whose image and work log would take more");
@@ -51,11 +59,14 @@ FrameConfig read_frame(sim::Config& config) {
   frame.render.min_weight = config.real("image.min_weight");
   frame.render.shadows = config.boolean("image.shadows");
   frame.structure = config.choice_name("structure.kind");
-  if (frame.structure == "octree") {
-    frame.structure_options.octree.max_objects =
-        static_cast<std::uint32_t>(config.integer("structure.max_objects"));
-    frame.structure_options.octree.max_level =
-        static_cast<std::uint32_t>(config.integer("structure.max_level"));
+  if (frame.structure == "octree" || frame.structure == "bsp") {
+    accel::StructureOptions& options = frame.structure_options;
+    options.octree.max_objects = static_cast<std::uint32_t>(config.integer("structure.max_objects"));
+    options.octree.max_level = static_cast<std::uint32_t>(config.integer("structure.max_level"));
+    options.bsp.max_objects = options.octree.max_objects;
+    options.bsp.max_level = options.octree.max_level;
+  } else if (frame.structure == "grid") {
+    frame.structure_options.grid.density = config.real("structure.grid_density");
   }
   config.mark_unused_reason("structure", "it has no effect with structure.kind = \"" + frame.structure + "\"",
                             "structure.kind");

@@ -116,6 +116,10 @@ TEST(Command, TheImageDoesNotDependOnTheMachineNorOnTheStructure) {
   const std::string expected = hashes("");
   EXPECT_EQ(hashes(" --set machine.nodes=3 --set cache.size=\"1 KiB\" --set packets.width=5"), expected);
   EXPECT_EQ(hashes(" --set structure.max_objects=2 --set structure.max_level=9"), expected);
+  for (const char* kind : {"bsp", "grid", "none"}) {
+    EXPECT_EQ(hashes(std::string(" --set structure.kind=") + kind), expected) << kind;
+  }
+  EXPECT_EQ(hashes(" --set structure.kind=grid --set structure.grid_density=0.3"), expected);
   EXPECT_NE(hashes(" --set image.max_depth=1"), expected);
 }
 
@@ -149,6 +153,9 @@ TEST(Command, WrongConfigurationsGetOneMessageWithFileLineAndKey) {
       {"[scene]\nsource = \"missing.glb\"\n", {"missing.glb"}},
       {"[scene]\nsource = \"teapot:2\"\nframe = 3\n", {"frame"}},
       {"[structure]\nkind = \"none\"\nmax_level = 3\n", {"wrong.toml:3", "structure.max_level", "none"}},
+      {"[structure]\nkind = \"grid\"\nmax_level = 3\n", {"wrong.toml:3", "structure.max_level", "grid"}},
+      {"[structure]\nkind = \"bsp\"\ngrid_density = 3.0\n",
+       {"wrong.toml:3", "structure.grid_density", "bsp"}},
       {"nodes = 3\n", {"wrong.toml:1", "nodes"}},
       {"[cache\n", {"wrong.toml:1"}},
       {"[cache]\nsize = \"1536 MiB\"\nline = \"1 B\"\nways = 0\n", {"wrong.toml:2", "cache.size", "2^28"}},
@@ -169,8 +176,9 @@ TEST(Command, WrongConfigurationsGetOneMessageWithFileLineAndKey) {
 
 TEST(Command, AnAssignmentMaySwitchOffWhatTheFileDescribes) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
-  for (const char* assignment : {"cache.organisation=none", "cache.organisation=split", "structure.kind=none",
-                                 "interconnect.kind=ideal", "interconnect.kind=crossbar"}) {
+  for (const char* assignment :
+       {"cache.organisation=none", "cache.organisation=split", "structure.kind=none", "structure.kind=bsp",
+        "structure.kind=grid", "interconnect.kind=ideal", "interconnect.kind=crossbar"}) {
     const Outcome outcome = marti("run " + quoted(config) + small + " --set " + assignment);
     EXPECT_EQ(outcome.status, 0) << assignment << "\n" << outcome.output;
   }

@@ -94,7 +94,10 @@ TEST_P(ClosedMesh, LeaksNoRay) {
   for (const auto& face : sphere.faces) {
     all.push_back(corners(vertices[face[0]], vertices[face[1]], vertices[face[2]]));
   }
-  const auto octree = accel::make_structure("octree", std::make_shared<const accel::TriangleSet>(all));
+  const auto triangles = std::make_shared<const accel::TriangleSet>(all);
+  const auto octree = accel::make_structure("octree", triangles);
+  const auto bsp = accel::make_structure("bsp", triangles);
+  const auto grid = accel::make_structure("grid", triangles);
   Random random(41);
   std::uint64_t leaks = 0;
   for (int k = 0; k < 210000; ++k) {
@@ -104,7 +107,9 @@ TEST_P(ClosedMesh, LeaksNoRay) {
     const glm::dvec3 a = vertices[face[random.below(3)]];
     const glm::dvec3 b = k % 3 == 0 ? a : vertices[face[random.below(3)]];
     ray.direction = a + random.unit() * (b - a) - ray.origin;
-    leaks += octree->closest(ray).found() && octree->occluded(ray) ? 0U : 1U;
+    for (const accel::Structure* structure : {octree.get(), bsp.get(), grid.get()}) {
+      leaks += structure->closest(ray).found() && structure->occluded(ray) ? 0U : 1U;
+    }
   }
   EXPECT_EQ(leaks, 0U);
 }

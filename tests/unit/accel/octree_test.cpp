@@ -16,6 +16,7 @@
 #include "accel/box_overlap.h"
 #include "sim/error.h"
 #include "tests/contract/hostile.h"
+#include "tests/unit/accel/walk_check.h"
 
 namespace marti::tests {
 namespace {
@@ -29,10 +30,6 @@ using accel::Topology;
 using accel::TopologyNode;
 using accel::TriangleCorners;
 using accel::TriangleSet;
-
-std::shared_ptr<const TriangleSet> set_of(std::vector<TriangleCorners> triangles) {
-  return std::make_shared<const TriangleSet>(std::move(triangles));
-}
 
 /// The boxes of all nodes, from the topology alone.
 std::vector<scenes::Bounds> boxes_of(const Octree& octree) {
@@ -52,22 +49,6 @@ std::vector<scenes::Bounds> boxes_of(const Octree& octree) {
   }
   return boxes;
 }
-
-/// Writes down every visit.
-struct Recorder {
-  struct Visit {
-    std::uint32_t node;
-    std::uint32_t tests;
-    std::uint32_t entries;
-    bool leaf;
-    bool operator==(const Visit&) const = default;
-  };
-  std::vector<Visit> visits;
-  void branch(std::uint32_t node) { visits.push_back({node, 0, 0, false}); }
-  void leaf(std::uint32_t node, std::uint32_t tests, std::uint32_t entries) {
-    visits.push_back({node, tests, entries, true});
-  }
-};
 
 TEST(Octree, NodesAreBreadthFirstAndListsAscend) {
   const Octree octree = Octree::build(set_of(hostile_soup(0.0, 1)), {4, 8});
@@ -142,134 +123,20 @@ TEST(Octree, OverfullLeavesCouldNotBeSeparated) {
 // Every leaf lists every triangle that meets it, and none that stays more than 2 delta away from it.
 TEST(Octree, LeavesListWhatMeetsThem) {
   for (const double offset : {0.0, 1e6}) {
-    const auto triangles = set_of(hostile_soup(offset, 2));
-    const Octree octree = Octree::build(triangles, {6, 6});
-    const std::vector<scenes::Bounds> boxes = boxes_of(octree);
-    for (std::size_t n = 0; n < boxes.size(); ++n) {
-      const TopologyNode& node = octree.topology().nodes[n];
-      if (!node.leaf) {
-        continue;
-      }
-      const auto begin = octree.topology().entries.begin() + node.first;
-      const std::set<std::uint32_t> listed(begin, begin + node.count);
-      const glm::dvec3 center = 0.5 * (boxes[n].lo + boxes[n].hi);
-      const glm::dvec3 half = 0.5 * (boxes[n].hi - boxes[n].lo);
-      for (std::uint32_t id = 0; id < triangles->size(); ++id) {
-        if (listed.contains(id)) {
-          ASSERT_TRUE(accel::overlaps((*triangles)[id], center, half + 2.0 * octree.delta()));
-        } else {
-          ASSERT_FALSE(accel::overlaps((*triangles)[id], center, half + 0.5 * octree.delta()));
-        }
-      }
-    }
+    const Octree octree = Octree::build(set_of(hostile_soup(offset, 2)), {6, 6});
+    check_lists(octree, boxes_of(octree));
   }
-}
-
-/// Where a ray is inside a box enlarged by `margin`, in long double; empty when in > out.
-struct Inside {
-  long double in;
-  long double out;
-};
-Inside inside(const Ray& ray, const scenes::Bounds& box, double margin) {
-  Inside span{ray.t_min, ray.t_max};
-  for (int a = 0; a < 3; ++a) {
-    const long double lo = static_cast<long double>(box.lo[a]) - margin - ray.origin[a];
-    const long double hi = static_cast<long double>(box.hi[a]) + margin - ray.origin[a];
-    if (ray.direction[a] == 0.0) {
-      if (lo > 0 || hi < 0) {
-        return {1, 0};
-      }
-      continue;
-    }
-    const long double t0 = lo / ray.direction[a];
-    const long double t1 = hi / ray.direction[a];
-    span.in = std::max(span.in, std::min(t0, t1));
-    span.out = std::min(span.out, std::max(t0, t1));
-  }
-  return span;
 }
 
 // Front to back, at most four children of a branch, no leaf that the ray does not meet, none left out.
 TEST(Octree, WalksFrontToBackThroughTheLeavesOnTheRay) {
   const auto triangles = set_of(hostile_soup(0.0, 4));
   const Octree octree = Octree::build(triangles, {3, 7});
-  const std::vector<scenes::Bounds> boxes = boxes_of(octree);
-  std::vector<std::uint32_t> parent(boxes.size(), 0);
-  for (std::uint32_t n = 0; n < boxes.size(); ++n) {
-    const TopologyNode& node = octree.topology().nodes[n];
-    for (std::uint32_t child = 0; !node.leaf && child < 8; ++child) {
-      parent[node.first + child] = n;
-    }
-  }
-  RayMaker maker(*triangles, octree.bounds(), 6);
-  // Twice the largest error a parameter may have, as a distance.
-  const double margin = 8.0 * octree.delta();
-  std::uint64_t leaves = 0;
-  for (int k = 0; k < 6000; ++k) {
-    const Ray ray = maker.make(all_aims[static_cast<std::size_t>(k) % 6]);
-    Recorder recorder;
-    const Hit hit = octree.closest(ray, recorder);
-    std::map<std::uint32_t, int> children;
-    std::set<std::uint32_t> visited;
-    long double last_in = -std::numeric_limits<long double>::infinity();
-    const long double slack =
-        margin / std::sqrt(static_cast<long double>(glm::dot(ray.direction, ray.direction)));
-    for (const Recorder::Visit& visit : recorder.visits) {
-      ASSERT_TRUE(visited.insert(visit.node).second) << "visited twice";
-      ASSERT_EQ(visit.leaf, octree.topology().nodes[visit.node].leaf);
-      if (visit.node != 0) {
-        ASSERT_TRUE(visited.contains(parent[visit.node]));
-        ASSERT_LE(++children[parent[visit.node]], 4);
-      }
-      const Inside on = inside(ray, boxes[visit.node], margin);
-      ASSERT_LE(on.in, on.out + 2 * slack) << "a node the ray does not meet";
-      if (visit.leaf) {
-        ++leaves;
-        ASSERT_EQ(visit.tests, visit.entries);
-        ASSERT_EQ(visit.entries, octree.topology().nodes[visit.node].count);
-        const Inside exact = inside(ray, boxes[visit.node], -margin);
-        if (exact.in < exact.out) {  // thick enough to have an order
-          ASSERT_GE(exact.in, last_in) << "not front to back";
-          last_in = exact.in;
-        }
-      }
-    }
-    for (std::uint32_t n = 0; n < boxes.size(); ++n) {
-      if (!octree.topology().nodes[n].leaf) {
-        continue;
-      }
-      const Inside on = inside(ray, boxes[n], -margin);
-      const bool before_hit = !hit.found() || on.in < hit.t;
-      if (on.in < on.out && before_hit) {
-        ASSERT_TRUE(visited.contains(n)) << "a leaf on the ray was left out";
-      }
-    }
-  }
-  EXPECT_GT(leaves, 20000U);
+  EXPECT_GT(check_walks(octree, boxes_of(octree), 4), 20000U);
 }
 
 // The walk on vectors and the walk for any scalar take the same steps and find the same hits.
-TEST(Octree, CountingChangesNothing) {
-  const auto triangles = set_of(hostile_soup(0.0, 8));
-  const Octree octree = Octree::build(triangles, {5, 10});
-  RayMaker maker(*triangles, octree.bounds(), 9);
-  for (int k = 0; k < 60000; ++k) {
-    const Ray ray = maker.make(all_aims[static_cast<std::size_t>(k) % all_aims.size()]);
-    Recorder plain;
-    Recorder counted;
-    const Hit expected = octree.closest(ray, plain);
-    const Hit got = octree.closest<Counted>(ray, counted);
-    ASSERT_EQ(plain.visits, counted.visits);
-    ASSERT_EQ(expected.primitive, got.primitive);
-    ASSERT_EQ(std::bit_cast<std::uint64_t>(expected.t), std::bit_cast<std::uint64_t>(got.t));
-    ASSERT_EQ(std::bit_cast<std::uint64_t>(expected.u), std::bit_cast<std::uint64_t>(got.u));
-
-    Recorder plain_shadow;
-    Recorder counted_shadow;
-    ASSERT_EQ(octree.occluded(ray, plain_shadow), octree.occluded<Counted>(ray, counted_shadow));
-    ASSERT_EQ(plain_shadow.visits, counted_shadow.visits);
-  }
-}
+TEST(Octree, CountingChangesNothing) { check_counting(Octree::build(set_of(hostile_soup(0.0, 8)), {5, 10})); }
 
 // Per branch: three averages, as HERO has it, and the comparisons that order the children.
 TEST(Octree, ABranchCostsThreeAverages) {

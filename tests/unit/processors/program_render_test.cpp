@@ -53,12 +53,13 @@ TEST_P(Frames, DoNotDependOnThreadsRecordingOrStructure) {
   EXPECT_TRUE(same_bytes(one.image, plain.image));
   EXPECT_EQ(one.hit_hash, plain.hit_hash);
 
-  const Built brute(octree.scene, "none");
-  const Frame reference = brute.render(options, 2);
-  EXPECT_TRUE(same_bytes(one.image, reference.image));
-  EXPECT_EQ(one.hit_hash, reference.hit_hash);
-  EXPECT_EQ(one.rays.traced, reference.rays.traced);
-  EXPECT_EQ(one.rays.hit, reference.rays.hit);
+  for (const std::string_view kind : accel::structure_kinds()) {
+    const Frame other = Built(octree.scene, kind).render(options, 2);
+    EXPECT_TRUE(same_bytes(one.image, other.image)) << kind;
+    EXPECT_EQ(one.hit_hash, other.hit_hash) << kind;
+    EXPECT_EQ(one.rays.traced, other.rays.traced) << kind;
+    EXPECT_EQ(one.rays.hit, other.rays.hit) << kind;
+  }
   EXPECT_GT(one.rays.hit[0], 100U);
   EXPECT_LT(one.rays.hit[0], 45U * 37U);
 }
@@ -228,18 +229,18 @@ RC_GTEST_PROP(Render, AnySceneGivesFiniteColoursThatNoStructureChanges, ()) {
                               .shadows = *rc::gen::arbitrary<bool>(),
                               .record = true};
   const Frame brute = Built(scene, "none").render(options);
-  const Frame octree = Built(scene, "octree").render(options);
-  RC_ASSERT(same_bytes(brute.image, octree.image));
-  RC_ASSERT(brute.hit_hash == octree.hit_hash);
-  RC_ASSERT(brute.rays.traced == octree.rays.traced);
-  RC_ASSERT(brute.rays.hit == octree.rays.hit);
-  for (const glm::vec3& pixel : octree.image.pixels) {
+  for (const glm::vec3& pixel : brute.image.pixels) {
     RC_ASSERT(std::isfinite(pixel.x) && std::isfinite(pixel.y) && std::isfinite(pixel.z));
     RC_ASSERT(pixel.x >= 0.0F && pixel.y >= 0.0F && pixel.z >= 0.0F);
   }
-  for (const Frame* frame : {&brute, &octree}) {
-    validate(*frame->log);
-    RC_ASSERT(totals_of(*frame->log).all_rays() == frame->rays.all());
+  for (const std::string_view kind : accel::structure_kinds()) {
+    const Frame frame = Built(scene, kind).render(options);
+    RC_ASSERT(same_bytes(brute.image, frame.image));
+    RC_ASSERT(brute.hit_hash == frame.hit_hash);
+    RC_ASSERT(brute.rays.traced == frame.rays.traced);
+    RC_ASSERT(brute.rays.hit == frame.rays.hit);
+    validate(*frame.log);
+    RC_ASSERT(totals_of(*frame.log).all_rays() == frame.rays.all());
   }
 }
 
@@ -261,7 +262,7 @@ TEST(Render, RefusesOptionsOutOfRange) {
 TEST(Render, AnEmptySceneIsAllBackground) {
   scenes::Scene scene = test::looking_down(1.0);
   scene.background = {0.25, 0.5, 0.75};
-  for (const char* kind : {"none", "octree"}) {
+  for (const std::string_view kind : accel::structure_kinds()) {
     const Frame frame = Built(scene, kind).render({.width = 3, .height = 2, .record = true});
     for (const glm::vec3& pixel : frame.image.pixels) {
       EXPECT_EQ(pixel, glm::vec3(0.25F, 0.5F, 0.75F));

@@ -1,0 +1,206 @@
+// The BSP tree: nodes split in two at their centre, across x, y and z in turn (Kaplan, "Space-tracing: a
+// constant time ray-tracer", SIGGRAPH '85 course notes), walked from the root down, front to back.
+//
+// Three levels of it make one level of the octree, and its cells are the octree's: the root box, the margin
+// delta, the planes and the rule by which cells list triangles are the same. So the argument of octree.h
+// holds here word for word: the walk carries the ray's parameters at a node's six planes, takes the average
+// of two for the centre plane, and cuts the node's piece of the ray there without a gap.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "accel/far_ray.h"
+#include "accel/frame.h"
+#include "accel/octree.h"
+#include "accel/octree_start.h"
+#include "accel/ray.h"
+#include "accel/topology.h"
+#include "accel/triangles.h"
+#include "accel/visitor.h"
+#include "accel/watertight.h"
+
+namespace marti::accel {
+
+struct BspOptions {
+  /// A node that lists more than this many triangles is split, unless it is at the deepest level. At least 1.
+  std::uint32_t max_objects = 8;
+  /// In levels of the octree, so that the smallest cells of both are the same: the tree's deepest level is
+  /// 3 (max_level - 1) + 1, the root being level 1. From 1 to 21.
+  std::uint32_t max_level = 12;
+  /// As the octree's.
+  std::uint64_t max_entries = std::uint64_t{1} << 25;
+};
+
+/// The axis across which nodes of a level are split.
+[[nodiscard]] constexpr unsigned bsp_axis(unsigned level) { return (level - 1) % 3; }
+
+class Bsp {
+ public:
+  static constexpr std::string_view kind_name = "bsp";
+
+  /// Builds the whole tree, level by level. Throws UserError when an option is out of range. The first child
+  /// of a branch is the lower half. A node with more than max_objects triangles stays a leaf for the octree's
+  /// reasons: the deepest level; children thinner than 8 delta; max_entries or 2^28 nodes reached; or, before
+  /// a split across x, that the next three splits would separate nothing: every triangle lies in the same two
+  /// or more of the node's octants.
+  [[nodiscard]] static Bsp build(std::shared_ptr<const TriangleSet> triangles,
+                                 const BspOptions& options = {});
+
+  [[nodiscard]] const Topology& topology() const { return topology_; }
+  [[nodiscard]] const TriangleSet& triangles() const { return *triangles_; }
+  [[nodiscard]] const BspOptions& options() const { return options_; }
+  [[nodiscard]] const scenes::Bounds& bounds() const { return frame_.box; }
+  [[nodiscard]] double delta() const { return frame_.delta; }
+  /// levels()[i] is level i + 1 of this tree; as many as it has.
+  [[nodiscard]] const std::vector<LevelStatistics>& levels() const { return levels_; }
+
+  /// The nearest hit. Real is the scalar the arithmetic is done in (double, or Counted to count it).
+  template <class Real = double, class Visitor>
+  [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
+    const RaySetup<Real> setup(ray);
+    Best<Real> best(setup);
+    query<false>(ray, setup, best, visitor);
+    return best.hit();
+  }
+
+  /// Whether anything is hit; ends at the first hit.
+  template <class Real = double, class Visitor>
+  [[nodiscard]] bool occluded(const Ray& ray, Visitor& visitor) const {
+    const RaySetup<Real> setup(ray);
+    Best<Real> best(setup);
+    return query<true>(ray, setup, best, visitor);
+  }
+
+ private:
+  /// One sibling a level waits at most.
+  static constexpr std::size_t stack_size = 3 * 20 + 1;
+
+  Bsp() = default;
+
+  template <bool Any, class Real, class Visitor>
+  bool query(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const;
+  template <bool Any, class Real, class Visitor>
+  bool walk(const WalkStart<Real>& start, const RaySetup<Real>& setup, Best<Real>& best,
+            Visitor& visitor) const;
+  template <bool Any, class Real, class Visitor>
+  bool walk_far(const FarRay& far, std::uint32_t node, const glm::dvec3& lo, const glm::dvec3& hi,
+                const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const;
+  template <bool Any, class Real, class Visitor>
+  bool test_leaf(std::uint32_t node, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const;
+
+  std::shared_ptr<const TriangleSet> triangles_;
+  BspOptions options_;
+  RootFrame frame_;
+  Topology topology_;
+  std::vector<LevelStatistics> levels_;
+};
+
+/// Tests a leaf's triangles in list order. True when an occlusion query (`Any`) found its hit.
+template <bool Any, class Real, class Visitor>
+bool Bsp::test_leaf(std::uint32_t node, const RaySetup<Real>& setup, Best<Real>& best,
+                    Visitor& visitor) const {
+  const TopologyNode& record = topology_.nodes[node];
+  for (std::uint32_t k = 0; k < record.count; ++k) {
+    const std::uint32_t id = topology_.entries[record.first + k];
+    const bool hit = intersect(setup, (*triangles_)[id], id, best);
+    if constexpr (Any) {
+      if (hit) {
+        visitor.leaf(node, k + 1, record.count);
+        return true;
+      }
+    }
+  }
+  visitor.leaf(node, record.count, record.count);
+  return false;
+}
+
+template <bool Any, class Real, class Visitor>
+bool Bsp::walk(const WalkStart<Real>& start, const RaySetup<Real>& setup, Best<Real>& best,
+               Visitor& visitor) const {
+  const Real half(0.5);
+  std::array<NodeSpan<Real>, stack_size> stack;
+  std::size_t waiting = 0;
+  NodeSpan<Real> now = start.root;
+  for (;;) {
+    const TopologyNode& record = topology_.nodes[now.node];
+    if (record.leaf) {
+      if (test_leaf<Any>(now.node, setup, best, visitor)) {
+        return true;
+      }
+      if (waiting == 0) {
+        return false;
+      }
+      now = stack[--waiting];
+      // What waits below begins no earlier.
+      if (now.in > best.t + start.slack) {
+        return false;
+      }
+      continue;
+    }
+    visitor.branch(now.node);
+    const unsigned a = bsp_axis(record.level);
+    // The half the ray comes from, and the one it goes to.
+    const std::uint32_t far_half = 1U ^ ((plain(start.mask) >> a) & 1U);
+    const std::uint32_t from = record.first + (1U ^ far_half);
+    const std::uint32_t to = record.first + far_half;
+    const Real middle = (now.s0[a] + now.s1[a]) * half;
+    if (middle <= now.in) {
+      now.s0[a] = middle;
+      now.node = to;
+      continue;
+    }
+    if (middle < now.out) {
+      NodeSpan<Real>& later = stack[waiting++];
+      later = now;
+      later.s0[a] = middle;
+      later.in = middle;
+      later.node = to;
+      now.out = middle;
+    }
+    now.s1[a] = middle;
+    now.node = from;
+  }
+}
+
+/// The slow walk for rays from far away. True when an occlusion query found its hit.
+template <bool Any, class Real, class Visitor>
+bool Bsp::walk_far(const FarRay& far, std::uint32_t node, const glm::dvec3& lo, const glm::dvec3& hi,
+                   const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const {
+  const FarSpan span = far.span(lo, hi);
+  if (!(span.in <= span.out) || span.out < far.t_min - far.slack || span.in > plain(best.t) + far.slack) {
+    return false;
+  }
+  const TopologyNode& record = topology_.nodes[node];
+  if (record.leaf) {
+    return test_leaf<Any>(node, setup, best, visitor);
+  }
+  visitor.branch(node);
+  const int a = static_cast<int>(bsp_axis(record.level));
+  const std::uint32_t first = far.direction[static_cast<std::size_t>(a)] < 0.0 ? 1U : 0U;
+  for (const std::uint32_t half : {first, first ^ 1U}) {
+    glm::dvec3 child_lo = lo;
+    glm::dvec3 child_hi = hi;
+    (half != 0 ? child_lo : child_hi)[a] = 0.5 * (lo[a] + hi[a]);
+    if (walk_far<Any>(far, record.first + half, child_lo, child_hi, setup, best, visitor)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Chooses the walk for one ray. True when an occlusion query found its hit.
+template <bool Any, class Real, class Visitor>
+bool Bsp::query(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const {
+  const WalkStart<Real> start = start_walk(frame_, ray, setup);
+  if (start.far) [[unlikely]] {
+    return !frame_.box.empty() &&
+           walk_far<Any>(FarRay(frame_, ray), 0U, frame_.box.lo, frame_.box.hi, setup, best, visitor);
+  }
+  return start.hits_root && walk<Any>(start, setup, best, visitor);
+}
+
+}  // namespace marti::accel

@@ -1,0 +1,31 @@
+// What all subdividing structures begin with: the box they divide and its margins.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include <glm/vec3.hpp>
+
+#include "accel/triangles.h"
+#include "scenes/scene.h"
+
+namespace marti::accel {
+
+/// The root box and what follows from it.
+struct RootFrame {
+  /// The tight box of the triangles enlarged by 192 delta, and at least D / 4096 thick on every axis (it
+  /// grows upwards, so that a flat scene does not lie in a mid-plane). Empty without triangles.
+  scenes::Bounds box;
+  double delta = 0.0;  ///< by how much cells are enlarged when triangles are sorted into them; see octree.h
+  double far = 0.0;    ///< an origin farther than this from `center` on some axis takes the slow walk
+  glm::dvec3 center{0.0};
+  double largest_inverse = 0.0;  ///< cap on 1 / |direction component|, so that no plane's parameter overflows
+};
+
+[[nodiscard]] RootFrame make_frame(const TriangleSet& triangles);
+
+/// Throws UserError, naming the structure and its option, when the value is out of range.
+void require_range(std::string_view structure, std::string_view option, std::uint64_t value, std::uint64_t lo,
+                   std::uint64_t hi);
+
+}  // namespace marti::accel

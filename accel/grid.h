@@ -1,0 +1,274 @@
+// The uniform grid: Fujimoto's and Amanatides and Woo's incremental walk ("A Fast Voxel Traversal Algorithm
+// for Ray Tracing", Eurographics 1987; Cleary and Wyvill, "Analysis of an algorithm for fast ray tracing
+// using uniform space subdivision", The Visual Computer 4, 1988), with the one change that nothing is
+// accumulated: the parameter at a plane comes from the plane's number, by one formula.
+//
+// Why it finds every hit that brute force finds, bit for bit (u, D, delta and the root box as in octree.h):
+//  1. A cell lists every triangle that meets the cell enlarged on all sides by delta. Neighbours share the
+//  very
+//     same plane, which is computed from its integer number.
+//  2. An accepted hit at t has the ray's point at t within 2^-41 D of the triangle, hence inside the root
+//  box,
+//     hence t is between the parameters at which the ray enters and leaves the box.
+//  3. Along each axis the computed parameter of the planes never decreases with their number: a subtraction
+//     and a multiplication by one positive number, both rounded, are monotone. The start cell is moved until
+//     the entry lies between the computed parameters of its planes, and each step goes to the cell beyond the
+//     nearest next plane. So the pieces of the ray have no gaps, and on every axis a cell's piece lies
+//     between the computed parameters of the cell's planes. Each of these errs by less than 4 * 128 u D <
+//     2^-41 D as a distance. So the cell whose piece holds a hit's parameter lists the triangle.
+//  4. The walk ends when a cell begins more than 4 delta (as a distance along the ray) beyond the best hit so
+//     far, and a hit is never refused for lying outside the cell at hand.
+//  Each step raises or lowers one cell number, so no walk has more than nx + ny + nz steps.
+//  Rays for which 3 does not hold (see far_ray.h) test the boxes of slices, rows and cells, enlarged by the
+//  ray's own error, in a slower walk.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "accel/far_ray.h"
+#include "accel/frame.h"
+#include "accel/octree_start.h"
+#include "accel/ray.h"
+#include "accel/topology.h"
+#include "accel/triangles.h"
+#include "accel/visitor.h"
+#include "accel/watertight.h"
+#include "sim/error.h"
+
+namespace marti::accel {
+
+struct GridOptions {
+  /// Cells for each triangle, about; the cells are as near to cubes as whole numbers allow. Above 0, up to
+  /// 2^20.
+  double density = 4.0;
+  /// Cells along x, y and z; with a 0 among them all three follow from the density. Up to 2^20 each.
+  std::array<std::uint32_t, 3> resolution{0, 0, 0};
+  /// Beyond this many cells the resolution is lowered. From 1 to 2^27.
+  std::uint64_t max_cells = std::uint64_t{1} << 22;
+  /// As long as the cells list more than this many triangles in all, the resolution is halved; it bounds the
+  /// memory of hostile scenes (4 bytes an entry). At least 1.
+  std::uint64_t max_entries = std::uint64_t{1} << 25;
+};
+
+/// The topology: node 0, the grid's header, is a branch, and its children are all cells as leaves: cell
+/// (x, y, z) is node 1 + x + nx (y + ny z). Without triangles node 0 is an empty leaf. A walk visits the
+/// header once and then the cells on the ray, front to back, empty ones too.
+class Grid {
+ public:
+  static constexpr std::string_view kind_name = "grid";
+
+  /// Throws UserError when an option is out of range. Besides the limits of the options, cells are at least 8
+  /// delta thick, so a scene that is flat along an axis has few cells or one along it.
+  [[nodiscard]] static Grid build(std::shared_ptr<const TriangleSet> triangles,
+                                  const GridOptions& options = {});
+
+  [[nodiscard]] const Topology& topology() const { return topology_; }
+  [[nodiscard]] const TriangleSet& triangles() const { return *triangles_; }
+  [[nodiscard]] const GridOptions& options() const { return options_; }
+  [[nodiscard]] const scenes::Bounds& bounds() const { return frame_.box; }
+  [[nodiscard]] double delta() const { return frame_.delta; }
+  /// Cells along x, y and z; all 0 without triangles.
+  [[nodiscard]] const std::array<std::uint32_t, 3>& resolution() const { return resolution_; }
+  /// Plane `i` of an axis, from 0 to the resolution.
+  [[nodiscard]] double plane(unsigned axis, std::uint32_t i) const { return planes_[axis][i]; }
+
+  /// The nearest hit. Real is the scalar the arithmetic is done in (double, or Counted to count it).
+  template <class Real = double, class Visitor>
+  [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
+    const RaySetup<Real> setup(ray);
+    Best<Real> best(setup);
+    query<false>(ray, setup, best, visitor);
+    return best.hit();
+  }
+
+  /// Whether anything is hit; ends at the first hit.
+  template <class Real = double, class Visitor>
+  [[nodiscard]] bool occluded(const Ray& ray, Visitor& visitor) const {
+    const RaySetup<Real> setup(ray);
+    Best<Real> best(setup);
+    return query<true>(ray, setup, best, visitor);
+  }
+
+ private:
+  Grid() = default;
+
+  template <bool Any, class Real, class Visitor>
+  bool query(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const;
+  template <bool Any, class Real, class Visitor>
+  bool walk(const Ray& ray, const WalkStart<Real>& start, const RaySetup<Real>& setup, Best<Real>& best,
+            Visitor& visitor) const;
+  template <bool Any, class Real, class Visitor>
+  bool walk_far(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const;
+  template <bool Any, class Real, class Visitor>
+  bool test_cell(std::uint32_t node, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const;
+  [[nodiscard]] std::uint32_t first_guess(unsigned axis, double position) const;
+
+  std::shared_ptr<const TriangleSet> triangles_;
+  GridOptions options_;
+  RootFrame frame_;
+  Topology topology_;
+  std::array<std::uint32_t, 3> resolution_{0, 0, 0};
+  std::array<std::vector<double>, 3> planes_;
+};
+
+/// Tests a cell's triangles in list order. True when an occlusion query (`Any`) found its hit.
+template <bool Any, class Real, class Visitor>
+bool Grid::test_cell(std::uint32_t node, const RaySetup<Real>& setup, Best<Real>& best,
+                     Visitor& visitor) const {
+  const TopologyNode& record = topology_.nodes[node];
+  for (std::uint32_t k = 0; k < record.count; ++k) {
+    const std::uint32_t id = topology_.entries[record.first + k];
+    const bool hit = intersect(setup, (*triangles_)[id], id, best);
+    if constexpr (Any) {
+      if (hit) {
+        visitor.leaf(node, k + 1, record.count);
+        return true;
+      }
+    }
+  }
+  visitor.leaf(node, record.count, record.count);
+  return false;
+}
+
+template <bool Any, class Real, class Visitor>
+bool Grid::walk(const Ray& ray, const WalkStart<Real>& start, const RaySetup<Real>& setup, Best<Real>& best,
+                Visitor& visitor) const {
+  using std::abs;
+  using std::max;
+  using std::min;
+  struct Axis {
+    const double* planes;
+    Real origin;
+    Real inverse;          // as in start_walk
+    std::uint32_t cell;    // its number along the axis
+    std::uint32_t next;    // number of the plane it is left through
+    std::uint32_t last;    // the cell beyond which there is none
+    std::uint32_t step;    // +1 or -1, modulo 2^32
+    std::uint32_t stride;  // the same for the node number
+    bool negative;
+
+    [[nodiscard]] Real at(std::uint32_t i) const {
+      const Real distance = negative ? origin - Real(planes[i]) : Real(planes[i]) - origin;
+      return distance * inverse;
+    }
+  };
+  std::array<Axis, 3> axes;
+  std::array<Real, 3> until;
+  std::uint32_t node = 1;
+  Real in = start.root.in;
+  std::uint32_t stride = 1;
+  for (std::uint32_t a = 0; a < 3; ++a) {
+    Axis& axis = axes[a];
+    const int k = static_cast<int>(a);
+    const std::uint32_t n = resolution_[a];
+    axis.planes = planes_[a].data();
+    axis.origin = Real(ray.origin[k]);
+    axis.inverse = min(Real(1.0) / abs(Real(ray.direction[k])), Real(frame_.largest_inverse));
+    axis.negative = ((plain(start.mask) >> a) & 1U) != 0;
+    axis.cell = first_guess(a, ray.origin[k] + ray.direction[k] * plain(in));
+    const std::uint32_t side = axis.negative ? 0U : 1U;  // from a cell to the plane it is left through
+    axis.step = axis.negative ? 0xffffffffU : 1U;
+    const std::uint32_t first = axis.negative ? n - 1 : 0U;
+    axis.last = axis.negative ? 0U : n - 1;
+    axis.stride = axis.negative ? 0U - stride : stride;
+    while (axis.cell != first && axis.at(axis.cell + 1U - side) > in) {
+      axis.cell -= axis.step;
+    }
+    while (axis.cell != axis.last && axis.at(axis.cell + side) < in) {
+      axis.cell += axis.step;
+    }
+    axis.next = axis.cell + side;
+    until[a] = axis.at(axis.next);
+    node += axis.cell * stride;
+    stride *= n;
+  }
+  visitor.branch(0);
+  for (std::uint32_t steps = resolution_[0] + resolution_[1] + resolution_[2] + 3; steps-- > 0;) {
+    if (test_cell<Any>(node, setup, best, visitor)) {
+      return true;
+    }
+    // x before y before z on ties.
+    const bool xy = until[0] <= until[1];
+    std::uint32_t a = xy ? 0U : 1U;
+    if (!(until[a] <= until[2])) {
+      a = 2U;
+    }
+    Axis& axis = axes[a];
+    in = until[a];
+    if (axis.cell == axis.last || !(in < start.root.out) || in > best.t + start.slack) {
+      return false;
+    }
+    axis.cell += axis.step;
+    axis.next += axis.step;
+    node += axis.stride;
+    until[a] = axis.at(axis.next);
+  }
+  throw sim::InternalError("a walk through a grid did not end");
+}
+
+template <bool Any, class Real, class Visitor>
+bool Grid::walk_far(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const {
+  if (frame_.box.empty()) {
+    return false;
+  }
+  const FarRay far(frame_, ray);
+  glm::dvec3 lo = frame_.box.lo;
+  glm::dvec3 hi = frame_.box.hi;
+  const auto met = [&] {
+    const FarSpan span = far.span(lo, hi);
+    return span.in <= span.out && span.out >= far.t_min - far.slack && span.in <= plain(best.t) + far.slack;
+  };
+  if (!met()) {
+    return false;
+  }
+  visitor.branch(0);
+  const std::array<std::uint32_t, 3> strides{1U, resolution_[0], resolution_[0] * resolution_[1]};
+  // Slices across the ray's main axis, rows of a slice, cells of a row, along the direction each.
+  const std::array<unsigned, 3> order{setup.kz, setup.kx, setup.ky};
+  const auto narrow = [&](unsigned axis, std::uint32_t k) {
+    const int a = static_cast<int>(axis);
+    const std::uint32_t i = ray.direction[a] < 0.0 ? resolution_[axis] - 1 - k : k;
+    lo[a] = planes_[axis][i];
+    hi[a] = planes_[axis][i + 1];
+    return i * strides[axis];
+  };
+  const auto widen = [&](unsigned axis) {
+    const int a = static_cast<int>(axis);
+    lo[a] = frame_.box.lo[a];
+    hi[a] = frame_.box.hi[a];
+  };
+  for (std::uint32_t i = 0; i < resolution_[order[0]]; ++i) {
+    const std::uint32_t slice = 1U + narrow(order[0], i);
+    for (std::uint32_t j = 0; met() && j < resolution_[order[1]]; ++j) {
+      const std::uint32_t row = slice + narrow(order[1], j);
+      for (std::uint32_t k = 0; met() && k < resolution_[order[2]]; ++k) {
+        const std::uint32_t node = row + narrow(order[2], k);
+        if (met() && test_cell<Any>(node, setup, best, visitor)) {
+          return true;
+        }
+        widen(order[2]);
+      }
+      widen(order[1]);
+    }
+  }
+  return false;
+}
+
+/// Chooses the walk for one ray. True when an occlusion query found its hit.
+template <bool Any, class Real, class Visitor>
+bool Grid::query(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const {
+  const WalkStart<Real> start = start_walk(frame_, ray, setup);
+  if (start.far) [[unlikely]] {
+    return walk_far<Any>(ray, setup, best, visitor);
+  }
+  if (!start.hits_root) {
+    return false;
+  }
+  return walk<Any>(ray, start, setup, best, visitor);
+}
+
+}  // namespace marti::accel
