@@ -15,6 +15,7 @@
 
 #include "accel/far_ray.h"
 #include "accel/frame.h"
+#include "accel/list_test.h"
 #include "accel/octree.h"
 #include "accel/octree_start.h"
 #include "accel/ray.h"
@@ -89,8 +90,6 @@ class Bsp {
   template <bool Any, class Real, class Visitor>
   bool walk_far(const FarRay& far, std::uint32_t node, const glm::dvec3& lo, const glm::dvec3& hi,
                 const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const;
-  template <bool Any, class Real, class Visitor>
-  bool test_leaf(std::uint32_t node, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const;
 
   std::shared_ptr<const TriangleSet> triangles_;
   BspOptions options_;
@@ -98,25 +97,6 @@ class Bsp {
   Topology topology_;
   std::vector<LevelStatistics> levels_;
 };
-
-/// Tests a leaf's triangles in list order. True when an occlusion query (`Any`) found its hit.
-template <bool Any, class Real, class Visitor>
-bool Bsp::test_leaf(std::uint32_t node, const RaySetup<Real>& setup, Best<Real>& best,
-                    Visitor& visitor) const {
-  const TopologyNode& record = topology_.nodes[node];
-  for (std::uint32_t k = 0; k < record.count; ++k) {
-    const std::uint32_t id = topology_.entries[record.first + k];
-    const bool hit = intersect(setup, (*triangles_)[id], id, best);
-    if constexpr (Any) {
-      if (hit) {
-        visitor.leaf(node, k + 1, record.count);
-        return true;
-      }
-    }
-  }
-  visitor.leaf(node, record.count, record.count);
-  return false;
-}
 
 template <bool Any, class Real, class Visitor>
 bool Bsp::walk(const WalkStart<Real>& start, const RaySetup<Real>& setup, Best<Real>& best,
@@ -128,7 +108,7 @@ bool Bsp::walk(const WalkStart<Real>& start, const RaySetup<Real>& setup, Best<R
   for (;;) {
     const TopologyNode& record = topology_.nodes[now.node];
     if (record.leaf) {
-      if (test_leaf<Any>(now.node, setup, best, visitor)) {
+      if (test_list<Any>(topology_, *triangles_, now.node, setup, best, visitor)) {
         return true;
       }
       if (waiting == 0) {
@@ -176,7 +156,7 @@ bool Bsp::walk_far(const FarRay& far, std::uint32_t node, const glm::dvec3& lo, 
   }
   const TopologyNode& record = topology_.nodes[node];
   if (record.leaf) {
-    return test_leaf<Any>(node, setup, best, visitor);
+    return test_list<Any>(topology_, *triangles_, node, setup, best, visitor);
   }
   visitor.branch(node);
   const int a = static_cast<int>(bsp_axis(record.level));

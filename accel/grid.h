@@ -31,6 +31,7 @@
 
 #include "accel/far_ray.h"
 #include "accel/frame.h"
+#include "accel/list_test.h"
 #include "accel/octree_start.h"
 #include "accel/ray.h"
 #include "accel/topology.h"
@@ -103,8 +104,6 @@ class Grid {
             Visitor& visitor) const;
   template <bool Any, class Real, class Visitor>
   bool walk_far(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const;
-  template <bool Any, class Real, class Visitor>
-  bool test_cell(std::uint32_t node, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const;
   [[nodiscard]] std::uint32_t first_guess(unsigned axis, double position) const;
 
   std::shared_ptr<const TriangleSet> triangles_;
@@ -114,25 +113,6 @@ class Grid {
   std::array<std::uint32_t, 3> resolution_{0, 0, 0};
   std::array<std::vector<double>, 3> planes_;
 };
-
-/// Tests a cell's triangles in list order. True when an occlusion query (`Any`) found its hit.
-template <bool Any, class Real, class Visitor>
-bool Grid::test_cell(std::uint32_t node, const RaySetup<Real>& setup, Best<Real>& best,
-                     Visitor& visitor) const {
-  const TopologyNode& record = topology_.nodes[node];
-  for (std::uint32_t k = 0; k < record.count; ++k) {
-    const std::uint32_t id = topology_.entries[record.first + k];
-    const bool hit = intersect(setup, (*triangles_)[id], id, best);
-    if constexpr (Any) {
-      if (hit) {
-        visitor.leaf(node, k + 1, record.count);
-        return true;
-      }
-    }
-  }
-  visitor.leaf(node, record.count, record.count);
-  return false;
-}
 
 template <bool Any, class Real, class Visitor>
 bool Grid::walk(const Ray& ray, const WalkStart<Real>& start, const RaySetup<Real>& setup, Best<Real>& best,
@@ -188,7 +168,7 @@ bool Grid::walk(const Ray& ray, const WalkStart<Real>& start, const RaySetup<Rea
   }
   visitor.branch(0);
   for (std::uint32_t steps = resolution_[0] + resolution_[1] + resolution_[2] + 3; steps-- > 0;) {
-    if (test_cell<Any>(node, setup, best, visitor)) {
+    if (test_list<Any>(topology_, *triangles_, node, setup, best, visitor)) {
       return true;
     }
     // x before y before z on ties.
@@ -247,7 +227,7 @@ bool Grid::walk_far(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& bes
       const std::uint32_t row = slice + narrow(order[1], j);
       for (std::uint32_t k = 0; met() && k < resolution_[order[2]]; ++k) {
         const std::uint32_t node = row + narrow(order[2], k);
-        if (met() && test_cell<Any>(node, setup, best, visitor)) {
+        if (met() && test_list<Any>(topology_, *triangles_, node, setup, best, visitor)) {
           return true;
         }
         widen(order[2]);

@@ -52,9 +52,6 @@ class Host {
   /// Node `node` is free at `now`. Nothing when no packet is left for it.
   std::optional<Grant> next(std::uint32_t node, sim::Ticks now);
 
-  /// True when the nodes know their packets from the start, so that asking for the next costs nothing and
-  /// touches nothing shared.
-  [[nodiscard]] bool is_static() const { return config_.assignment != Assignment::dynamic; }
   [[nodiscard]] const HostStatistics& statistics() const { return statistics_; }
 
  private:
