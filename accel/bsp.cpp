@@ -40,7 +40,7 @@ class Builder {
     for (std::uint32_t id = 0; id < triangles_.size(); ++id) {
       level.lists[id] = id;
     }
-    topology_.nodes.push_back({0, 0, 1, true});
+    add_node(1);
     while (!level.cells.empty()) {
       level = split_level(level);
     }
@@ -132,6 +132,11 @@ class Builder {
     }
   }
 
+  void add_node(std::uint8_t level) {
+    topology_.nodes.push_back({0, 0, level, true});
+    topology_.work.emplace_back();
+  }
+
   Level split_level(const Level& level) {
     Level next;
     next.number = static_cast<std::uint8_t>(level.number + 1);
@@ -148,7 +153,9 @@ class Builder {
       const bool split = may_split && count > options_.max_objects && listed < options_.max_entries &&
                          topology_.nodes.size() < most_nodes &&
                          !(axis == 0 && separates_nothing(level, index));
+      topology_.work[node].listed = static_cast<std::uint32_t>(count);
       if (split) {
+        topology_.work[node].overlaps = 2 * topology_.work[node].listed;
         sort_into_children(level, index);
         topology_.nodes[node] = {static_cast<std::uint32_t>(topology_.nodes.size()), 2, level.number, false};
         for (std::uint32_t side = 0; side < 2; ++side) {
@@ -158,7 +165,7 @@ class Builder {
           next.lists.insert(next.lists.end(), lists_of_children_[side].begin(),
                             lists_of_children_[side].end());
           next.begin.push_back(next.lists.size());
-          topology_.nodes.push_back({0, 0, next.number, true});
+          add_node(next.number);
         }
         ++statistics.branches;
         continue;

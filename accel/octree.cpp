@@ -39,7 +39,7 @@ class Builder {
     for (std::uint32_t id = 0; id < triangles_.size(); ++id) {
       level.lists[id] = id;
     }
-    topology_.nodes.push_back({0, 0, 1, true});
+    add_node(1);
     while (!level.cells.empty()) {
       level = split_level(level);
     }
@@ -73,6 +73,7 @@ class Builder {
 
   /// The lists of the eight children of one node, one after the other, into `lists_of_children_`.
   void sort_into_children(const Level& level, std::size_t index) {
+    overlaps_run_ = 0;
     for (auto& list : lists_of_children_) {
       list.clear();
     }
@@ -112,6 +113,7 @@ class Builder {
         lists_of_children_[static_cast<std::size_t>(std::countr_zero(candidates))].push_back(id);
         continue;
       }
+      overlaps_run_ += static_cast<std::uint32_t>(std::popcount(candidates));
       for (; candidates != 0; candidates &= candidates - 1) {
         const auto child = static_cast<std::size_t>(std::countr_zero(candidates));
         const std::size_t x = child & 1U;
@@ -138,6 +140,11 @@ class Builder {
     return complete >= 2;
   }
 
+  void add_node(std::uint8_t level) {
+    topology_.nodes.push_back({0, 0, level, true});
+    topology_.work.emplace_back();
+  }
+
   Level split_level(const Level& level) {
     Level next;
     next.number = static_cast<std::uint8_t>(level.number + 1);
@@ -156,7 +163,9 @@ class Builder {
         sort_into_children(level, index);
         split = !separates_nothing(count);
       }
+      topology_.work[node].listed = static_cast<std::uint32_t>(count);
       if (split) {
+        topology_.work[node].overlaps = overlaps_run_;
         topology_.nodes[node] = {static_cast<std::uint32_t>(topology_.nodes.size()), 8, level.number, false};
         for (std::uint32_t child = 0; child < 8; ++child) {
           const Cell& c = level.cells[index];
@@ -165,7 +174,7 @@ class Builder {
           next.lists.insert(next.lists.end(), lists_of_children_[child].begin(),
                             lists_of_children_[child].end());
           next.begin.push_back(next.lists.size());
-          topology_.nodes.push_back({0, 0, next.number, true});
+          add_node(next.number);
         }
         ++statistics.branches;
         continue;
@@ -191,6 +200,7 @@ class Builder {
   Topology& topology_;
   std::vector<LevelStatistics>& levels_;
   std::array<std::vector<std::uint32_t>, 8> lists_of_children_;
+  std::uint32_t overlaps_run_ = 0;
 };
 
 }  // namespace

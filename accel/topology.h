@@ -15,11 +15,19 @@ struct TopologyNode {
   bool leaf = true;
 };
 
+/// What it took to make a node's children when the tree was built.
+struct SplitWork {
+  std::uint32_t listed = 0;    ///< triangles the node listed
+  std::uint32_t overlaps = 0;  ///< triangle against box tests run to sort them into children; 0 for a leaf
+};
+
 /// Nodes in breadth-first order (node 0 is the root); entries are primitive ids, leaf by leaf in node
 /// order, ascending within a leaf.
 struct Topology {
   std::vector<TopologyNode> nodes;
   std::vector<std::uint32_t> entries;
+  /// One for each node of a tree; empty for structures that are not built by splitting nodes.
+  std::vector<SplitWork> work;
 };
 
 }  // namespace marti::accel
