@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
+#include <span>
 #include <utility>
 
-#include "accel/box_overlap.h"
+#include "accel/octree_sort.h"
 #include "sim/error.h"
 
 namespace marti::accel {
@@ -54,92 +53,6 @@ class Builder {
     std::vector<std::uint32_t> lists;
   };
 
-  /// A cell plane from its integer coordinate, so that neighbours share the same number.
-  [[nodiscard]] double plane(int axis, std::uint32_t i, unsigned level) const {
-    return frame_.box.lo[axis] +
-           (frame_.box.hi[axis] - frame_.box.lo[axis]) * std::ldexp(i, -static_cast<int>(level - 1));
-  }
-
-  /// Whether cells of `level` are thick enough to be told apart.
-  [[nodiscard]] bool resolvable(unsigned level) const {
-    for (int a = 0; a < 3; ++a) {
-      const double thickness = std::ldexp(frame_.box.hi[a] - frame_.box.lo[a], -static_cast<int>(level - 1));
-      if (!(thickness >= 8.0 * frame_.delta) || !(thickness > 0.0)) {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  /// The lists of the eight children of one node, one after the other, into `lists_of_children_`.
-  void sort_into_children(const Level& level, std::size_t index) {
-    overlaps_run_ = 0;
-    for (auto& list : lists_of_children_) {
-      list.clear();
-    }
-    const Cell& cell = level.cells[index];
-    const unsigned below = level.number + 1U;
-    std::array<std::array<double, 3>, 3> planes{};  // planes[which][axis]: low, middle, high
-    for (int a = 0; a < 3; ++a) {
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        planes[k][static_cast<std::size_t>(a)] = plane(a, 2 * cell[static_cast<std::size_t>(a)] + k, below);
-      }
-    }
-    std::array<std::array<double, 3>, 2> center{};
-    std::array<std::array<double, 3>, 2> half{};
-    for (std::size_t side = 0; side < 2; ++side) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        center[side][a] = 0.5 * (planes[side][a] + planes[side + 1][a]);
-        half[side][a] = 0.5 * (planes[side + 1][a] - planes[side][a]) + frame_.delta;
-      }
-    }
-    for (std::size_t at = level.begin[index]; at < level.begin[index + 1]; ++at) {
-      const std::uint32_t id = level.lists[at];
-      const TriangleCorners& t = triangles_[id];
-      // Children its bounding box meets; lanes 0 and 1 of `sides`: the lower and the upper half of an axis.
-      std::uint32_t candidates = 0xffU;
-      bool inside = true;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const double lo = std::min({t[a], t[3 + a], t[6 + a]});
-        const double hi = std::max({t[a], t[3 + a], t[6 + a]});
-        if (lo - frame_.delta > planes[1][a]) {
-          candidates &= upper_half[a];
-        } else if (hi + frame_.delta < planes[1][a]) {
-          candidates &= ~upper_half[a];
-        }
-        inside = inside && lo >= planes[0][a] && hi <= planes[2][a];
-      }
-      if (inside && std::has_single_bit(candidates)) {
-        lists_of_children_[static_cast<std::size_t>(std::countr_zero(candidates))].push_back(id);
-        continue;
-      }
-      overlaps_run_ += static_cast<std::uint32_t>(std::popcount(candidates));
-      for (; candidates != 0; candidates &= candidates - 1) {
-        const auto child = static_cast<std::size_t>(std::countr_zero(candidates));
-        const std::size_t x = child & 1U;
-        const std::size_t y = (child >> 1U) & 1U;
-        const std::size_t z = child >> 2U;
-        if (overlaps(t, {center[x][0], center[y][1], center[z][2]}, {half[x][0], half[y][1], half[z][2]})) {
-          lists_of_children_[child].push_back(id);
-        }
-      }
-    }
-  }
-
-  /// Whether the lists just sorted only repeat the parent's: two or more children list everything and the
-  /// others nothing.
-  [[nodiscard]] bool separates_nothing(std::size_t parent_count) const {
-    std::size_t complete = 0;
-    for (const auto& list : lists_of_children_) {
-      if (list.size() == parent_count) {
-        ++complete;
-      } else if (!list.empty()) {
-        return false;
-      }
-    }
-    return complete >= 2;
-  }
-
   void add_node(std::uint8_t level) {
     topology_.nodes.push_back({0, 0, level, true});
     topology_.work.emplace_back();
@@ -151,7 +64,7 @@ class Builder {
     next.first_node = static_cast<std::uint32_t>(topology_.nodes.size());
     next.begin.push_back(0);
     LevelStatistics& statistics = levels_.emplace_back();
-    const bool may_split = level.number < options_.max_level && resolvable(next.number);
+    const bool may_split = level_splits(frame_, options_.max_level, level.number);
     for (std::size_t index = 0; index < level.cells.size(); ++index) {
       const std::size_t count = level.begin[index + 1] - level.begin[index];
       const std::size_t node = level.first_node + index;
@@ -160,19 +73,18 @@ class Builder {
       bool split = may_split && count > options_.max_objects && listed < options_.max_entries &&
                    topology_.nodes.size() < most_nodes;
       if (split) {
-        sort_into_children(level, index);
-        split = !separates_nothing(count);
+        sort_into_children(triangles_, frame_, {level.number, level.cells[index]},
+                           std::span(level.lists).subspan(level.begin[index], count), sorted_);
+        split = !separates_nothing(sorted_, count);
       }
       topology_.work[node].listed = static_cast<std::uint32_t>(count);
       if (split) {
-        topology_.work[node].overlaps = overlaps_run_;
+        topology_.work[node].overlaps = sorted_.overlaps;
         topology_.nodes[node] = {static_cast<std::uint32_t>(topology_.nodes.size()), 8, level.number, false};
         for (std::uint32_t child = 0; child < 8; ++child) {
-          const Cell& c = level.cells[index];
-          next.cells.push_back(
-              {2 * c[0] + (child & 1U), 2 * c[1] + ((child >> 1U) & 1U), 2 * c[2] + (child >> 2U)});
-          next.lists.insert(next.lists.end(), lists_of_children_[child].begin(),
-                            lists_of_children_[child].end());
+          next.cells.push_back(OctreeCell{level.number, level.cells[index]}.child(child).at);
+          const std::vector<std::uint32_t>& list = sorted_.lists[child];
+          next.lists.insert(next.lists.end(), list.begin(), list.end());
           next.begin.push_back(next.lists.size());
           add_node(next.number);
         }
@@ -192,15 +104,12 @@ class Builder {
     return next;
   }
 
-  static constexpr std::array<std::uint32_t, 3> upper_half{0xaaU, 0xccU, 0xf0U};
-
   const TriangleSet& triangles_;
   const OctreeOptions& options_;
   const RootFrame& frame_;
   Topology& topology_;
   std::vector<LevelStatistics>& levels_;
-  std::array<std::vector<std::uint32_t>, 8> lists_of_children_;
-  std::uint32_t overlaps_run_ = 0;
+  SortedChildren sorted_;
 };
 
 }  // namespace
