@@ -58,7 +58,9 @@ class ChildSorter {
 
   /// The children that list the triangle, as a set of bits; adds the overlap tests it took to `tests`. A
   /// triangle well inside one child needs none.
-  [[nodiscard]] std::uint32_t children(const TriangleCorners& triangle, std::uint32_t& tests) const {
+  [[nodiscard]] std::uint32_t children(const TriangleSet& triangles, std::uint32_t id,
+                                       std::uint32_t& tests) const {
+    const TriangleCorners& triangle = triangles[id];
     IntegerOf<Real> candidates = 0xffU;
     bool inside = true;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -122,7 +124,7 @@ void sort_into_children(const TriangleSet& triangles, const RootFrame& frame, co
   sorted.overlaps = 0;
   const ChildSorter<Real> sorter(frame, cell);
   for (const std::uint32_t id : list) {
-    for (std::uint32_t met = sorter.children(triangles[id], sorted.overlaps); met != 0; met &= met - 1) {
+    for (std::uint32_t met = sorter.children(triangles, id, sorted.overlaps); met != 0; met &= met - 1) {
       sorted.lists[static_cast<std::size_t>(std::countr_zero(met))].push_back(id);
     }
   }
