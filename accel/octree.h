@@ -94,6 +94,7 @@ class Octree {
   }
 
  private:
+  friend class CutOctree;  // octree_cut.h: one more walk
   Octree() = default;
   [[nodiscard]] OctreeView view() const {
     return {nodes_.data() + node_offset,
