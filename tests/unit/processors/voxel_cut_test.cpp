@@ -308,25 +308,28 @@ TEST_P(CutFrames, VisitTheBeginningOfWhatTheExactFrameVisits) {
   EXPECT_LT(totals_of(*cut.log).tests, totals_of(*exact.log).tests);
 }
 
-// The bound on the levels that need averages loses no voxel.
+// The bound on the levels that need averages loses no voxel. Thresholds up to four: one level's worth.
 TEST_P(CutFrames, NeedNoVoxelsAboveTheFirstSmallLevel) {
-  const Built built(far_away(GetParam(), 5.0), "octree");
-  const RenderOptions options{.width = 64, .height = 64, .max_depth = 4, .voxel_cut = 1.0};
-  const Frame frame = built.render(options, 1);
-  ASSERT_GT(frame.first_voxel_level, 1U);
+  const Built built(far_away(GetParam(), 12.0), "octree");
   const VoxelAverages all = VoxelAverages::build(built.scene, octree_of(built), 1, 1);
-  const CutStructure structure(octree_of(built), all, 1.0);
-  NullRecorder recorder;
-  Tracer<double, CutStructure, NullRecorder> tracer(
-      built.scene, structure, built.scene.camera.image_plane(64, 64), options, recorder);
-  for (std::uint32_t y = 0; y < 64; ++y) {
-    for (std::uint32_t x = 0; x < 64; ++x) {
-      const Vec3<double> color = tracer.trace(x, y);
-      ASSERT_EQ(frame.image.at(x, y), glm::vec3(static_cast<float>(color.x), static_cast<float>(color.y),
-                                                static_cast<float>(color.z)));
+  constexpr std::uint32_t size = 64;
+  for (const double threshold : {1.0, 1.2, 1.4, 1.7, 2.0, 2.4, 2.8, 3.4}) {
+    const RenderOptions options{.width = size, .height = size, .max_depth = 2, .voxel_cut = threshold};
+    const Frame frame = built.render(options, 1);
+    ASSERT_GT(frame.first_voxel_level, 1U);
+    const CutStructure structure(octree_of(built), all, threshold);
+    NullRecorder recorder;
+    Tracer<double, CutStructure, NullRecorder> tracer(
+        built.scene, structure, built.scene.camera.image_plane(size, size), options, recorder);
+    for (std::uint32_t y = 0; y < size; ++y) {
+      for (std::uint32_t x = 0; x < size; ++x) {
+        const Vec3<double> color = tracer.trace(x, y);
+        ASSERT_EQ(frame.image.at(x, y), glm::vec3(static_cast<float>(color.x), static_cast<float>(color.y),
+                                                  static_cast<float>(color.z)));
+      }
     }
+    EXPECT_EQ(tracer.rays().voxels, frame.rays.voxels);
   }
-  EXPECT_EQ(tracer.rays().voxels, frame.rays.voxels);
 }
 
 TEST_P(CutFrames, ReplayKeepsItsLawsAndRunsAheadExactly) {
