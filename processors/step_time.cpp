@@ -26,6 +26,8 @@ StepTicks step_ticks(const MachineConfig& config) {
   ticks.test = config.clock.cycles(cycles.test);
   ticks.shade = config.clock.cycles(cycles.shade);
   ticks.light = config.clock.cycles(cycles.light);
+  ticks.cut = config.clock.cycles(cycles.cut);
+  ticks.pass = config.clock.cycles(cycles.pass);
   ticks.texel = config.clock.cycles(cycles.texel);
   ticks.pixel = config.clock.cycles(cycles.pixel);
   ticks.hit = config.clock.cycles(config.cache.hit_cycles);
@@ -43,6 +45,8 @@ void add_counted_time(const StepTicks& ticks, const StepCounts& steps, std::int6
   }
   add(Activity::traversal, ticks.branch, steps.branches);
   add(Activity::traversal, ticks.leaf, steps.leaves);
+  add(Activity::traversal, ticks.cut, steps.cuts);
+  add(Activity::traversal, ticks.pass, steps.passes);
   add(Activity::intersection, ticks.test, steps.tests);
   add(Activity::shading, ticks.shade, steps.shades);
   add(Activity::shading, ticks.light, steps.lights);
