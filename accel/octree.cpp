@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -13,6 +14,7 @@ namespace marti::accel {
 namespace {
 
 constexpr std::uint32_t deepest_level = 21;
+constexpr double not_a_triangle = std::numeric_limits<double>::quiet_NaN();
 // With no more entries than this, copies of the leaves' triangles (80 bytes an entry) are worth their memory.
 constexpr std::uint64_t packed_entries_per_triangle = 16;
 // A node number must fit in a work log's operand.
@@ -176,7 +178,7 @@ void Octree::pack() {
         const std::uint32_t id = topology_.entries[node.first + std::min(k + lane, node.count - 1)];
         pack.id[lane] = id;
         for (std::size_t c = 0; c < 9; ++c) {
-          pack.coordinate[c][lane] = (*triangles_)[id][c];
+          pack.coordinate[c][lane] = id < triangles_->triangles() ? (*triangles_)[id][c] : not_a_triangle;
         }
       }
     }

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "accel/intersect.h"
 #include "accel/structure.h"
 #include "accel/watertight.h"
 #include "processors/program/recorder.h"
@@ -84,7 +85,7 @@ class CountingRecorder {
       const std::uint32_t first = topology_.nodes[node].first;
       for (std::uint32_t i = 0; i < tests; ++i) {
         const std::uint32_t id = topology_.entries[first + i];
-        accel::intersect(*setup_, triangles_[id], id, *best_);
+        accel::intersect_primitive(*setup_, triangles_, id, *best_);
       }
       of_tests = accel::operation_counts() - before;
     }

@@ -48,7 +48,7 @@ struct Frame {
   std::shared_ptr<const WorkLog> log;  ///< null unless RenderOptions::record
 };
 
-/// Renders `scene`, whose triangles are `triangles` indexed by `structure`, on `threads` host threads (0:
+/// Renders `scene`, whose primitives are `triangles` indexed by `structure`, on `threads` host threads (0:
 /// all of them). Throws UserError for options out of range, and when recording a scene whose nodes,
 /// materials, lights or textures do not fit the log's 28-bit operands.
 [[nodiscard]] Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
