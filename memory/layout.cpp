@@ -44,8 +44,7 @@ Layout::Layout(const LayoutConfig& config, const RecordCounts& counts, std::uint
   };
   for (std::size_t k = 0; k < record_kinds; ++k) {
     const auto kind = static_cast<RecordKind>(k);
-    const bool packed =
-        kind == RecordKind::list || kind == RecordKind::texel || kind == RecordKind::pixel;
+    const bool packed = kind == RecordKind::list || kind == RecordKind::texel || kind == RecordKind::pixel;
     at = round_up(at, config.section_alignment);
     const std::uint64_t count = kind == RecordKind::primitive ? counts[k] - quadrics : counts[k];
     place(sections_[k], count, bytes[k], packed ? 1U : config.record_alignment, record_kind_names[k]);

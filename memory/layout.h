@@ -3,8 +3,8 @@
 // The sections lie one behind the other from address 0: nodes, object lists, primitives, materials,
 // texels, frame buffer. Records of a section are a stride apart: the record's size rounded up to the
 // record alignment (object lists, texels and pixels are packed arrays, so they are not padded). The
-// primitives are of two sizes: first all triangles, then the spheres, cylinders and cones (quadrics), numbered
-// on from them.
+// primitives are of two sizes: first all triangles, then the spheres, cylinders and cones (quadrics),
+// numbered on from them.
 #pragma once
 
 #include <array>

@@ -75,7 +75,7 @@ struct WorkLog {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   accel::Topology topology;
-  std::uint32_t primitives = 0;              ///< number of primitive records in the database
+  std::uint32_t primitives = 0;  ///< number of primitive records in the database
   /// Kinds of the primitives behind the triangles: those with the ids from primitives - quadrics.size() on.
   std::vector<accel::PrimitiveKind> quadrics;
   std::uint32_t materials = 0;               ///< number of material records
