@@ -44,9 +44,18 @@ Json scene_json(const RunResult& r) {
     bounds = {{"lo", {s.bounds.lo.x, s.bounds.lo.y, s.bounds.lo.z}},
               {"hi", {s.bounds.hi.x, s.bounds.hi.y, s.bounds.hi.z}}};
   }
-  return {{"source", r.frame_config.scene}, {"name", s.name},         {"polygons", s.polygons},
-          {"triangles", s.triangles},       {"vertices", s.vertices}, {"materials", s.materials},
-          {"textures", s.textures},         {"lights", s.lights},     {"bounds", bounds},
+  return {{"source", r.frame_config.scene},
+          {"name", s.name},
+          {"polygons", s.polygons},
+          {"triangles", s.triangles},
+          {"spheres", s.spheres},
+          {"cylinders", s.cylinders},
+          {"cones", s.cones},
+          {"vertices", s.vertices},
+          {"materials", s.materials},
+          {"textures", s.textures},
+          {"lights", s.lights},
+          {"bounds", bounds},
           {"notes", r.functional.notes}};
 }
 

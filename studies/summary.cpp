@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include "sim/units.h"
 #include "studies/run_result.h"
@@ -59,9 +60,15 @@ std::string percent(double part, double whole) {
 
 void scene_lines(Lines out, const RunResult& r) {
   const scenes::SceneFacts& scene = r.functional.scene;
-  fmt::format_to(out, "scene         {}: {} polygons, {} triangles, {} materials, {} lights\n",
-                 r.frame_config.scene, grouped(scene.polygons), grouped(scene.triangles), scene.materials,
-                 scene.lights);
+  fmt::format_to(out, "scene         {}: {} polygons, {} triangles", r.frame_config.scene,
+                 grouped(scene.polygons), grouped(scene.triangles));
+  for (const auto& [count, name] : {std::pair{scene.spheres, "sphere"},
+                                    std::pair{scene.cylinders, "cylinder"}, std::pair{scene.cones, "cone"}}) {
+    if (count > 0) {
+      fmt::format_to(out, ", {}", counted(count, name));
+    }
+  }
+  fmt::format_to(out, ", {} materials, {} lights\n", scene.materials, scene.lights);
   for (const std::string& note : r.functional.notes) {
     fmt::format_to(out, "  note        {}\n", note);
   }

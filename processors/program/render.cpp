@@ -65,7 +65,11 @@ WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure,
   log.width = options.width;
   log.height = options.height;
   log.topology = structure.topology();
-  log.primitives = static_cast<std::uint32_t>(scene.triangles.size());
+  const accel::TriangleSet& primitives = structure.triangles();
+  log.primitives = primitives.size();
+  for (std::uint32_t id = primitives.triangles(); id < primitives.size(); ++id) {
+    log.quadrics.push_back(primitives.kind(id));
+  }
   log.materials = static_cast<std::uint32_t>(scene.materials.size());
   log.lights = static_cast<std::uint32_t>(scene.lights.size());
   log.texture_begin.push_back(0);
@@ -147,8 +151,10 @@ RayCounts& RayCounts::operator+=(const RayCounts& other) {
 Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
              const accel::Structure& structure, const RenderOptions& options, unsigned threads) {
   check_options(options);
-  sim::ensure(triangles.size() == scene.triangles.size() && structure.triangles().size() == triangles.size(),
-              "render: the structure was built over other triangles than the scene's");
+  sim::ensure(triangles.triangles() == scene.triangles.size() &&
+                  triangles.size() == scene.triangles.size() + scene.quadrics.size() &&
+                  structure.triangles().size() == triangles.size(),
+              "render: the structure was built over other primitives than the scene's");
   Frame frame;
   frame.image.width = options.width;
   frame.image.height = options.height;

@@ -54,7 +54,7 @@ struct Frame {
   unsigned first_voxel_level = 0;      ///< the first level that has them; 0 without any
 };
 
-/// Renders `scene`, whose triangles are `triangles` indexed by `structure`, on `threads` host threads (0:
+/// Renders `scene`, whose primitives are `triangles` indexed by `structure`, on `threads` host threads (0:
 /// all of them). Throws UserError for options out of range, for a voxel cut without an octree, and when
 /// recording a scene whose nodes, materials, lights or textures do not fit the log's 28-bit operands.
 [[nodiscard]] Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,

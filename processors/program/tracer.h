@@ -20,6 +20,7 @@
 
 #include "accel/octree_cut.h"
 #include "accel/ray.h"
+#include "processors/program/quadric_surface.h"
 #include "processors/program/recorder.h"
 #include "processors/program/render.h"
 #include "processors/program/shading.h"
@@ -35,8 +36,8 @@ concept CutsVoxels = requires(const Structure& structure) {
   structure.averages();
 };
 
-/// Structure: a concrete structure of accel with closest<Real>(ray, visitor) and occluded<Real>(ray,
-/// visitor). Recorder: see recorder.h. Real: double, or accel::Counted to count the operations.
+/// Structure: a concrete structure of accel with closest<Real>(ray, visitor), occluded<Real>(ray, visitor)
+/// and triangles(). Recorder: see recorder.h. Real: double, or accel::Counted to count the operations.
 /// A tracer belongs to one host thread.
 template <typename Real, typename Structure, typename Recorder>
 class Tracer {
@@ -153,13 +154,17 @@ class Tracer {
 
   void shade(const Pending& pending, const accel::Hit& hit) {
     recorder_.phase(Phase::shade, pending.kind);
-    const std::uint32_t material_id = scene_.triangles[hit.primitive].material;
+    const std::uint32_t material_id = scenes::material_of(scene_, hit.primitive);
     const scenes::Material& material = scene_.materials[material_id];
     recorder_.shade(material_id);
     const Real b[3] = {Real(hit.u), Real(hit.v), Real(hit.w)};
-    Surface<Real> surface = surface_at(scene_, hit.primitive, b, pending.direction);
+    const bool triangle = hit.primitive < scene_.triangles.size();
+    Surface<Real> surface =
+        triangle ? surface_at(scene_, hit.primitive, b, pending.direction)
+                 : quadric_surface(structure_.triangles().quadric(hit.primitive),
+                                   pending.origin + pending.direction * Real(hit.t), pending.direction);
     surface.color = Vec(material.color);
-    if (material.texture != scenes::no_texture && !scene_.uvs.empty()) {
+    if (triangle && material.texture != scenes::no_texture && !scene_.uvs.empty()) {
       recorder_.phase(Phase::texel, pending.kind);
       const scenes::TextureSample sample =
           scenes::sample_nearest(scene_.textures[material.texture], uv_at(scene_, hit.primitive, b));

@@ -95,6 +95,11 @@ class RowChecker {
 };
 
 void check_topology(const WorkLog& log) {
+  ensure(log.quadrics.size() <= log.primitives, "work log: more curved primitives than primitives");
+  for (const accel::PrimitiveKind kind : log.quadrics) {
+    ensure(kind == accel::PrimitiveKind::sphere || kind == accel::PrimitiveKind::cone,
+           "work log: a triangle among the curved primitives");
+  }
   const std::size_t nodes = log.topology.nodes.size();
   for (std::size_t n = 0; n < nodes; ++n) {
     const accel::TopologyNode& node = log.topology.nodes[n];

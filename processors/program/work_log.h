@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "accel/quadric_shape.h"
 #include "accel/topology.h"
 
 namespace marti::processors {
@@ -80,13 +81,21 @@ struct WorkLog {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   accel::Topology topology;
-  std::uint32_t primitives = 0;              ///< number of primitive records in the database
+  std::uint32_t primitives = 0;  ///< number of primitive records in the database
+  /// Kinds of the primitives behind the triangles: those with the ids from primitives - quadrics.size() on.
+  std::vector<accel::PrimitiveKind> quadrics;
   std::uint32_t materials = 0;               ///< number of material records, averaged ones included
   std::uint32_t voxels = 0;                  ///< of these, averaged for the voxel cut: the last ones
   std::uint32_t lights = 0;                  ///< number of lights
   std::vector<std::uint64_t> texture_begin;  ///< first texel of each texture in the texel array, plus the end
   std::vector<LogRow> rows;                  ///< `height` of them, from the top
 
+  [[nodiscard]] std::uint32_t triangles() const {
+    return primitives - static_cast<std::uint32_t>(quadrics.size());
+  }
+  [[nodiscard]] accel::PrimitiveKind kind_of(std::uint32_t primitive) const {
+    return primitive < triangles() ? accel::PrimitiveKind::triangle : quadrics[primitive - triangles()];
+  }
   [[nodiscard]] std::span<const std::uint32_t> pixel(std::uint32_t x, std::uint32_t y) const {
     const LogRow& row = rows[y];
     return std::span(row.words).subspan(row.begin[x], row.begin[x + 1] - row.begin[x]);

@@ -51,6 +51,11 @@ inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::
   log.width = width;
   log.height = height;
   log.primitives = 50;
+  const bool curved = pick(random, 0, 1) == 1;
+  for (std::int64_t left = curved ? pick(random, 1, 40) : 0; left > 0; --left) {
+    log.quadrics.push_back(pick(random, 0, 1) == 0 ? accel::PrimitiveKind::sphere
+                                                   : accel::PrimitiveKind::cone);
+  }
   log.materials = 5;
   log.voxels = 2;
   log.texture_begin = {0, 100, 356};
@@ -128,6 +133,7 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
   machine.write_buffer = static_cast<std::uint32_t>(pick(random, 1, 3));
   machine.layout.node_bytes = static_cast<std::uint32_t>(pick(random, 1, 40));
   machine.layout.primitive_bytes = static_cast<std::uint32_t>(pick(random, 1, 100));
+  machine.layout.quadric_bytes = static_cast<std::uint32_t>(pick(random, 1, 100));
   machine.layout.node_order = static_cast<memory::NodeOrder>(pick(random, 0, 1));
   machine.cache.organisation = static_cast<processors::CacheOrganisation>(pick(random, 0, 2));
   machine.cache.hit_cycles = pick(random, 0, 2);
