@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "accel/mailbox.h"
 #include "accel/topology.h"
 #include "accel/triangles.h"
 #include "accel/watertight.h"
@@ -17,6 +18,9 @@ bool test_list(const Topology& topology, const TriangleSet& triangles, std::uint
   const TopologyNode& record = topology.nodes[node];
   for (std::uint32_t k = 0; k < record.count; ++k) {
     const std::uint32_t id = topology.entries[record.first + k];
+    if (already_tested<Real>(visitor, k, id)) {
+      continue;
+    }
     const bool hit = intersect(setup, triangles[id], id, best);
     if constexpr (Any) {
       if (hit) {

@@ -16,6 +16,7 @@
 #include <type_traits>
 
 #include "accel/counted.h"
+#include "accel/mailbox.h"
 #include "accel/octree_far.h"
 #include "accel/octree_nodes.h"
 #include "accel/octree_start.h"
@@ -33,6 +34,9 @@ inline bool test_leaf(const OctreeView& view, const OctreeNode& record, std::uin
   const std::uint32_t entries = record.entries();
   for (std::uint32_t k = 0; k < entries; ++k) {
     const std::uint32_t id = view.entries[record.first + k];
+    if (already_tested<Real>(visitor, k, id)) {
+      continue;
+    }
     const bool hit = intersect(setup, (*view.triangles)[id], id, best);
     if constexpr (Any) {
       if (hit) {
@@ -121,6 +125,7 @@ bool walk_octree(const OctreeView& view, const WalkStart<Real>& start, const Ray
 template <bool Any, class Real, class Visitor>
 inline bool query_octree(const OctreeView& view, const Ray& ray, const RaySetup<Real>& setup,
                          Best<Real>& best, Visitor& visitor) {
+  begin_query(visitor);
   const WalkStart<Real> start = start_walk(*view.frame, ray, setup);
   if (start.far) [[unlikely]] {
     return walk_octree_far<Any>(view, ray, setup, best, visitor);
@@ -129,7 +134,8 @@ inline bool query_octree(const OctreeView& view, const Ray& ray, const RaySetup<
     return false;
   }
 #ifdef MARTI_ACCEL_AVX2
-  if constexpr (std::is_same_v<Real, double>) {
+  // Four triangles at a time leave nothing to gain by looking each one up.
+  if constexpr (std::is_same_v<Real, double> && !has_mailboxes<Visitor>) {
     if (view.packed != nullptr) {
       return walk_octree_avx2<Any>(view, start, setup, best, visitor);
     }

@@ -9,9 +9,11 @@
 #include "accel/brute_force.h"
 #include "accel/bsp.h"
 #include "accel/grid.h"
+#include "accel/grid_match.h"
 #include "accel/octree.h"
 #include "accel/ray.h"
 #include "accel/topology.h"
+#include "accel/traversal.h"
 #include "accel/triangles.h"
 #include "sim/error.h"
 
@@ -66,6 +68,8 @@ struct StructureOptions {
   OctreeOptions octree;
   BspOptions bsp;
   GridOptions grid;
+  /// Other than density: an octree with the options above is built to measure it, and thrown away.
+  GridMatch grid_match = GridMatch::density;
 };
 
 /// The kinds make_structure knows: "octree", "bsp", "grid" and "none" (brute force).
@@ -75,6 +79,9 @@ struct StructureOptions {
 [[nodiscard]] std::unique_ptr<Structure> make_structure(std::string_view kind,
                                                         std::shared_ptr<const TriangleSet> triangles,
                                                         const StructureOptions& options = {});
+
+/// The walk that the structure's queries take.
+[[nodiscard]] Traversal traversal_of(const Structure& structure);
 
 /// Calls `f` with the concrete structure (const Octree&, and so on), so that code inside is
 /// compiled for each and the traversal is inlined.

@@ -6,13 +6,18 @@
 
 namespace marti::accel {
 
-/// The visitor that costs nothing. Others have the same two members.
+/// The visitor that costs nothing. Others have the same members; mailed_leaf only if they are to have
+/// mailboxes (mailbox.h).
 struct NullVisitor {
   /// A branch node's record was read and its children are about to be entered.
   void branch(std::uint32_t /*node*/) {}
   /// A leaf's record was read, then the first `tests` of its `entries` objects were tested, in list
   /// order. tests < entries only when an occlusion query ended early.
   void leaf(std::uint32_t /*node*/, std::uint32_t /*tests*/, std::uint32_t /*entries*/) {}
+  /// The same where mailboxes left tests out: of the first `read` entries those were tested whose bit is set
+  /// in `tested`, entry k being bit k % 32 of word k / 32.
+  void mailed_leaf(std::uint32_t /*node*/, std::uint32_t /*read*/, std::uint32_t /*entries*/,
+                   const std::uint32_t* /*tested*/) {}
 };
 
 }  // namespace marti::accel
