@@ -12,7 +12,6 @@
 
 #include <cstdint>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "accel/counted.h"
@@ -25,8 +24,7 @@ class Mailboxed : public Visitor {
  public:
   static constexpr bool has_mailboxes = true;
 
-  template <class... Arguments>
-  explicit Mailboxed(Arguments&&... arguments) : Visitor(std::forward<Arguments>(arguments)...) {}
+  using Visitor::Visitor;
 
   /// Makes room for primitives 0 to `primitives` - 1. To be called before the first ray.
   void prepare(std::uint32_t primitives) {

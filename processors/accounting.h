@@ -46,6 +46,7 @@ struct StepCounts {
   std::int64_t leaves = 0;
   std::int64_t lists = 0;  ///< leaves whose object list was read: those with at least one test
   std::int64_t tests = 0;
+  std::int64_t lookups = 0;
   std::int64_t shades = 0;
   std::int64_t lights = 0;
   std::int64_t texels = 0;
@@ -61,6 +62,7 @@ struct StepCounts {
                       C{"leaves", "1", "leaf nodes visited, empty ones included", &StepCounts::leaves},
                       C{"lists", "1", "object lists read", &StepCounts::lists},
                       C{"tests", "1", "primitives tested", &StepCounts::tests},
+                      C{"lookups", "1", "mailboxes looked up", &StepCounts::lookups},
                       C{"shades", "1", "surface points shaded", &StepCounts::shades},
                       C{"lights", "1", "light contributions added", &StepCounts::lights},
                       C{"texels", "1", "texels read", &StepCounts::texels},

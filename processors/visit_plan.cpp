@@ -58,6 +58,7 @@ class Planner {
     };
     if (!fits(ticks_.branch, counts_.of(VisitCount::branch)) ||
         !fits(ticks_.leaf, counts_.of(VisitCount::leaf)) ||
+        !fits(ticks_.lookup, counts_.of(VisitCount::test)) ||
         !fits(ticks_.test, counts_.of(VisitCount::test)) || !fits(ticks_.hit, visit.lines)) {
       visit.lines = 0;
     }

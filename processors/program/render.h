@@ -27,6 +27,7 @@ struct RenderOptions {
       5;                    ///< rays in a row, the eye ray being 1; 1 to max_ray_depth. Shadow rays are free.
   double min_weight = 0.0;  ///< 0 to 1: a ray whose largest weight is below this is not traced
   bool shadows = true;      ///< without: every light a surface faces reaches it
+  bool mailboxes = false;   ///< no ray tests a primitive twice; the same image
   bool record = false;      ///< also make the work log
 };
 

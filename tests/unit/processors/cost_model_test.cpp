@@ -27,33 +27,65 @@ void expect_close(const char* step, const OperationMix& measured, const Operatio
   close("integer", measured.integer, table.integer);
 }
 
-MeasuredMixes measure(const scenes::Scene& scene) {
+struct Walk {
+  accel::Traversal traversal;
+  const char* kind;
+  accel::BspWalk bsp;
+};
+constexpr Walk octree_walk{accel::Traversal::octree, "octree", accel::BspWalk::recursive};
+
+MeasuredMixes measure(const scenes::Scene& scene, const Walk& walk = octree_walk, std::uint32_t side = 128) {
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
   accel::StructureOptions options;
-  options.octree.max_objects = 9;
-  options.octree.max_level = 12;
-  const auto structure = accel::make_structure("octree", triangles, options);
+  options.octree.max_objects = options.bsp.max_objects = 9;
+  options.octree.max_level = options.bsp.max_level = 12;
+  options.bsp.walk = walk.bsp;
+  const auto structure = accel::make_structure(walk.kind, triangles, options);
+  EXPECT_EQ(accel::traversal_of(*structure), walk.traversal);
   return measure_operation_mixes(scene, *triangles, *structure,
-                                 {.width = 128, .height = 128, .max_depth = 2});
+                                 {.width = side, .height = side, .max_depth = 2});
 }
 
-TEST(OperationMixes, TheTableIsWhatTheProgramDoes) {
-  const OperationMixes& table = operation_mixes();
-  const MeasuredMixes teapot = measure(scenes::make_procedural("teapot:12"));
-  expect_close("camera ray", teapot.mixes.ray[0], table.ray[0]);
-  expect_close("shadow ray", teapot.mixes.ray[1], table.ray[1]);
-  expect_close("reflected ray", teapot.mixes.ray[2], table.ray[2]);
-  expect_close("branch", teapot.mixes.branch, table.branch);
-  expect_close("test", teapot.mixes.test, table.test);
-  expect_close("shade", teapot.mixes.shade, table.shade);
-  expect_close("light", teapot.mixes.light, table.light);
-  EXPECT_EQ(teapot.mixes.leaf, table.leaf);
+void expect_walk_close(const OperationMixes& measured, const OperationMixes& table) {
+  expect_close("camera ray", measured.ray[0], table.ray[0]);
+  expect_close("shadow ray", measured.ray[1], table.ray[1]);
+  expect_close("reflected ray", measured.ray[2], table.ray[2]);
+  expect_close("branch", measured.branch, table.branch);
+  expect_close("leaf", measured.leaf, table.leaf);
+  expect_close("test", measured.test, table.test);
+}
+
+class WalkMixes : public ::testing::TestWithParam<Walk> {};
+
+TEST_P(WalkMixes, TheTableIsWhatTheProgramDoes) {
+  const Walk& walk = GetParam();
+  const OperationMixes& table = operation_mixes(walk.traversal);
+  const bool brute = walk.traversal == accel::Traversal::none;
+  const MeasuredMixes teapot =
+      measure(scenes::make_procedural(brute ? "teapot:4" : "teapot:12"), walk, brute ? 32 : 128);
+  expect_walk_close(teapot.mixes, table);
+  if (!brute) {
+    expect_close("shade", teapot.mixes.shade, table.shade);
+    expect_close("light", teapot.mixes.light, table.light);
+  }
   EXPECT_EQ(teapot.mixes.pixel, table.pixel);
 
-  const MeasuredMixes gears = measure(scenes::make_procedural("gears:2"));
-  ASSERT_GT(gears.steps.rays[3], 0U);
-  expect_close("refracted ray", gears.mixes.ray[3], table.ray[3]);
+  const MeasuredMixes gears =
+      measure(scenes::make_procedural(brute ? "gears:1" : "gears:2"), walk, brute ? 16 : 128);
+  if (!brute) {
+    ASSERT_GT(gears.steps.rays[3], 0U);
+  }
+  if (gears.steps.rays[3] > 0) {
+    expect_close("refracted ray", gears.mixes.ray[3], table.ray[3]);
+  }
 }
+INSTANTIATE_TEST_SUITE_P(
+    OperationMixes, WalkMixes,
+    ::testing::Values(octree_walk, Walk{accel::Traversal::bsp_recursive, "bsp", accel::BspWalk::recursive},
+                      Walk{accel::Traversal::bsp_push_point, "bsp", accel::BspWalk::push_point},
+                      Walk{accel::Traversal::grid, "grid", accel::BspWalk::recursive},
+                      Walk{accel::Traversal::none, "none", accel::BspWalk::recursive}),
+    [](const auto& tested) { return std::to_string(tested.index); });
 
 TEST(OperationMixes, TexelsAreStraightLineCode) {
   scenes::Scene scene = test::looking_down(2.0);
@@ -65,7 +97,7 @@ TEST(OperationMixes, TexelsAreStraightLineCode) {
   texture.texels = {{1, 2, 3, 255}};
   const MeasuredMixes measured = measure(scene);
   ASSERT_GT(measured.steps.texels, 0U);
-  EXPECT_EQ(measured.mixes.texel, operation_mixes().texel);
+  EXPECT_EQ(measured.mixes.texel, operation_mixes(accel::Traversal::octree).texel);
 }
 
 // The counting render takes exactly the steps of the real one.
@@ -106,7 +138,7 @@ TEST(CostModel, AnUnknownPresetIsRefusedWithTheNamesOfTheOthers) {
 }
 
 TEST(CostModel, OneKindOfOperationIsPricedByItsColumn) {
-  const OperationMixes& mixes = operation_mixes();
+  const OperationMixes& mixes = operation_mixes(accel::Traversal::octree);
   const RecordWords words;
   OperationCycles only{0, 0, 0, 0, 0, 0, 0, 0};
   only.add = 1000;  // thousandths become cycles
@@ -122,6 +154,17 @@ TEST(CostModel, OneKindOfOperationIsPricedByItsColumn) {
   EXPECT_EQ(steps.light, mixes.light.divide);
   only.divide = 1;  // halves up
   EXPECT_EQ(step_cycles(only, words).test, (mixes.test.divide + 500) / 1000);
+}
+
+TEST(CostModel, MailboxesTakeTheEntryFromTheTest) {
+  const OperationCycles cycles{0, 0, 0, 0, 0, 10, 3, 7};
+  const RecordWords words{.node = 2, .entry = 1, .primitive = 12, .material = 16, .texel = 1, .pixel = 4};
+  const StepCycles with = step_cycles(cycles, words, accel::Traversal::grid, true);
+  const StepCycles without = step_cycles(cycles, words, accel::Traversal::grid, false);
+  EXPECT_EQ(with.lookup, (10 + 3) + (10 + 3) + 10) << "the entry, its mailbox, the comparison";
+  EXPECT_EQ(with.test + (10 + 3), without.test + 7) << "no entry to fetch, a number to leave";
+  EXPECT_EQ(without.lookup, 0);
+  EXPECT_EQ(with.leaf, without.leaf);
 }
 
 TEST(CostModel, RecordsCostTheirWords) {

@@ -81,13 +81,13 @@ RC_GTEST_PROP(Replay, ScalingEveryDurationScalesEveryTimeExactly, (std::uint64_t
 
 // Compute time of the whole log, from the counts of the log itself.
 sim::Ticks compute_of(const WorkLog& log, const MachineConfig& machine) {
-  const StepTicks ticks = step_ticks(machine);
+  const StepTicks ticks = step_ticks(machine, log);
   const LogTotals totals = totals_of(log);
   const auto n = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
   sim::Ticks sum = ticks.branch * n(totals.branches) + ticks.leaf * n(totals.leaves) +
-                   ticks.test * n(totals.tests) + ticks.shade * n(totals.shades) +
-                   ticks.light * n(totals.lights) + ticks.texel * n(totals.texels) +
-                   ticks.pixel * std::int64_t{log.width} * log.height;
+                   ticks.lookup * n(totals.lookups) + ticks.test * n(totals.tests) +
+                   ticks.shade * n(totals.shades) + ticks.light * n(totals.lights) +
+                   ticks.texel * n(totals.texels) + ticks.pixel * std::int64_t{log.width} * log.height;
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
     sum += ticks.ray[kind] * n(totals.rays[kind]);
   }
@@ -151,6 +151,7 @@ TEST(Replay, CountsDoNotDependOnTheMachine) {
     EXPECT_EQ(static_cast<std::uint64_t>(steps.branches), totals.branches);
     EXPECT_EQ(static_cast<std::uint64_t>(steps.leaves), totals.leaves);
     EXPECT_EQ(static_cast<std::uint64_t>(steps.tests), totals.tests);
+    EXPECT_EQ(static_cast<std::uint64_t>(steps.lookups), totals.lookups);
     EXPECT_EQ(static_cast<std::uint64_t>(steps.texels), totals.texels);
     EXPECT_GE(result.references().references(),
               static_cast<std::int64_t>(totals.branches + totals.leaves + totals.tests));
@@ -179,7 +180,7 @@ TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
     }
   };
   for (const LogRow& row : log.rows) {
-    for (std::size_t i = 0; i < row.words.size(); ++i) {
+    for (std::size_t i = 0; i < row.words.size(); i += step_words(row.words.data() + i)) {
       const std::uint32_t operand = operand_of(row.words[i]);
       const accel::TopologyNode node =
           operand < log.topology.nodes.size() ? log.topology.nodes[operand] : accel::TopologyNode{};
@@ -197,6 +198,16 @@ TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
           }
           break;
         }
+        case Step::mailed_leaf: {
+          touch(memory::RecordKind::node, operand, 1);
+          touch(memory::RecordKind::list, node.first, row.words[i + 1]);
+          for (std::uint32_t t = 0; t < row.words[i + 1]; ++t) {
+            if ((row.words[i + 2 + t / 32] >> (t % 32) & 1U) != 0) {
+              touch(memory::RecordKind::primitive, log.topology.entries[node.first + t], 1);
+            }
+          }
+          break;
+        }
         case Step::shade:
           touch(memory::RecordKind::material, operand, 1);
           break;
@@ -207,7 +218,6 @@ TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
         case Step::light:
           break;
       }
-      i += has_second_word(step_of(row.words[i])) ? 1 : 0;
     }
   }
   EXPECT_EQ(one.references().all_misses(), static_cast<std::int64_t>(lines.size()));
