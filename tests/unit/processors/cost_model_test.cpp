@@ -156,6 +156,23 @@ TEST(CostModel, OneKindOfOperationIsPricedByItsColumn) {
   EXPECT_EQ(step_cycles(only, words).test, (mixes.test.divide + 500) / 1000);
 }
 
+TEST(CostModel, EachTraversalIsPricedByItsOwnSteps) {
+  OperationCycles only{0, 0, 0, 0, 0, 0, 0, 0};
+  only.divide = 1000;
+  for (std::size_t t = 0; t < accel::traversals; ++t) {
+    const auto traversal = static_cast<accel::Traversal>(t);
+    const StepCycles steps = step_cycles(only, {}, traversal);
+    EXPECT_EQ(steps.leaf, operation_mixes(traversal).leaf.divide);
+    EXPECT_EQ(steps.ray[0], operation_mixes(traversal).ray[0].divide);
+    EXPECT_EQ(steps.leaf > 0, traversal == accel::Traversal::bsp_push_point) << "it alone divides at a leaf";
+  }
+  only = {0, 0, 0, 0, 0, 0, 0, 0};
+  only.compare = 1000;
+  EXPECT_EQ(step_cycles(only, {}, accel::Traversal::grid).leaf,
+            operation_mixes(accel::Traversal::grid).leaf.compare);
+  EXPECT_GT(step_cycles(only, {}, accel::Traversal::grid).leaf, 2000);
+}
+
 TEST(CostModel, MailboxesTakeTheEntryFromTheTest) {
   const OperationCycles cycles{0, 0, 0, 0, 0, 10, 3, 7};
   const RecordWords words{.node = 2, .entry = 1, .primitive = 12, .material = 16, .texel = 1, .pixel = 4};
