@@ -4,7 +4,8 @@
 #include <memory>
 #include <string_view>
 
-#include "accel/intersect.h"
+#include "accel/list_test.h"
+#include "accel/mailbox.h"
 #include "accel/ray.h"
 #include "accel/topology.h"
 #include "accel/triangles.h"
@@ -29,11 +30,8 @@ class BruteForce {
   [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
     const RaySetup<Real> setup(ray);
     Best<Real> best(setup);
-    const std::uint32_t n = triangles_->size();
-    for (std::uint32_t id = 0; id < n; ++id) {
-      intersect_primitive(setup, *triangles_, id, best);
-    }
-    visitor.leaf(0, n, n);
+    begin_query(visitor);
+    test_list<false>(topology_, *triangles_, 0, setup, best, visitor);
     return best.hit();
   }
 
@@ -42,15 +40,8 @@ class BruteForce {
   [[nodiscard]] bool occluded(const Ray& ray, Visitor& visitor) const {
     const RaySetup<Real> setup(ray);
     Best<Real> best(setup);
-    const std::uint32_t n = triangles_->size();
-    for (std::uint32_t id = 0; id < n; ++id) {
-      if (intersect_primitive(setup, *triangles_, id, best)) {
-        visitor.leaf(0, id + 1, n);
-        return true;
-      }
-    }
-    visitor.leaf(0, n, n);
-    return false;
+    begin_query(visitor);
+    return test_list<true>(topology_, *triangles_, 0, setup, best, visitor);
   }
 
  private:

@@ -18,6 +18,35 @@ constexpr std::size_t most_nodes = (std::size_t{1} << 28) - 8;
 
 using Cell = std::array<std::uint32_t, 3>;
 
+/// How often the box of a node of `level` was halved across an axis.
+int halvings(unsigned axis, unsigned level) { return static_cast<int>((level - 1 + 2 - axis) / 3); }
+
+/// A cell plane from its integer coordinate, so that neighbours share the same number.
+double plane_at(const RootFrame& frame, unsigned axis, std::uint32_t i, int halved) {
+  const int a = static_cast<int>(axis);
+  return frame.box.lo[a] + (frame.box.hi[a] - frame.box.lo[a]) * std::ldexp(i, -halved);
+}
+
+/// The plane that splits each branch, by node number; 0 for leaves.
+std::vector<double> splitting_planes(const RootFrame& frame, const Topology& topology) {
+  std::vector<double> planes(topology.nodes.size(), 0.0);
+  std::vector<Cell> cells(topology.nodes.size(), Cell{0, 0, 0});
+  for (std::size_t n = 0; n < cells.size(); ++n) {
+    const TopologyNode& node = topology.nodes[n];
+    if (node.leaf) {
+      continue;
+    }
+    const unsigned axis = bsp_axis(node.level);
+    for (std::uint32_t side = 0; side < 2; ++side) {
+      Cell& child = cells[node.first + side];
+      child = cells[n];
+      child[axis] = 2 * child[axis] + side;
+    }
+    planes[n] = plane_at(frame, axis, 2 * cells[n][axis] + 1, halvings(axis, node.level + 1U));
+  }
+  return planes;
+}
+
 /// A box and its planes from whole numbers, enlarged by delta for the overlap test.
 struct Box {
   glm::dvec3 center;
@@ -55,23 +84,12 @@ class Builder {
     std::vector<std::uint32_t> lists;
   };
 
-  /// How often the box of a node of `level` was halved across an axis.
-  [[nodiscard]] static int halvings(unsigned axis, unsigned level) {
-    return static_cast<int>((level - 1 + 2 - axis) / 3);
-  }
-
-  /// A cell plane from its integer coordinate, so that neighbours share the same number.
-  [[nodiscard]] double plane(unsigned axis, std::uint32_t i, int halved) const {
-    const int a = static_cast<int>(axis);
-    return frame_.box.lo[a] + (frame_.box.hi[a] - frame_.box.lo[a]) * std::ldexp(i, -halved);
-  }
-
   [[nodiscard]] Box box_of(const Cell& cell, unsigned level) const {
     Box box{};
     for (unsigned axis = 0; axis < 3; ++axis) {
       const int halved = halvings(axis, level);
-      const double lo = plane(axis, cell[axis], halved);
-      const double hi = plane(axis, cell[axis] + 1, halved);
+      const double lo = plane_at(frame_, axis, cell[axis], halved);
+      const double hi = plane_at(frame_, axis, cell[axis] + 1, halved);
       box.center[static_cast<int>(axis)] = 0.5 * (lo + hi);
       box.half[static_cast<int>(axis)] = 0.5 * (hi - lo) + frame_.delta;
     }
@@ -203,6 +221,15 @@ Bsp Bsp::build(std::shared_ptr<const TriangleSet> triangles, const BspOptions& o
   tree.options_ = options;
   tree.frame_ = make_frame(*tree.triangles_);
   Builder(*tree.triangles_, tree.options_, tree.frame_, tree.topology_, tree.levels_).run();
+  if (options.walk == BspWalk::push_point && !tree.frame_.box.empty()) {
+    tree.planes_ = splitting_planes(tree.frame_, tree.topology_);
+    const auto deepest = static_cast<unsigned>(tree.levels_.size());
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const int a = static_cast<int>(axis);
+      const double extent = tree.frame_.box.hi[a] - tree.frame_.box.lo[a];
+      tree.push_[a] = std::ldexp(extent, -halvings(axis, deepest) - 1);
+    }
+  }
   return tree;
 }
 

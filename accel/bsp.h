@@ -1,10 +1,12 @@
 // The BSP tree: nodes split in two at their centre, across x, y and z in turn (Kaplan, "Space-tracing: a
-// constant time ray-tracer", SIGGRAPH '85 course notes), walked from the root down, front to back.
+// constant time ray-tracer", SIGGRAPH '85 course notes), walked from the root down, front to back, or from
+// leaf to leaf by a point pushed through their faces (bsp_push.h).
 //
 // Three levels of it make one level of the octree, and its cells are the octree's: the root box, the margin
 // delta, the planes and the rule by which cells list triangles are the same. So the argument of octree.h
-// holds here word for word: the walk carries the ray's parameters at a node's six planes, takes the average
-// of two for the centre plane, and cuts the node's piece of the ray there without a gap.
+// holds for the walk from the root down word for word: it carries the ray's parameters at a node's six
+// planes, takes the average of two for the centre plane, and cuts the node's piece of the ray there without a
+// gap.
 #pragma once
 
 #include <array>
@@ -13,18 +15,25 @@
 #include <string_view>
 #include <vector>
 
+#include "accel/bsp_push.h"
 #include "accel/far_ray.h"
 #include "accel/frame.h"
 #include "accel/list_test.h"
+#include "accel/mailbox.h"
 #include "accel/octree.h"
 #include "accel/octree_start.h"
 #include "accel/ray.h"
 #include "accel/topology.h"
+#include "accel/traversal.h"
 #include "accel/triangles.h"
 #include "accel/visitor.h"
 #include "accel/watertight.h"
 
 namespace marti::accel {
+
+/// The two walks. They give the same hits; see above.
+enum class BspWalk : std::uint8_t { recursive, push_point };
+inline constexpr std::array<std::string_view, 2> bsp_walk_names = {"recursive", "push_point"};
 
 struct BspOptions {
   /// A node that lists more than this many triangles is split, unless it is at the deepest level. At least 1.
@@ -34,10 +43,8 @@ struct BspOptions {
   std::uint32_t max_level = 12;
   /// As the octree's.
   std::uint64_t max_entries = std::uint64_t{1} << 25;
+  BspWalk walk = BspWalk::recursive;
 };
-
-/// The axis across which nodes of a level are split.
-[[nodiscard]] constexpr unsigned bsp_axis(unsigned level) { return (level - 1) % 3; }
 
 class Bsp {
  public:
@@ -56,6 +63,9 @@ class Bsp {
   [[nodiscard]] const BspOptions& options() const { return options_; }
   [[nodiscard]] const scenes::Bounds& bounds() const { return frame_.box; }
   [[nodiscard]] double delta() const { return frame_.delta; }
+  [[nodiscard]] Traversal traversal() const {
+    return options_.walk == BspWalk::push_point ? Traversal::bsp_push_point : Traversal::bsp_recursive;
+  }
   /// levels()[i] is level i + 1 of this tree; as many as it has.
   [[nodiscard]] const std::vector<LevelStatistics>& levels() const { return levels_; }
 
@@ -96,12 +106,22 @@ class Bsp {
   RootFrame frame_;
   Topology topology_;
   std::vector<LevelStatistics> levels_;
+  std::vector<double> planes_;  ///< by node number, as BspPushView says; only for that walk
+  glm::dvec3 push_{0.0};
 };
 
 template <bool Any, class Real, class Visitor>
 bool Bsp::walk(const WalkStart<Real>& start, const RaySetup<Real>& setup, Best<Real>& best,
                Visitor& visitor) const {
+  using Integer = IntegerOf<Real>;
   const Real half(0.5);
+  // Of each axis, the half the ray comes from and the one it goes to.
+  std::array<Integer, 3> near_half;
+  std::array<Integer, 3> far_half;
+  for (std::uint32_t a = 0; a < 3; ++a) {
+    near_half[a] = (start.mask >> a) & 1U;
+    far_half[a] = near_half[a] ^ 1U;
+  }
   std::array<NodeSpan<Real>, stack_size> stack;
   std::size_t waiting = 0;
   NodeSpan<Real> now = start.root;
@@ -123,14 +143,11 @@ bool Bsp::walk(const WalkStart<Real>& start, const RaySetup<Real>& setup, Best<R
     }
     visitor.branch(now.node);
     const unsigned a = bsp_axis(record.level);
-    // The half the ray comes from, and the one it goes to.
-    const std::uint32_t far_half = 1U ^ ((plain(start.mask) >> a) & 1U);
-    const std::uint32_t from = record.first + (1U ^ far_half);
-    const std::uint32_t to = record.first + far_half;
+    const Integer first = record.first;
     const Real middle = (now.s0[a] + now.s1[a]) * half;
     if (middle <= now.in) {
       now.s0[a] = middle;
-      now.node = to;
+      now.node = plain(first + far_half[a]);
       continue;
     }
     if (middle < now.out) {
@@ -138,11 +155,11 @@ bool Bsp::walk(const WalkStart<Real>& start, const RaySetup<Real>& setup, Best<R
       later = now;
       later.s0[a] = middle;
       later.in = middle;
-      later.node = to;
+      later.node = plain(first + far_half[a]);
       now.out = middle;
     }
     now.s1[a] = middle;
-    now.node = from;
+    now.node = plain(first + near_half[a]);
   }
 }
 
@@ -175,12 +192,20 @@ bool Bsp::walk_far(const FarRay& far, std::uint32_t node, const glm::dvec3& lo, 
 /// Chooses the walk for one ray. True when an occlusion query found its hit.
 template <bool Any, class Real, class Visitor>
 bool Bsp::query(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const {
+  begin_query(visitor);
   const WalkStart<Real> start = start_walk(frame_, ray, setup);
   if (start.far) [[unlikely]] {
     return !frame_.box.empty() &&
            walk_far<Any>(FarRay(frame_, ray), 0U, frame_.box.lo, frame_.box.hi, setup, best, visitor);
   }
-  return start.hits_root && walk<Any>(start, setup, best, visitor);
+  if (!start.hits_root) {
+    return false;
+  }
+  if (options_.walk == BspWalk::push_point) {
+    return walk_bsp_push<Any>({&topology_, planes_.data(), triangles_.get(), &frame_, push_}, ray, start,
+                              setup, best, visitor);
+  }
+  return walk<Any>(start, setup, best, visitor);
 }
 
 }  // namespace marti::accel

@@ -65,12 +65,18 @@ void halve(Resolution& n) {
   }
 }
 
-Resolution choose_resolution(const RootFrame& frame, const GridOptions& options, std::uint32_t triangles) {
-  Resolution n = options.resolution;
-  if (std::find(n.begin(), n.end(), 0U) != n.end()) {
-    const double wanted = std::max(1.0, options.density * triangles);
-    n = resolution_for(frame, std::min(wanted, static_cast<double>(options.max_cells)));
+/// What is asked for; a density that asks for more than `most` cells gets as many.
+Resolution asked_for(const RootFrame& frame, const GridOptions& options, std::uint32_t triangles,
+                     double most) {
+  const Resolution& n = options.resolution;
+  if (std::find(n.begin(), n.end(), 0U) == n.end()) {
+    return n;
   }
+  return resolution_for(frame, std::min(std::max(1.0, options.density * triangles), most));
+}
+
+Resolution choose_resolution(const RootFrame& frame, const GridOptions& options, std::uint32_t triangles) {
+  Resolution n = asked_for(frame, options, triangles, static_cast<double>(options.max_cells));
   const glm::dvec3 extent = extent_of(frame);
   for (int a = 0; a < 3; ++a) {
     const double thinnest = std::max(8.0 * frame.delta, 0x1p-1000);
@@ -162,6 +168,7 @@ Grid Grid::build(std::shared_ptr<const TriangleSet> triangles, const GridOptions
     return grid;
   }
   grid.frame_ = make_frame(set);
+  grid.requested_ = asked_for(grid.frame_, options, set.size(), 0x1p53);
   grid.resolution_ = choose_resolution(grid.frame_, options, set.size());
 
   std::vector<std::uint32_t> counts;
@@ -180,6 +187,11 @@ Grid Grid::build(std::shared_ptr<const TriangleSet> triangles, const GridOptions
       break;
     }
   }
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const int a = static_cast<int>(axis);
+    const double extent = grid.frame_.box.hi[a] - grid.frame_.box.lo[a];
+    grid.cells_per_length_[axis] = grid.resolution_[axis] / extent;
+  }
   std::vector<TopologyNode>& nodes = grid.topology_.nodes;
   nodes.reserve(counts.size() + 1);
   nodes.push_back({1, static_cast<std::uint32_t>(counts.size()), 1, false});
@@ -196,11 +208,9 @@ Grid Grid::build(std::shared_ptr<const TriangleSet> triangles, const GridOptions
   return grid;
 }
 
-std::uint32_t Grid::first_guess(unsigned axis, double position) const {
-  const int a = static_cast<int>(axis);
-  const double share = (position - frame_.box.lo[a]) / (frame_.box.hi[a] - frame_.box.lo[a]);
+std::uint32_t Grid::cell_at(unsigned axis, double cells) const {
   const double last = resolution_[axis] - 1.0;
-  const double cell = std::floor(share * resolution_[axis]);
+  const double cell = std::floor(cells);
   return cell >= last ? resolution_[axis] - 1 : cell > 0.0 ? static_cast<std::uint32_t>(cell) : 0U;
 }
 

@@ -32,6 +32,7 @@
 #include "accel/far_ray.h"
 #include "accel/frame.h"
 #include "accel/list_test.h"
+#include "accel/mailbox.h"
 #include "accel/octree_start.h"
 #include "accel/ray.h"
 #include "accel/topology.h"
@@ -72,6 +73,8 @@ class Grid {
   [[nodiscard]] const GridOptions& options() const { return options_; }
   [[nodiscard]] const scenes::Bounds& bounds() const { return frame_.box; }
   [[nodiscard]] double delta() const { return frame_.delta; }
+  /// What the options ask for, before the limits lower it. The same as resolution() where they do not.
+  [[nodiscard]] const std::array<std::uint32_t, 3>& requested() const { return requested_; }
   /// Cells along x, y and z; all 0 without triangles.
   [[nodiscard]] const std::array<std::uint32_t, 3>& resolution() const { return resolution_; }
   /// Plane `i` of an axis, from 0 to the resolution.
@@ -104,13 +107,21 @@ class Grid {
             Visitor& visitor) const;
   template <bool Any, class Real, class Visitor>
   bool walk_far(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const;
-  [[nodiscard]] std::uint32_t first_guess(unsigned axis, double position) const;
+  /// Where a coordinate is along an axis of the box, in cells, and the cell of it.
+  template <class Real>
+  [[nodiscard]] Real share_along(unsigned axis, Real position) const {
+    const int a = static_cast<int>(axis);
+    return (position - Real(frame_.box.lo[a])) * Real(cells_per_length_[axis]);
+  }
+  [[nodiscard]] std::uint32_t cell_at(unsigned axis, double cells) const;
 
   std::shared_ptr<const TriangleSet> triangles_;
   GridOptions options_;
   RootFrame frame_;
   Topology topology_;
+  std::array<std::uint32_t, 3> requested_{0, 0, 0};
   std::array<std::uint32_t, 3> resolution_{0, 0, 0};
+  std::array<double, 3> cells_per_length_{0.0, 0.0, 0.0};
   std::array<std::vector<double>, 3> planes_;
 };
 
@@ -120,15 +131,15 @@ bool Grid::walk(const Ray& ray, const WalkStart<Real>& start, const RaySetup<Rea
   using std::abs;
   using std::max;
   using std::min;
+  using Integer = IntegerOf<Real>;
   struct Axis {
     const double* planes;
     Real origin;
-    Real inverse;          // as in start_walk
-    std::uint32_t cell;    // its number along the axis
-    std::uint32_t next;    // number of the plane it is left through
-    std::uint32_t last;    // the cell beyond which there is none
-    std::uint32_t step;    // +1 or -1, modulo 2^32
-    std::uint32_t stride;  // the same for the node number
+    Real inverse;    // as in start_walk
+    Integer next;    // number of the plane the cell is left through
+    Integer last;    // the plane beyond which there is no cell
+    Integer step;    // +1 or -1, modulo 2^32
+    Integer stride;  // the same for the node number
     bool negative;
 
     [[nodiscard]] Real at(std::uint32_t i) const {
@@ -138,9 +149,9 @@ bool Grid::walk(const Ray& ray, const WalkStart<Real>& start, const RaySetup<Rea
   };
   std::array<Axis, 3> axes;
   std::array<Real, 3> until;
-  std::uint32_t node = 1;
-  Real in = start.root.in;
-  std::uint32_t stride = 1;
+  Integer node = 1U;
+  const Real in = start.root.in;
+  Integer stride = 1U;
   for (std::uint32_t a = 0; a < 3; ++a) {
     Axis& axis = axes[a];
     const int k = static_cast<int>(a);
@@ -149,43 +160,49 @@ bool Grid::walk(const Ray& ray, const WalkStart<Real>& start, const RaySetup<Rea
     axis.origin = Real(ray.origin[k]);
     axis.inverse = min(Real(1.0) / abs(Real(ray.direction[k])), Real(frame_.largest_inverse));
     axis.negative = ((plain(start.mask) >> a) & 1U) != 0;
-    axis.cell = first_guess(a, ray.origin[k] + ray.direction[k] * plain(in));
-    const std::uint32_t side = axis.negative ? 0U : 1U;  // from a cell to the plane it is left through
+    const Real guess = share_along(a, Real(ray.origin[k]) + Real(ray.direction[k]) * in);
+    const Integer side = axis.negative ? 0U : 1U;  // from a cell to the plane it is left through
+    const Integer back = axis.negative ? 1U : 0U;  // and to the one it is entered by
+    Integer cell = cell_at(a, plain(guess));
     axis.step = axis.negative ? 0xffffffffU : 1U;
-    const std::uint32_t first = axis.negative ? n - 1 : 0U;
-    axis.last = axis.negative ? 0U : n - 1;
-    axis.stride = axis.negative ? 0U - stride : stride;
-    while (axis.cell != first && axis.at(axis.cell + 1U - side) > in) {
-      axis.cell -= axis.step;
+    const Integer first = axis.negative ? n - 1 : 0U;
+    const Integer last = axis.negative ? 0U : n - 1;
+    axis.stride = axis.negative ? Integer(0U) - stride : stride;
+    while (!(cell == first) && axis.at(plain(cell + back)) > in) {
+      cell = cell - axis.step;
     }
-    while (axis.cell != axis.last && axis.at(axis.cell + side) < in) {
-      axis.cell += axis.step;
+    while (!(cell == last) && axis.at(plain(cell + side)) < in) {
+      cell = cell + axis.step;
     }
-    axis.next = axis.cell + side;
-    until[a] = axis.at(axis.next);
-    node += axis.cell * stride;
-    stride *= n;
+    axis.next = cell + side;
+    axis.last = last + side;
+    until[a] = axis.at(plain(axis.next));
+    node = node + cell * stride;
+    stride = stride * Integer(n);
   }
+  Real limit = start.root.out;
+  Integer best_so_far = no_primitive;
   visitor.branch(0);
   for (std::uint32_t steps = resolution_[0] + resolution_[1] + resolution_[2] + 3; steps-- > 0;) {
-    if (test_list<Any>(topology_, *triangles_, node, setup, best, visitor)) {
+    if (test_list<Any>(topology_, *triangles_, plain(node), setup, best, visitor)) {
       return true;
     }
+    if (!(best_so_far == Integer(best.primitive))) {
+      best_so_far = best.primitive;
+      limit = min(limit, best.t + start.slack);
+    }
     // x before y before z on ties.
-    const bool xy = until[0] <= until[1];
-    std::uint32_t a = xy ? 0U : 1U;
+    std::uint32_t a = until[0] <= until[1] ? 0U : 1U;
     if (!(until[a] <= until[2])) {
       a = 2U;
     }
     Axis& axis = axes[a];
-    in = until[a];
-    if (axis.cell == axis.last || !(in < start.root.out) || in > best.t + start.slack) {
+    if (axis.next == axis.last || !(until[a] < limit)) {
       return false;
     }
-    axis.cell += axis.step;
-    axis.next += axis.step;
-    node += axis.stride;
-    until[a] = axis.at(axis.next);
+    axis.next = axis.next + axis.step;
+    node = node + axis.stride;
+    until[a] = axis.at(plain(axis.next));
   }
   throw sim::InternalError("a walk through a grid did not end");
 }
@@ -241,6 +258,7 @@ bool Grid::walk_far(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& bes
 /// Chooses the walk for one ray. True when an occlusion query found its hit.
 template <bool Any, class Real, class Visitor>
 bool Grid::query(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const {
+  begin_query(visitor);
   const WalkStart<Real> start = start_walk(frame_, ray, setup);
   if (start.far) [[unlikely]] {
     return walk_far<Any>(ray, setup, best, visitor);

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "accel/intersect.h"
+#include "accel/mailbox.h"
 #include "accel/topology.h"
 #include "accel/triangles.h"
 #include "accel/watertight.h"
@@ -18,6 +19,9 @@ bool test_list(const Topology& topology, const TriangleSet& triangles, std::uint
   const TopologyNode& record = topology.nodes[node];
   for (std::uint32_t k = 0; k < record.count; ++k) {
     const std::uint32_t id = topology.entries[record.first + k];
+    if (already_tested<Real>(visitor, k, id)) {
+      continue;
+    }
     const bool hit = intersect_primitive(setup, triangles, id, best);
     if constexpr (Any) {
       if (hit) {

@@ -269,6 +269,7 @@ class CutOctree {
     const OctreeView view = octree_.view();
     const RaySetup<Real> setup(ray);
     Best<Real> best(setup);
+    begin_query(visitor);
     const WalkStart<Real> start = start_walk(*view.frame, ray, setup);
     CutRay<Real> cut(*view.frame, ray, footprint, voxels_);
     if (start.far) [[unlikely]] {

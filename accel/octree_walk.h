@@ -17,6 +17,7 @@
 
 #include "accel/counted.h"
 #include "accel/intersect.h"
+#include "accel/mailbox.h"
 #include "accel/octree_far.h"
 #include "accel/octree_nodes.h"
 #include "accel/octree_start.h"
@@ -35,6 +36,9 @@ inline bool test_leaf(const View& view, const typename View::Record& record, std
   const std::uint32_t* list = view.list(record);
   for (std::uint32_t k = 0; k < entries; ++k) {
     const std::uint32_t id = list[k];
+    if (already_tested<Real>(visitor, k, id)) {
+      continue;
+    }
     const bool hit = intersect_primitive(setup, *view.triangles, id, best);
     if constexpr (Any) {
       if (hit) {
@@ -123,6 +127,7 @@ bool walk_octree(const View& view, const WalkStart<Real>& start, const RaySetup<
 template <bool Any, class Real, class View, class Visitor>
 inline bool query_octree(const View& view, const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best,
                          Visitor& visitor) {
+  begin_query(visitor);
   const WalkStart<Real> start = start_walk(*view.frame, ray, setup);
   if (start.far) [[unlikely]] {
     return walk_octree_far<Any>(view, ray, setup, best, visitor);
@@ -131,7 +136,8 @@ inline bool query_octree(const View& view, const Ray& ray, const RaySetup<Real>&
     return false;
   }
 #ifdef MARTI_ACCEL_AVX2
-  if constexpr (std::is_same_v<Real, double> && View::has_packs) {
+  // Four triangles at a time leave nothing to gain by looking each one up.
+  if constexpr (std::is_same_v<Real, double> && View::has_packs && !has_mailboxes<Visitor>) {
     if (view.packed != nullptr) {
       return walk_octree_avx2<Any>(view, start, setup, best, visitor);
     }

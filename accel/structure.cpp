@@ -1,6 +1,7 @@
 #include "accel/structure.h"
 
 #include <array>
+#include <type_traits>
 
 namespace marti::accel {
 
@@ -22,7 +23,11 @@ std::unique_ptr<Structure> make_structure(std::string_view kind, std::shared_ptr
     return std::make_unique<StructureOf<Bsp>>(Bsp::build(std::move(triangles), options.bsp));
   }
   if (kind == Grid::kind_name) {
-    return std::make_unique<StructureOf<Grid>>(Grid::build(std::move(triangles), options.grid));
+    GridOptions grid = options.grid;
+    if (options.grid_match != GridMatch::density) {
+      grid = matched_to(Octree::build(triangles, options.octree), options.grid_match, grid);
+    }
+    return std::make_unique<StructureOf<Grid>>(Grid::build(std::move(triangles), grid));
   }
   if (kind == BruteForce::kind_name) {
     return std::make_unique<StructureOf<BruteForce>>(BruteForce(std::move(triangles)));
@@ -35,6 +40,22 @@ std::unique_ptr<Structure> make_structure(std::string_view kind, std::shared_ptr
 std::unique_ptr<Structure> make_lazy_octree(std::shared_ptr<const TriangleSet> triangles,
                                             const LazyOctreeOptions& options) {
   return std::make_unique<StructureOf<LazyOctree>>(LazyOctree::build(std::move(triangles), options));
+}
+
+Traversal traversal_of(const Structure& structure) {
+  return visit_structure(structure, [](const auto& concrete) {
+    using Concrete = std::remove_cvref_t<decltype(concrete)>;
+    if constexpr (std::is_same_v<Concrete, Octree> || std::is_same_v<Concrete, LazyOctree>) {
+      return Traversal::octree;
+    } else if constexpr (std::is_same_v<Concrete, Bsp>) {
+      return concrete.traversal();
+    } else if constexpr (std::is_same_v<Concrete, Grid>) {
+      return Traversal::grid;
+    } else {
+      static_assert(std::is_same_v<Concrete, BruteForce>);
+      return Traversal::none;
+    }
+  });
 }
 
 }  // namespace marti::accel

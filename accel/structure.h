@@ -10,9 +10,11 @@
 #include "accel/bsp.h"
 #include "accel/grid.h"
 #include "accel/lazy_octree.h"
+#include "accel/grid_match.h"
 #include "accel/octree.h"
 #include "accel/ray.h"
 #include "accel/topology.h"
+#include "accel/traversal.h"
 #include "accel/triangles.h"
 #include "sim/error.h"
 
@@ -67,6 +69,8 @@ struct StructureOptions {
   OctreeOptions octree;
   BspOptions bsp;
   GridOptions grid;
+  /// Other than density: an octree with the options above is built to measure it, and thrown away.
+  GridMatch grid_match = GridMatch::density;
 };
 
 /// The kinds make_structure knows: "octree", "bsp", "grid" and "none" (brute force).
@@ -81,6 +85,8 @@ struct StructureOptions {
 /// that traced other rays are not the same. Throws UserError for an option out of range.
 [[nodiscard]] std::unique_ptr<Structure> make_lazy_octree(std::shared_ptr<const TriangleSet> triangles,
                                                           const LazyOctreeOptions& options = {});
+/// The walk that the structure's queries take.
+[[nodiscard]] Traversal traversal_of(const Structure& structure);
 
 /// Calls `f` with the concrete structure (const Octree&, and so on), so that code inside is
 /// compiled for each and the traversal is inlined.

@@ -6,7 +6,8 @@
 
 namespace marti::accel {
 
-/// The visitor that costs nothing. Others have the same members.
+/// The visitor that costs nothing. Others have the same members; mailed_leaf only if they are to have
+/// mailboxes (mailbox.h).
 struct NullVisitor {
   /// A branch node's record was read and its children are about to be entered.
   void branch(std::uint32_t /*node*/) {}
@@ -18,6 +19,10 @@ struct NullVisitor {
   /// Only with the voxel cut: a small node's voxel was read, but too little of it is covered; branch or leaf
   /// follows.
   void pass(std::uint32_t /*record*/) {}
+  /// The same where mailboxes left tests out: of the first `read` entries those were tested whose bit is set
+  /// in `tested`, entry k being bit k % 32 of word k / 32.
+  void mailed_leaf(std::uint32_t /*node*/, std::uint32_t /*read*/, std::uint32_t /*entries*/,
+                   const std::uint32_t* /*tested*/) {}
 };
 
 }  // namespace marti::accel

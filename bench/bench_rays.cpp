@@ -1,4 +1,5 @@
-// Octree against Embree: primary rays on one thread, the same triangles and the same rays.
+// All structures, their walks, with mailboxes and without, against Embree: primary rays on one thread, the
+// same triangles and the same rays.
 //   bench_rays [--scene NAME] [--size PIXELS] [--objects N] [--level N] [--json]
 #include <embree3/rtcore.h>
 
@@ -16,15 +17,16 @@
 #include <string_view>
 #include <vector>
 
-#include "accel/octree.h"
+#include "accel/mailbox.h"
+#include "accel/structure.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
 
 namespace {
 
 using marti::accel::Hit;
-using marti::accel::Octree;
 using marti::accel::Ray;
+using marti::accel::Structure;
 using marti::accel::TriangleSet;
 
 struct Options {
@@ -39,7 +41,7 @@ struct Options {
 std::vector<double> best_seconds(const std::vector<std::function<void()>>& passes) {
   std::vector<double> best(passes.size(), std::numeric_limits<double>::infinity());
   double spent = 0.0;
-  for (int round = 0; round < 5 || (spent < 5.0 && round < 60); ++round) {
+  for (int round = 0; round < 5 || (spent < 15.0 && round < 60); ++round) {
     for (std::size_t k = 0; k < passes.size(); ++k) {
       const auto begin = std::chrono::steady_clock::now();
       passes[k]();
@@ -177,17 +179,105 @@ Options read_options(int argc, char** argv) {
   return options;
 }
 
+/// One of ours: a structure, perhaps with mailboxes.
+struct Contestant {
+  std::string name;
+  std::unique_ptr<Structure> structure;
+  bool mailboxes = false;
+  double build_seconds = 0.0;
+  std::vector<Hit> hits;
+};
+
+/// Traces all rays with the concrete structure, so that the walk is inlined. Without mailboxes by the walk
+/// that a render takes.
+void trace(Contestant& contestant, const std::vector<Ray>& rays) {
+  marti::accel::visit_structure(*contestant.structure, [&](const auto& concrete) {
+    const auto all = [&](auto& visitor) {
+      for (std::size_t k = 0; k < rays.size(); ++k) {
+        contestant.hits[k] = concrete.closest(rays[k], visitor);
+      }
+    };
+    if (contestant.mailboxes) {
+      marti::accel::Mailboxed<marti::accel::NullVisitor> visitor;
+      visitor.prepare(concrete.triangles().size());
+      all(visitor);
+    } else {
+      marti::accel::NullVisitor visitor;
+      all(visitor);
+    }
+  });
+}
+
+/// Brute force only where it takes no longer than this many tests.
+constexpr double most_tests = 1e8;
+
+std::vector<Contestant> build_all(const std::shared_ptr<const TriangleSet>& triangles, const Options& options,
+                                  std::size_t rays) {
+  std::vector<Contestant> all;
+  marti::accel::StructureOptions structure_options;
+  structure_options.octree = options.octree;
+  structure_options.bsp.max_objects = options.octree.max_objects;
+  structure_options.bsp.max_level = options.octree.max_level;
+  const auto add = [&](const char* name, const char* kind) {
+    for (const bool mailboxes : {false, true}) {
+      if (mailboxes && std::string_view(kind) == "none") {
+        continue;
+      }
+      Contestant& contestant = all.emplace_back();
+      contestant.name = std::string(name) + (mailboxes ? ", mailboxes" : "");
+      contestant.mailboxes = mailboxes;
+      contestant.hits.resize(rays);
+      const auto begin = std::chrono::steady_clock::now();
+      contestant.structure = marti::accel::make_structure(kind, triangles, structure_options);
+      contestant.build_seconds =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    }
+  };
+  add("octree", "octree");
+  add("bsp, recursive", "bsp");
+  structure_options.bsp.walk = marti::accel::BspWalk::push_point;
+  add("bsp, push-point", "bsp");
+  add("grid, density", "grid");
+  structure_options.grid_match = marti::accel::GridMatch::octree_nodes;
+  add("grid, octree's nodes", "grid");
+  structure_options.grid_match = marti::accel::GridMatch::octree_cells;
+  add("grid, octree's cells", "grid");
+  if (static_cast<double>(triangles->size()) * static_cast<double>(rays) <= most_tests) {
+    add("none", "none");
+  }
+  return all;
+}
+
+void print_json(const Options& options, std::uint32_t triangles, std::size_t rays,
+                const std::vector<Contestant>& ours, const std::vector<double>& seconds,
+                const Agreement& with_fast, const Agreement& with_robust) {
+  const double million = static_cast<double>(rays) * 1e-6;
+  const double fast = seconds[ours.size()];
+  const double robust = seconds[ours.size() + 1];
+  std::printf(
+      "{\"scene\": \"%s\", \"triangles\": %u, \"rays\": %zu, \"max_objects\": %u, \"max_level\": %u, "
+      "\"embree_mrays_per_second\": %.6g, \"embree_robust_mrays_per_second\": %.6g, "
+      "\"same\": %zu, \"ties\": %zu, \"different\": %zu, "
+      "\"robust_same\": %zu, \"robust_ties\": %zu, \"robust_different\": %zu, \"structures\": [",
+      options.scene.c_str(), triangles, rays, options.octree.max_objects, options.octree.max_level,
+      million / fast, million / robust, with_fast.same, with_fast.tie, with_fast.other, with_robust.same,
+      with_robust.tie, with_robust.other);
+  for (std::size_t k = 0; k < ours.size(); ++k) {
+    std::printf(
+        "%s{\"name\": \"%s\", \"nodes\": %zu, \"build_seconds\": %.6g, \"mrays_per_second\": %.6g, "
+        "\"ratio\": %.6g, \"ratio_robust\": %.6g}",
+        k == 0 ? "" : ", ", ours[k].name.c_str(), ours[k].structure->topology().nodes.size(),
+        ours[k].build_seconds, million / seconds[k], fast / seconds[k], robust / seconds[k]);
+  }
+  std::printf("]}\n");
+}
+
 void run(const Options& options) {
   const marti::scenes::Scene scene = marti::scenes::make_procedural(options.scene);
   const auto triangles = std::make_shared<const TriangleSet>(scene);
   if (!scene.quadrics.empty()) {
     throw marti::sim::UserError("bench_rays: " + options.scene + " is not made of triangles alone");
   }
-  const auto build_begin = std::chrono::steady_clock::now();
-  const Octree octree = Octree::build(triangles, options.octree);
-  const double build_seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - build_begin).count();
-
   const marti::scenes::ImagePlane plane = scene.camera.image_plane(options.size, options.size);
   std::vector<Ray> rays;
   for (std::uint32_t y = 0; y < options.size; ++y) {
@@ -196,47 +286,46 @@ void run(const Options& options) {
     }
   }
 
-  std::vector<Hit> hits(rays.size());
-  marti::accel::NullVisitor visitor;
+  std::vector<Contestant> ours = build_all(triangles, options, rays.size());
   EmbreeRun fast(*triangles, rays, false);
   EmbreeRun robust(*triangles, rays, true);
-  const std::vector<double> seconds = best_seconds({[&] {
-                                                      for (std::size_t k = 0; k < rays.size(); ++k) {
-                                                        hits[k] = octree.closest(rays[k], visitor);
-                                                      }
-                                                    },
-                                                    [&] { fast.trace(); }, [&] { robust.trace(); }});
-  const auto found = static_cast<std::size_t>(
-      std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return h.found(); }));
-  const Agreement with_fast = compare(hits, fast);
-  const Agreement with_robust = compare(hits, robust);
-  const double million = static_cast<double>(rays.size()) * 1e-6;
-
+  std::vector<std::function<void()>> passes;
+  for (Contestant& contestant : ours) {
+    passes.emplace_back([&contestant, &rays] { trace(contestant, rays); });
+  }
+  passes.emplace_back([&] { fast.trace(); });
+  passes.emplace_back([&] { robust.trace(); });
+  const std::vector<double> seconds = best_seconds(passes);
+  for (const Contestant& contestant : ours) {
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      marti::sim::ensure(contestant.hits[k].primitive == ours[0].hits[k].primitive,
+                         "bench_rays: two structures disagree");
+    }
+  }
+  const Agreement with_fast = compare(ours[0].hits, fast);
+  const Agreement with_robust = compare(ours[0].hits, robust);
   if (options.json) {
-    std::printf(
-        "{\"scene\": \"%s\", \"triangles\": %u, \"rays\": %zu, \"hits\": %zu, \"max_objects\": %u, "
-        "\"max_level\": %u, "
-        "\"build_seconds\": %.6g, \"octree_mrays_per_second\": %.6g, \"embree_mrays_per_second\": %.6g, "
-        "\"embree_robust_mrays_per_second\": %.6g, \"ratio\": %.6g, \"ratio_robust\": %.6g, "
-        "\"same\": %zu, \"ties\": %zu, \"different\": %zu, "
-        "\"robust_same\": %zu, \"robust_ties\": %zu, \"robust_different\": %zu}\n",
-        options.scene.c_str(), triangles->size(), rays.size(), found, options.octree.max_objects,
-        options.octree.max_level, build_seconds, million / seconds[0], million / seconds[1],
-        million / seconds[2], seconds[1] / seconds[0], seconds[2] / seconds[0], with_fast.same, with_fast.tie,
-        with_fast.other, with_robust.same, with_robust.tie, with_robust.other);
+    print_json(options, triangles->size(), rays.size(), ours, seconds, with_fast, with_robust);
     return;
   }
-  std::printf(
-      "%s: %u triangles, %zu primary rays, %zu hit; octree of %zu nodes (max_objects %u, max_level %u), "
-      "built in %.3f s\n",
-      options.scene.c_str(), triangles->size(), rays.size(), found, octree.topology().nodes.size(),
-      options.octree.max_objects, options.octree.max_level, build_seconds);
-  std::printf("%-24s %10s %8s   %s\n", "one thread", "M rays/s", "ratio", "hits: same / ties / different");
-  std::printf("%-24s %10.2f\n", "octree, double", million / seconds[0]);
-  std::printf("%-24s %10.2f %8.3f   %zu / %zu / %zu\n", "Embree rtcIntersect1", million / seconds[1],
-              seconds[1] / seconds[0], with_fast.same, with_fast.tie, with_fast.other);
-  std::printf("%-24s %10.2f %8.3f   %zu / %zu / %zu\n", "Embree, robust", million / seconds[2],
-              seconds[2] / seconds[0], with_robust.same, with_robust.tie, with_robust.other);
+  const double million = static_cast<double>(rays.size()) * 1e-6;
+  const auto found = static_cast<std::size_t>(
+      std::count_if(ours[0].hits.begin(), ours[0].hits.end(), [](const Hit& h) { return h.found(); }));
+  std::printf("%s: %u triangles, %zu primary rays, %zu hit; max_objects %u, max_level %u; one thread\n",
+              options.scene.c_str(), triangles->size(), rays.size(), found, options.octree.max_objects,
+              options.octree.max_level);
+  std::printf("%-32s %10s %9s %10s %8s\n", "", "nodes", "built, s", "M rays/s", "Embree=1");
+  for (std::size_t k = 0; k < ours.size(); ++k) {
+    std::printf("%-32s %10zu %9.3f %10.3f %8.3f\n", ours[k].name.c_str(),
+                ours[k].structure->topology().nodes.size(), ours[k].build_seconds, million / seconds[k],
+                seconds[ours.size()] / seconds[k]);
+  }
+  const auto embree = [&](const char* name, double time, const Agreement& agreement) {
+    std::printf("%-32s %10s %9s %10.3f %8.3f   hits: %zu the same, %zu ties, %zu different\n", name, "", "",
+                million / time, seconds[ours.size()] / time, agreement.same, agreement.tie, agreement.other);
+  };
+  embree("Embree rtcIntersect1", seconds[ours.size()], with_fast);
+  embree("Embree, robust", seconds[ours.size() + 1], with_robust);
 }
 
 }  // namespace

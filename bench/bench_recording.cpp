@@ -27,10 +27,8 @@ double seconds(const std::vector<double>& sorted, double quantile) {
 std::uint64_t partial_leaves(const processors::WorkLog& log) {
   std::uint64_t count = 0;
   for (const processors::LogRow& row : log.rows) {
-    for (std::size_t at = 0; at < row.words.size(); ++at) {
-      const processors::Step step = processors::step_of(row.words[at]);
-      count += step == processors::Step::partial_leaf ? 1U : 0U;
-      at += processors::has_second_word(step) ? 1U : 0U;
+    for (std::size_t at = 0; at < row.words.size(); at += processors::step_words(row.words.data() + at)) {
+      count += processors::step_of(row.words[at]) == processors::Step::partial_leaf ? 1U : 0U;
     }
   }
   return count;

@@ -48,6 +48,7 @@ struct StepCounts {
   std::int64_t tests = 0;         ///< all of them
   std::int64_t sphere_tests = 0;  ///< of these, spheres
   std::int64_t cone_tests = 0;    ///< of these, cylinders and cones
+  std::int64_t lookups = 0;
   std::int64_t shades = 0;
   std::int64_t lights = 0;
   std::int64_t texels = 0;
@@ -67,6 +68,7 @@ struct StepCounts {
                       C{"tests", "1", "primitives tested", &StepCounts::tests},
                       C{"sphere_tests", "1", "of these, spheres", &StepCounts::sphere_tests},
                       C{"cone_tests", "1", "of these, cylinders and cones", &StepCounts::cone_tests},
+                      C{"lookups", "1", "mailboxes looked up", &StepCounts::lookups},
                       C{"shades", "1", "surface points shaded", &StepCounts::shades},
                       C{"lights", "1", "light contributions added", &StepCounts::lights},
                       C{"texels", "1", "texels read", &StepCounts::texels},

@@ -83,19 +83,26 @@ OperationCycles cost_preset(std::string_view name) {
   throw sim::UserError("there is no cost preset \"" + std::string(name) + "\"; there are: " + known);
 }
 
-StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words) {
-  const OperationMixes& mixes = operation_mixes();
+StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words, accel::Traversal traversal,
+                       bool mailboxes) {
+  const OperationMixes& mixes = operation_mixes(traversal);
   StepCycles steps;
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
     steps.ray[kind] = price(mixes.ray[kind], cycles, 0);
   }
   steps.branch = price(mixes.branch, cycles, read_record(cycles, words.node));
   steps.leaf = price(mixes.leaf, cycles, read_record(cycles, words.node));
-  steps.test =
-      price(mixes.test, cycles, read_record(cycles, words.entry) + read_record(cycles, words.primitive));
-  const std::int64_t quadric = read_record(cycles, words.entry) + read_record(cycles, words.quadric);
-  steps.sphere_test = price(mixes.sphere_test, cycles, quadric);
-  steps.cone_test = price(mixes.cone_test, cycles, quadric);
+  const std::int64_t entry = read_record(cycles, words.entry);
+  const std::int64_t primitive = read_record(cycles, words.primitive);
+  const std::int64_t quadric = read_record(cycles, words.quadric);
+  // With mailboxes the entry is fetched to look its mailbox up, and a test leaves the ray's number there.
+  if (mailboxes) {
+    steps.lookup = price(mixes.lookup, cycles, entry + read_record(cycles, 1));
+  }
+  const std::int64_t beside = mailboxes ? cycles.store : entry;
+  steps.test = price(mixes.test, cycles, beside + primitive);
+  steps.sphere_test = price(mixes.sphere_test, cycles, beside + quadric);
+  steps.cone_test = price(mixes.cone_test, cycles, beside + quadric);
   // The nearest primitive and the lights are in the node's registers or local store.
   steps.shade = price(mixes.shade, cycles, read_record(cycles, words.material));
   steps.light = price(mixes.light, cycles, 0);

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "accel/traversal.h"
 #include "processors/program/work_log.h"
 
 namespace marti::processors {
@@ -41,7 +42,9 @@ struct StepCycles {
   std::array<std::int64_t, ray_kinds> ray{};  ///< setting up a ray of each RayKind and its traversal
   std::int64_t branch = 0;                    ///< reading a branch and ordering its children
   std::int64_t leaf = 0;                      ///< reading a leaf, without its tests
-  std::int64_t test = 0;         ///< one entry of a leaf's list: fetch its id and primitive, test it
+  std::int64_t lookup = 0;  ///< with mailboxes, one entry of a leaf's list: fetch its id, look at its mailbox
+  std::int64_t test = 0;    ///< one test: fetch the entry's id, unless it was looked up, and the triangle,
+                            ///< test it, and with mailboxes leave the ray's number
   std::int64_t sphere_test = 0;  ///< the same of a sphere
   std::int64_t cone_test = 0;    ///< the same of a cylinder or cone
   std::int64_t shade = 0;
@@ -59,7 +62,10 @@ struct StepCycles {
 /// cost_model.cpp.
 [[nodiscard]] OperationCycles cost_preset(std::string_view name);
 
-/// Prices the measured operation mixes (operation_mix.h). Rounds each step to whole cycles, halves up.
-[[nodiscard]] StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words);
+/// Prices the measured operation mixes of a traversal (operation_mix.h). Rounds each step to whole cycles,
+/// halves up. Mailboxes are words of the node's own memory, one for each primitive.
+[[nodiscard]] StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words,
+                                     accel::Traversal traversal = accel::Traversal::octree,
+                                     bool mailboxes = false);
 
 }  // namespace marti::processors

@@ -28,6 +28,8 @@ struct Cursor {
   memory::Address end = 0;  ///< one past its last byte
   const std::uint32_t* entry = nullptr;
   const std::uint32_t* entry_end = nullptr;
+  const std::uint32_t* tested = nullptr;  ///< of a mailed leaf: a bit for each entry; null: all are tested
+  std::uint32_t entry_number = 0;         ///< of `entry` in the mailed leaf's list
   std::uint32_t list_count = 0;   ///< entries of the current leaf's list, while its read is still to come
   std::uint32_t tests_begun = 0;  ///< of the planned visit, by kind as in tests_of_kind
   std::uint32_t writes = 0;       ///< where the next pixel write goes in the write buffer
@@ -54,7 +56,8 @@ class LogWalker {
         entry_bytes_(input.layout.record_bytes(memory::RecordKind::list)),
         line_bytes_(Caches::present ? input.config.cache.cache.line : input.config.banks.interleave),
         unit_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
-        ticks_(step_ticks(input.config)),
+        ticks_(step_ticks(input.config, input.log)),
+        mailboxes_(input.log.mailboxes),
         local_access_(input.config.local.clock.cycles(input.config.local.access_cycles)),
         local_beat_(input.config.local.clock.cycles(input.config.local.cycles_per_beat)),
         local_database_(input.config.placement == Placement::replicated) {
@@ -110,7 +113,7 @@ class LogWalker {
 
   static bool in_visit(const Cursor& cursor) { return cursor.line != cursor.line_end; }
 
-  static void flush(Tally& tally, NodeStatistics& statistics) {
+  void flush(Tally& tally, NodeStatistics& statistics) const {
     const auto of = [&](VisitCount what) { return std::int64_t{tally.counts.of(what)}; };
     StepCounts& steps = statistics.steps;
     steps.branches += tally.visits - of(VisitCount::leaf);
@@ -119,6 +122,9 @@ class LogWalker {
     steps.tests += of(VisitCount::test) + of(VisitCount::sphere_test) + of(VisitCount::cone_test);
     steps.sphere_tests += of(VisitCount::sphere_test);
     steps.cone_tests += of(VisitCount::cone_test);
+    if (mailboxes_) {
+      steps.lookups += of(VisitCount::test) + of(VisitCount::sphere_test) + of(VisitCount::cone_test);
+    }
     hits_of(statistics, memory::RecordKind::node) += of(VisitCount::node_line);
     hits_of(statistics, memory::RecordKind::list) += of(VisitCount::list_line);
     hits_of(statistics, memory::RecordKind::primitive) += of(VisitCount::primitive_line);
@@ -235,9 +241,13 @@ class LogWalker {
   void settle(Cursor& cursor, const std::uint32_t* line, std::uint32_t tests) const {
     // No kind has fewer than before, so the kinds' counts do not borrow from each other.
     const std::uint32_t begun = tests - cursor.tests_begun;
-    spend(cursor, ticks_.test, tests_of_kind(begun, accel::PrimitiveKind::triangle));
-    spend(cursor, ticks_.sphere_test, tests_of_kind(begun, accel::PrimitiveKind::sphere));
-    spend(cursor, ticks_.cone_test, tests_of_kind(begun, accel::PrimitiveKind::cone));
+    const std::uint32_t triangles = tests_of_kind(begun, accel::PrimitiveKind::triangle);
+    const std::uint32_t spheres = tests_of_kind(begun, accel::PrimitiveKind::sphere);
+    const std::uint32_t cones = tests_of_kind(begun, accel::PrimitiveKind::cone);
+    spend(cursor, ticks_.test, triangles);
+    spend(cursor, ticks_.sphere_test, spheres);
+    spend(cursor, ticks_.cone_test, cones);
+    spend(cursor, ticks_.lookup, std::int64_t{triangles} + spheres + cones);
     spend(cursor, ticks_.hit, line - cursor.line);
     cursor.tests_begun = tests;
     cursor.line = line;
@@ -297,7 +307,8 @@ class LogWalker {
     return true;
   }
 
-  // What is left of a leaf that is not planned: reading its list, then testing its objects one by one.
+  // What is left of a leaf that is not planned: reading its list, then looking its objects' mailboxes up, if
+  // there are any, and testing them one by one.
   template <bool RunAhead>
   bool finish_leaf(View cache, Cursor& cursor, NodeStatistics& statistics, Stop& stop) {
     if (cursor.list_count != 0) {
@@ -310,6 +321,13 @@ class LogWalker {
     }
     while (cursor.entry != cursor.entry_end) {
       const std::uint32_t primitive = *cursor.entry++;
+      if (mailboxes_) {
+        ++statistics.steps.lookups;
+        spend(cursor, ticks_.lookup, 1);
+        if (left_out(cursor)) {
+          continue;
+        }
+      }
       begin_test(cursor, statistics.steps, primitive);
       if (!refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::primitive, primitive,
                            input_.layout.record_bytes(memory::RecordKind::primitive, primitive), stop)) {
@@ -317,6 +335,15 @@ class LogWalker {
       }
     }
     return true;
+  }
+
+  // Whether mailboxes left the entry at hand out; goes on to the next.
+  static bool left_out(Cursor& cursor) {
+    if (cursor.tested == nullptr) {
+      return false;
+    }
+    const std::uint32_t number = cursor.entry_number++;
+    return ((cursor.tested[number / 32] >> (number % 32)) & 1U) == 0;
   }
 
   // A test's computing, at its price.
@@ -346,13 +373,15 @@ class LogWalker {
 
   template <bool RunAhead>
   bool take_leaf(View cache, Cursor& cursor, NodeStatistics& statistics, std::uint32_t leaf,
-                 std::uint32_t tests, Stop& stop) {
+                 std::uint32_t entries, const std::uint32_t* tested, Stop& stop) {
     ++statistics.steps.leaves;
-    statistics.steps.lists += tests != 0 ? 1 : 0;
+    statistics.steps.lists += entries != 0 ? 1 : 0;
     spend(cursor, ticks_.leaf, 1);
-    cursor.list_count = tests;
+    cursor.list_count = entries;
     cursor.entry = entries_ + topology_[leaf].first;
-    cursor.entry_end = cursor.entry + tests;
+    cursor.entry_end = cursor.entry + entries;
+    cursor.tested = tested;
+    cursor.entry_number = 0;
     return refer_node<RunAhead>(cache, cursor, statistics, leaf, stop) &&
            finish_leaf<RunAhead>(cache, cursor, statistics, stop);
   }
@@ -368,10 +397,17 @@ class LogWalker {
         spend(cursor, ticks_.branch, 1);
         return refer_node<RunAhead>(cache, cursor, statistics, operand, stop);
       case Step::leaf:
-        return take_leaf<RunAhead>(cache, cursor, statistics, operand, topology_[operand].count, stop);
+        return take_leaf<RunAhead>(cache, cursor, statistics, operand, topology_[operand].count, nullptr,
+                                   stop);
       case Step::partial_leaf: {
         const std::uint32_t tests = *cursor.word++;
-        return take_leaf<RunAhead>(cache, cursor, statistics, operand, tests, stop);
+        return take_leaf<RunAhead>(cache, cursor, statistics, operand, tests, nullptr, stop);
+      }
+      case Step::mailed_leaf: {
+        const std::uint32_t entries = *cursor.word++;
+        const std::uint32_t* const tested = cursor.word;
+        cursor.word += mask_words(entries);
+        return take_leaf<RunAhead>(cache, cursor, statistics, operand, entries, tested, stop);
       }
       case Step::ray:
         ++(steps.*ray_counters[operand & 3U]);
@@ -428,6 +464,7 @@ class LogWalker {
   std::uint32_t line_bytes_;
   unsigned unit_shift_;
   StepTicks ticks_;
+  bool mailboxes_;
   sim::Ticks local_access_;
   sim::Ticks local_beat_;
   bool local_database_;

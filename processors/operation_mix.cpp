@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "accel/intersect.h"
+#include "accel/mailbox.h"
 #include "accel/structure.h"
 #include "accel/watertight.h"
 #include "processors/program/recorder.h"
@@ -19,6 +20,8 @@ using accel::OperationCounts;
 struct Buckets {
   std::array<OperationCounts, ray_kinds> ray{};
   OperationCounts branch;
+  OperationCounts leaf;
+  OperationCounts lookup;
   std::array<OperationCounts, 3> test{};  ///< by accel::PrimitiveKind
   OperationCounts shade;
   OperationCounts light;
@@ -41,8 +44,12 @@ class Uncounted {
 /// Divides the operations of a counting render among the kinds of step.
 class CountingRecorder {
  public:
-  CountingRecorder(const accel::TriangleSet& triangles, const accel::Topology& topology)
-      : triangles_(triangles), topology_(topology), mark_(accel::operation_counts()) {}
+  CountingRecorder(const accel::Structure& structure, bool mailboxes)
+      : triangles_(structure.triangles()),
+        topology_(structure.topology()),
+        after_leaf_(after_leaf(accel::traversal_of(structure))),
+        mailboxes_(mailboxes),
+        mark_(accel::operation_counts()) {}
 
   void begin_pixel() {}
 
@@ -73,30 +80,43 @@ class CountingRecorder {
     current_ = &buckets_.branch;
   }
 
+  void leaf(std::uint32_t node, std::uint32_t tests, std::uint32_t entries) {
+    mailed_leaf(node, tests, entries, nullptr);
+  }
+
   /// The tests were done since the last event, with the walk to this leaf. They are done once more here to
   /// tell the two apart.
-  void leaf(std::uint32_t node, std::uint32_t tests, std::uint32_t /*entries*/) {
+  void mailed_leaf(std::uint32_t node, std::uint32_t read, std::uint32_t /*entries*/,
+                   const std::uint32_t* tested) {
     ++steps_.leaves;
-    steps_.tests += tests;
-    OperationCounts of_tests;
+    OperationCounts others;
     {
       const Uncounted uncounted;
       const std::uint32_t first = topology_.nodes[node].first;
-      for (std::uint32_t i = 0; i < tests; ++i) {
+      for (std::uint32_t i = 0; i < read; ++i) {
+        if (tested != nullptr && ((tested[i / 32] >> (i % 32)) & 1U) == 0) {
+          continue;
+        }
         const std::uint32_t id = topology_.entries[first + i];
         const OperationCounts before = accel::operation_counts();
         accel::intersect_primitive(*setup_, triangles_, id, *best_);
         const OperationCounts spent = accel::operation_counts() - before;
         const auto kind = static_cast<std::size_t>(triangles_.kind(id));
         ++tests_[kind];
+        ++steps_.tests;
         buckets_.test[kind] += spent;
-        of_tests += spent;
+        others += spent;
       }
     }
-    *current_ += (accel::operation_counts() - mark_) - of_tests;
+    if (mailboxes_) {
+      steps_.lookups += read;
+      buckets_.lookup.integer += read;
+      others.integer += read;
+    }
+    *current_ += (accel::operation_counts() - mark_) - others;
     mark_ = accel::operation_counts();
-    if (topology_.nodes.size() > 1) {
-      current_ = &buckets_.branch;  // what follows is its parent going on
+    if (after_leaf_ != nullptr) {
+      current_ = &(buckets_.*after_leaf_);
     }
   }
 
@@ -112,6 +132,23 @@ class CountingRecorder {
   [[nodiscard]] const std::array<std::uint64_t, 3>& tests() const { return tests_; }
 
  private:
+  using Bucket = OperationCounts Buckets::*;
+
+  /// What the walk does after a leaf; null: nothing.
+  static Bucket after_leaf(accel::Traversal traversal) {
+    switch (traversal) {
+      case accel::Traversal::octree:
+      case accel::Traversal::bsp_recursive:
+        return &Buckets::branch;  // its parent goes on
+      case accel::Traversal::bsp_push_point:
+      case accel::Traversal::grid:
+        return &Buckets::leaf;
+      case accel::Traversal::none:
+        return nullptr;
+    }
+    throw sim::InternalError("operation mix: an unknown traversal");
+  }
+
   OperationCounts& bucket(Phase phase, RayKind kind) {
     switch (phase) {
       case Phase::ray:
@@ -135,6 +172,8 @@ class CountingRecorder {
 
   const accel::TriangleSet& triangles_;
   const accel::Topology& topology_;
+  Bucket after_leaf_;
+  bool mailboxes_;
   Buckets buckets_;
   LogTotals steps_;
   std::array<std::uint64_t, 3> tests_{};
@@ -178,16 +217,24 @@ OperationMix mean(const OperationCounts& counts, std::uint64_t steps) {
 MeasuredMixes measure_operation_mixes(const scenes::Scene& scene, const accel::TriangleSet& triangles,
                                       const accel::Structure& structure, const RenderOptions& options) {
   const scenes::ImagePlane plane = scene.camera.image_plane(options.width, options.height);
-  CountingRecorder recorder(triangles, structure.topology());
-  accel::visit_structure(structure, [&](const auto& concrete) {
-    using Concrete = std::remove_cvref_t<decltype(concrete)>;
-    Tracer<Counted, Concrete, CountingRecorder> tracer(scene, concrete, plane, options, recorder);
-    for (std::uint32_t y = 0; y < options.height; ++y) {
-      for (std::uint32_t x = 0; x < options.width; ++x) {
-        static_cast<void>(tracer.trace(x, y));
+  accel::Mailboxed<CountingRecorder> recorder(structure, options.mailboxes);
+  const auto trace = [&]<class Recorder>(Recorder& visitor) {
+    accel::visit_structure(structure, [&](const auto& concrete) {
+      using Concrete = std::remove_cvref_t<decltype(concrete)>;
+      Tracer<Counted, Concrete, Recorder> tracer(scene, concrete, plane, options, visitor);
+      for (std::uint32_t y = 0; y < options.height; ++y) {
+        for (std::uint32_t x = 0; x < options.width; ++x) {
+          static_cast<void>(tracer.trace(x, y));
+        }
       }
-    }
-  });
+    });
+  };
+  if (options.mailboxes) {
+    recorder.prepare(triangles.size());
+    trace(recorder);
+  } else {
+    trace(static_cast<CountingRecorder&>(recorder));
+  }
   recorder.end();
 
   const Buckets& buckets = recorder.buckets();
@@ -198,6 +245,8 @@ MeasuredMixes measure_operation_mixes(const scenes::Scene& scene, const accel::T
     measured.mixes.ray[kind] = mean(buckets.ray[kind], steps.rays[kind]);
   }
   measured.mixes.branch = mean(buckets.branch, steps.branches);
+  measured.mixes.leaf = mean(buckets.leaf, steps.leaves);
+  measured.mixes.lookup = mean(buckets.lookup, steps.lookups);
   measured.tests = recorder.tests();
   const auto test = [&](accel::PrimitiveKind kind) {
     const auto k = static_cast<std::size_t>(kind);
@@ -216,27 +265,87 @@ MeasuredMixes measure_operation_mixes(const scenes::Scene& scene, const accel::T
   return measured;
 }
 
-const OperationMixes& operation_mixes() {
-  // Columns: add, multiply, divide, square root, compare, integer.
-  static constexpr OperationMixes table{
-      .ray = {{
-          {20154, 20154, 7000, 1000, 34000, 3000},  // camera
-          {22000, 16000, 6000, 0, 38000, 473},      // shadow
-          {30182, 37183, 7000, 1000, 44000, 1792},  // reflection
-          {31000, 41000, 7000, 2000, 44000, 1003},  // refraction
-      }},
-      .branch = {3916, 3004, 0, 0, 8618, 6051},
-      .leaf = {},
-      .test = {18996, 12774, 111, 0, 5186, 0},
-      .sphere_test = {1, 1, 1, 1, 1, 1},
-      .cone_test = {1, 1, 1, 1, 1, 1},
-      .shade = {73624, 93477, 7000, 4000, 33812, 0},
-      .light = {41000, 68957, 2000, 1000, 6000, 0},
-      .texel = {6000, 11000, 0, 0, 0, 11000},
-      .pixel = pixel_conversion,
-      .cut = voxel_cut,
+MeasuredWalks measure_walks(const accel::Structure& structure, std::span<const accel::Ray> rays) {
+  CountingRecorder recorder(structure, false);
+  accel::visit_structure(structure, [&](const auto& concrete) {
+    for (const accel::Ray& ray : rays) {
+      recorder.ray(RayKind::camera, 0, ray);
+      static_cast<void>(concrete.template closest<Counted>(ray, recorder));
+    }
+  });
+  recorder.end();
+  const Buckets& buckets = recorder.buckets();
+  return {buckets.ray[0], buckets.branch, buckets.leaf, buckets.test, recorder.steps()};
+}
+
+namespace {
+
+/// What the traversals differ in.
+struct WalkMixes {
+  std::array<OperationMix, ray_kinds> ray;
+  OperationMix branch;
+  OperationMix leaf;
+  OperationMix test;
+};
+
+OperationMixes with_shading(const WalkMixes& walk) {
+  return {.ray = walk.ray,
+          .branch = walk.branch,
+          .leaf = walk.leaf,
+          .lookup = {0, 0, 0, 0, 0, 1000},
+          .test = walk.test,
+          .sphere_test = {1, 1, 1, 1, 1, 1},
+          .cone_test = {1, 1, 1, 1, 1, 1},
+          .shade = {73624, 93477, 7000, 4000, 33812, 0},
+          .light = {41000, 68957, 2000, 1000, 6000, 0},
+          .texel = {6000, 11000, 0, 0, 0, 11000},
+          .pixel = pixel_conversion,
+          .cut = voxel_cut};
+}
+
+}  // namespace
+
+const OperationMixes& operation_mixes(accel::Traversal traversal) {
+  // Columns: add, multiply, divide, square root, compare, integer. Rows: camera, shadow, reflected,
+  // refracted ray; branch; leaf; test.
+  static const std::array<OperationMixes, accel::traversals> table = {
+      with_shading({.ray = {{{20154, 20154, 7000, 1000, 34000, 3000},
+                             {22000, 16000, 6000, 0, 38000, 473},
+                             {30182, 37183, 7000, 1000, 44000, 1792},
+                             {31000, 41000, 7000, 2000, 44000, 1003}}},
+                    .branch = {3916, 3004, 0, 0, 8618, 6051},
+                    .leaf = {},
+                    .test = {18996, 12774, 111, 0, 5186, 0}}),
+      with_shading({.ray = {{{20154, 20154, 7000, 1000, 34000, 10749},
+                             {22000, 16000, 6000, 0, 38000, 9473},
+                             {30182, 37183, 7000, 1000, 44000, 10792},
+                             {31000, 41000, 7000, 2000, 44000, 10003}}},
+                    .branch = {1235, 1001, 0, 0, 1841, 1255},
+                    .leaf = {},
+                    .test = {18787, 12612, 87, 0, 4799, 0}}),
+      with_shading({.ray = {{{25320, 22737, 9583, 1000, 36583, 3000},
+                             {28000, 19000, 9000, 0, 41000, 473},
+                             {36182, 40183, 10000, 1000, 47000, 1792},
+                             {37000, 44000, 10000, 2000, 47000, 1003}}},
+                    .branch = {0, 0, 0, 0, 1000, 558},
+                    .leaf = {8564, 1708, 5969, 0, 7713, 995},
+                    .test = {18787, 12612, 87, 0, 4799, 0}}),
+      with_shading({.ray = {{{32092, 32092, 9583, 1000, 43356, 27853},
+                             {36317, 30317, 9000, 0, 49317, 27263},
+                             {44455, 51456, 10000, 1000, 55273, 29856},
+                             {45229, 55229, 10000, 2000, 55229, 28236}}},
+                    .branch = {},
+                    .leaf = {972, 963, 0, 0, 2974, 3920},
+                    .test = {18998, 12776, 111, 0, 5208, 0}}),
+      with_shading({.ray = {{{9163, 13163, 4000, 1000, 9000, 0},
+                             {11000, 9062, 3000, 0, 13000, 0},
+                             {19209, 30222, 4000, 1000, 19000, 0},
+                             {20000, 34000, 4000, 2000, 19000, 0}}},
+                    .branch = {},
+                    .leaf = {},
+                    .test = {18014, 12011, 0, 0, 3328, 0}}),
   };
-  return table;
+  return table[static_cast<std::size_t>(traversal)];
 }
 
 }  // namespace marti::processors

@@ -1,11 +1,15 @@
 // How many arithmetic operations each kind of step takes. The table is not guessed: it is what the real
 // templates (camera, traversal, intersection kernel, shading) execute when they are run with a scalar
-// that counts, and a test measures it again.
+// that counts, and a test measures it again. Every traversal has a table of its own.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
 
+#include "accel/counted.h"
+#include "accel/ray.h"
+#include "accel/traversal.h"
 #include "processors/program/render.h"
 #include "processors/program/work_log.h"
 #include "scenes/scene.h"
@@ -32,8 +36,13 @@ struct OperationMix {
 /// One mix for each kind of step that StepCycles prices. What belongs to which:
 ///   ray     making the ray (camera arithmetic, or the secondary direction and its origin out of the
 ///           surface), setting up kernel and traversal, and the background where it misses
-///   branch  everything done between one node visit and the next: ordering children, clipping, popping
-///   leaf    nothing but reading it; its record's fetch is priced from the layout
+///   branch  octree, recursive BSP tree: everything done between one node visit and the next: ordering
+///           children, clipping, popping. Pushed points: choosing a branch's half on the way from the root.
+///           Grid: nothing, its header is read once
+///   leaf    octree, recursive BSP tree: nothing but reading it; its record's fetch is priced from the
+///           layout. Pushed points: finding the face by which the leaf is left, and the point beyond it.
+///           Grid: the step to the next cell
+///   lookup  comparing a mailbox with the ray's number
 ///   test    one run of the intersection kernel for triangles; sphere_test and cone_test the same for spheres
 ///           and for cylinders and cones
 ///   shade   the surface point, its normals, ambient light, and finding that a light cannot matter
@@ -46,6 +55,7 @@ struct OperationMixes {
   std::array<OperationMix, ray_kinds> ray{};
   OperationMix branch;
   OperationMix leaf;
+  OperationMix lookup;
   OperationMix test;
   OperationMix sphere_test;
   OperationMix cone_test;
@@ -56,11 +66,12 @@ struct OperationMixes {
   OperationMix cut;
 };
 
-/// The table that step_cycles prices. Measured on teapot:12 in an octree (max_objects 9, max_level 12),
-/// 128 x 128, depth 2; refraction on gears:2, which has glass; the tests of spheres, cylinders and cones on
-/// lattice:4; the texel on a textured square. Sampling
-/// the texel and converting the pixel are counted by hand (operation_mix.cpp says how).
-[[nodiscard]] const OperationMixes& operation_mixes();
+/// The table that step_cycles prices. Measured on teapot:12 in an octree or a BSP tree (max_objects 9,
+/// max_level 12) or a grid (density 4), 128 x 128, depth 2; brute force on teapot:4, 32 x 32; refraction on
+/// gears:2, which has glass; the tests of spheres, cylinders and cones on lattice:4 in the octree; the texel on
+/// a textured square. Sampling the texel and converting the pixel are counted by hand (operation_mix.cpp says
+/// how).
+[[nodiscard]] const OperationMixes& operation_mixes(accel::Traversal traversal);
 
 /// What a measurement saw: the means and how many steps they are means of.
 struct MeasuredMixes {
@@ -69,10 +80,23 @@ struct MeasuredMixes {
   std::array<std::uint64_t, 3> tests{};  ///< of `steps.tests`, each accel::PrimitiveKind
 };
 
-/// Traces the whole frame on one thread with the counting scalar.
+/// Traces the whole frame on one thread with the counting scalar, with mailboxes where the options say so.
 [[nodiscard]] MeasuredMixes measure_operation_mixes(const scenes::Scene& scene,
                                                     const accel::TriangleSet& triangles,
                                                     const accel::Structure& structure,
                                                     const RenderOptions& options);
+
+/// What single rays took: sums, not means.
+struct MeasuredWalks {
+  accel::OperationCounts ray;  ///< setting up kernel and traversal
+  accel::OperationCounts branch;
+  accel::OperationCounts leaf;
+  accel::OperationCounts test;
+  LogTotals steps;
+};
+
+/// Finds the nearest hit of each ray with the counting scalar, without mailboxes.
+[[nodiscard]] MeasuredWalks measure_walks(const accel::Structure& structure,
+                                          std::span<const accel::Ray> rays);
 
 }  // namespace marti::processors

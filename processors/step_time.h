@@ -3,6 +3,7 @@
 
 #include "processors/accounting.h"
 #include "processors/machine_config.h"
+#include "processors/program/work_log.h"
 
 namespace marti::processors {
 
@@ -10,6 +11,7 @@ struct StepTicks {
   std::array<sim::Ticks, ray_kinds> ray{};
   sim::Ticks branch = 0;
   sim::Ticks leaf = 0;
+  sim::Ticks lookup = 0;  ///< one entry's mailbox; 0 without mailboxes
   sim::Ticks test = 0;
   sim::Ticks sphere_test = 0;
   sim::Ticks cone_test = 0;
@@ -22,7 +24,8 @@ struct StepTicks {
   sim::Ticks hit = 0;
 };
 
-[[nodiscard]] StepTicks step_ticks(const MachineConfig& config);
+/// For the walk that made `log`.
+[[nodiscard]] StepTicks step_ticks(const MachineConfig& config, const WorkLog& log);
 
 /// Adds traversal, intersection, shading and cache access of `counts` to `time`.
 void add_counted_time(const StepTicks& ticks, const StepCounts& steps, std::int64_t hits, TimeDivision& time);

@@ -71,8 +71,10 @@ class Planner {
       return !__builtin_mul_overflow(each, count, &time) &&
              !__builtin_add_overflow(visit.time, time, &visit.time);
     };
+    const std::int64_t tests = std::int64_t{counts_.of(VisitCount::test)} +
+                               counts_.of(VisitCount::sphere_test) + counts_.of(VisitCount::cone_test);
     if (!fits(counts_.of(VisitCount::leaf) != 0 ? ticks_.leaf : ticks_.branch, 1) ||
-        !fits(ticks_.test, counts_.of(VisitCount::test)) ||
+        !fits(ticks_.lookup, tests) || !fits(ticks_.test, counts_.of(VisitCount::test)) ||
         !fits(ticks_.sphere_test, counts_.of(VisitCount::sphere_test)) ||
         !fits(ticks_.cone_test, counts_.of(VisitCount::cone_test)) || !fits(ticks_.hit, visit.lines)) {
       visit.lines = 0;

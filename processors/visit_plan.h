@@ -49,6 +49,7 @@ struct VisitCounts {
   }
 };
 
+/// A planned leaf tests all its entries, each after a look-up where there are mailboxes.
 /// A visit that does not fit (more than 255 of anything) has no lines and is taken record by record.
 struct alignas(32) Visit {
   std::uint32_t begin = 0;  ///< first of its lines in VisitPlan::lines

@@ -1,9 +1,49 @@
 #include "studies/frame_keys.h"
 
+#include <array>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 namespace marti::studies {
+
+namespace {
+
+template <std::size_t N>
+std::vector<std::string> names_of(const std::array<std::string_view, N>& names) {
+  return {names.begin(), names.end()};
+}
+
+void read_tree_limits(const sim::Config& config, accel::StructureOptions& options) {
+  options.octree.max_objects = static_cast<std::uint32_t>(config.integer("structure.max_objects"));
+  options.octree.max_level = static_cast<std::uint32_t>(config.integer("structure.max_level"));
+  options.bsp.max_objects = options.octree.max_objects;
+  options.bsp.max_level = options.octree.max_level;
+}
+
+void read_structure(sim::Config& config, FrameConfig& frame) {
+  accel::StructureOptions& options = frame.structure_options;
+  frame.structure = config.choice_name("structure.kind");
+  frame.render.mailboxes = config.boolean("structure.mailboxes");
+  std::string how = "structure.kind = \"" + frame.structure + "\"";
+  if (frame.structure == "octree") {
+    read_tree_limits(config, options);
+  } else if (frame.structure == "bsp") {
+    read_tree_limits(config, options);
+    options.bsp.walk = config.choice_as<accel::BspWalk>("structure.bsp_walk");
+  } else if (frame.structure == "grid") {
+    options.grid_match = config.choice_as<accel::GridMatch>("structure.grid_resolution");
+    if (options.grid_match == accel::GridMatch::density) {
+      options.grid.density = config.real("structure.grid_density");
+    } else {
+      read_tree_limits(config, options);
+    }
+    how += " and structure.grid_resolution = \"" + config.choice_name("structure.grid_resolution") + "\"";
+  }
+  config.mark_unused_reason("structure", "it has no effect with " + how, "structure.kind");
+}
+
+}  // namespace
 
 void declare_frame_keys(sim::Schema& schema) {
   schema.section("scene", "what is rendered");
@@ -44,6 +84,15 @@ void declare_frame_keys(sim::Schema& schema) {
       "tree make one of the octree");
   schema.real("structure.grid_density", 4.0, {0.001, 1000.0}, "cells",
               "grid: cells for each primitive, about");
+  schema.choice(
+      "structure.grid_resolution", "density", names_of(accel::grid_match_names),
+      "grid: from the density; as many cells as an octree of the same max_objects and max_level has "
+      "nodes, about; or cells as small as its smallest. At most 4 Mi cells");
+  schema.choice("structure.bsp_walk", "recursive", names_of(accel::bsp_walk_names),
+                "bsp: from the root down, or from leaf to leaf by a point pushed through their faces and "
+                "located from the root");
+  schema.boolean("structure.mailboxes", false,
+                 "no ray tests a primitive twice: each remembers the last ray, in a word of the node's own");
   schema.section("host_machine", "the computer that runs the simulation");
   schema.size("host_machine.memory_limit", "8 GiB", {"1 MiB", "1024 TiB"},
               "refuse a frame whose image and work log would take more");
@@ -63,29 +112,18 @@ FrameConfig read_frame(sim::Config& config) {
   frame.render.max_depth = static_cast<std::uint32_t>(config.integer("image.max_depth"));
   frame.render.min_weight = config.real("image.min_weight");
   frame.render.shadows = config.boolean("image.shadows");
-  frame.structure = config.choice_name("structure.kind");
   frame.render.voxel_cut = config.real("image.voxel_cut");
   if (frame.render.voxel_cut > 0.0) {
-    if (frame.structure != "octree") {
-      config.fail("image.voxel_cut",
-                  "only an octree can be cut, not structure.kind = \"" + frame.structure + "\"");
+    if (config.choice_name("structure.kind") != "octree") {
+      config.fail("image.voxel_cut", "only an octree can be cut, not structure.kind = \"" +
+                                         config.choice_name("structure.kind") + "\"");
     }
     frame.exact_too = config.boolean("image.voxel_cut_reference");
   } else {
     config.mark_unused_reason("image.voxel_cut_reference", "it has no effect with image.voxel_cut = 0",
                               "image.voxel_cut");
   }
-  if (frame.structure == "octree" || frame.structure == "bsp") {
-    accel::StructureOptions& options = frame.structure_options;
-    options.octree.max_objects = static_cast<std::uint32_t>(config.integer("structure.max_objects"));
-    options.octree.max_level = static_cast<std::uint32_t>(config.integer("structure.max_level"));
-    options.bsp.max_objects = options.octree.max_objects;
-    options.bsp.max_level = options.octree.max_level;
-  } else if (frame.structure == "grid") {
-    frame.structure_options.grid.density = config.real("structure.grid_density");
-  }
-  config.mark_unused_reason("structure", "it has no effect with structure.kind = \"" + frame.structure + "\"",
-                            "structure.kind");
+  read_structure(config, frame);
   frame.memory_limit = config.size("host_machine.memory_limit");
   return frame;
 }

@@ -68,6 +68,8 @@ FunctionalRun run_functional(const FrameConfig& config) {
   run.notes = scene.notes;
   if (const auto* octree = dynamic_cast<const accel::StructureOf<accel::Octree>*>(structure.get())) {
     run.levels = octree->concrete().levels();
+  } else if (const auto* grid = dynamic_cast<const accel::StructureOf<accel::Grid>*>(structure.get())) {
+    run.structure_notes.push_back(accel::describe_resolution(grid->concrete()));
   }
   processors::RenderOptions options = config.render;
   options.record = true;

@@ -17,6 +17,7 @@ namespace marti::studies {
 struct FunctionalRun {
   scenes::SceneFacts scene;
   std::vector<std::string> notes;              ///< what the loader chose or left out
+  std::vector<std::string> structure_notes;    ///< what its builder chose
   std::vector<accel::LevelStatistics> levels;  ///< of an octree; empty for other structures
   processors::Frame frame;
   processors::LogTotals totals;

@@ -5,16 +5,19 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenes/gltf_export.h"
 #include "scenes/open.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
+#include "sim/files.h"
 #include "sim/schema.h"
 #include "studies/image_file.h"
 #include "studies/output.h"
 #include "studies/run_result.h"
+#include "studies/study_operations.h"
 #include "studies/version.h"
 
 namespace {
@@ -57,6 +60,55 @@ void run_command(const RunArguments& arguments) {
     text += "wrote         " + file.string() + "\n";
   }
   print(text);
+}
+
+// What every study takes.
+struct StudyArguments {
+  std::string config;
+  std::vector<std::string> assignments;
+  std::string directory;
+};
+
+std::string no_empty_directory(const std::string& name) {
+  return name.empty() ? "the name of a directory must not be empty" : "";
+}
+
+void study_operations(const StudyArguments& arguments) {
+  sim::Config config =
+      arguments.config.empty()
+          ? sim::Config::from_text(studies::run_schema(), "", "defaults", arguments.assignments)
+          : sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
+  const std::filesystem::path directory = arguments.directory;
+  if (!directory.empty()) {
+    studies::prepare_output(directory);
+  }
+  const studies::OperationsStudy study = studies::study_operations(config);
+  std::string text = studies::text_of(study);
+  if (!directory.empty()) {
+    for (const auto& [name, content] : {std::pair{"operations.csv", studies::operations_csv(study)},
+                                        std::pair{"unit_length.csv", studies::unit_length_csv(study)}}) {
+      sim::PendingFile file(directory / name);
+      sim::write_file(file.temporary(), content);
+      file.commit();
+      text += "wrote " + (directory / name).string() + "\n";
+    }
+  }
+  print(text);
+}
+
+void add_study_commands(CLI::App& app, StudyArguments& arguments) {
+  CLI::App* study = app.add_subcommand("study", "Runs a study: tables instead of one result");
+  study->require_subcommand(1);
+  CLI::App* operations =
+      study->add_subcommand("operations", "Counts the operations of every walk, a step and a ray");
+  for (CLI::App* command : {operations}) {
+    command->add_option("CONFIG", arguments.config, "configuration file (TOML); without it, the defaults");
+    command->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
+        ->allow_extra_args(false);
+    command->add_option("-o,--output", arguments.directory, "directory for tables")
+        ->check(no_empty_directory);
+  }
+  operations->callback([&] { study_operations(arguments); });
 }
 
 void list_scenes() {
@@ -129,6 +181,9 @@ int parse_and_run(int argc, char** argv) {
     const sim::Schema schema = studies::run_schema();
     print(markdown ? sim::list_keys_as_markdown(schema) : sim::list_keys_as_text(schema));
   });
+
+  StudyArguments study_arguments;
+  add_study_commands(app, study_arguments);
 
   SceneArguments scene_arguments;
   add_scene_commands(app, scene_arguments);

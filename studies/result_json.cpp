@@ -72,6 +72,9 @@ Json structure_json(const RunResult& r) {
   return {{"kind", r.frame_config.structure},
           {"nodes", topology.nodes.size()},
           {"entries", topology.entries.size()},
+          {"traversal", accel::traversal_names[static_cast<std::size_t>(r.functional.frame.log->traversal)]},
+          {"mailboxes", r.functional.frame.log->mailboxes},
+          {"notes", r.functional.structure_notes},
           {"levels", levels}};
 }
 
@@ -88,9 +91,9 @@ Json image_json(const RunResult& r) {
 }
 
 Json log_json(const processors::LogTotals& t) {
-  return {{"bytes", t.bytes},   {"branches", t.branches}, {"leaves", t.leaves},
-          {"tests", t.tests},   {"shades", t.shades},     {"lights", t.lights},
-          {"texels", t.texels}, {"cuts", t.cuts},         {"passes", t.passes}};
+  return {{"bytes", t.bytes},     {"branches", t.branches}, {"leaves", t.leaves}, {"tests", t.tests},
+          {"lookups", t.lookups}, {"shades", t.shades},     {"lights", t.lights}, {"texels", t.texels},
+          {"cuts", t.cuts},       {"passes", t.passes}};
 }
 
 Json use_json(const DatabaseUse& use) {

@@ -78,6 +78,9 @@ void scene_lines(Lines out, const RunResult& r) {
   if (!r.functional.levels.empty()) {
     fmt::format_to(out, ", {} levels", r.functional.levels.size());
   }
+  for (const std::string& note : r.functional.structure_notes) {
+    fmt::format_to(out, "\n  note        {}", note);
+  }
   const processors::LogTotals& totals = r.functional.totals;
   const double rays = static_cast<double>(totals.all_rays());
   fmt::format_to(out,

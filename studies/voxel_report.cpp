@@ -16,10 +16,9 @@ DatabaseUse database_use(const processors::WorkLog& log) {
   std::vector<bool> listed(nodes.size());
   const std::uint32_t first_voxel = log.materials - log.voxels;
   for (const processors::LogRow& row : log.rows) {
-    for (std::size_t at = 0; at < row.words.size(); ++at) {
+    for (std::size_t at = 0; at < row.words.size(); at += processors::step_words(row.words.data() + at)) {
       const Step step = processors::step_of(row.words[at]);
       const std::uint32_t operand = processors::operand_of(row.words[at]);
-      at += processors::has_second_word(step) ? 1 : 0;
       switch (step) {
         case Step::branch:
         case Step::cut:
@@ -27,6 +26,7 @@ DatabaseUse database_use(const processors::WorkLog& log) {
           break;
         case Step::leaf:
         case Step::partial_leaf:
+        case Step::mailed_leaf:
           // A leaf tested in part counts as tested: which part depends on the order of its list.
           read[operand] = true;
           listed[operand] = true;

@@ -57,6 +57,13 @@ class RowRecorder {
   }
   void cut(std::uint32_t node) { put(make_word(Step::cut, node)); }
   void pass(std::uint32_t record) { put(make_word(Step::pass, record)); }
+  void mailed_leaf(std::uint32_t node, std::uint32_t read, std::uint32_t /*entries*/,
+                   const std::uint32_t* tested) {
+    put(make_word(Step::mailed_leaf, node), read);
+    for (std::uint32_t i = 0; i < mask_words(read); ++i) {
+      put(tested[i]);
+    }
+  }
   void ray(RayKind kind, std::uint32_t bounce, const accel::Ray& /*ray*/) {
     put(make_word(Step::ray, static_cast<std::uint32_t>(kind) | bounce << 2U));
   }

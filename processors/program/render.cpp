@@ -14,6 +14,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "accel/mailbox.h"
 #include "accel/structure.h"
 #include "processors/program/recorder.h"
 #include "processors/program/tracer.h"
@@ -62,6 +63,8 @@ std::optional<VoxelAverages> make_voxels(const scenes::Scene& scene, const accel
 WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure,
                   const RenderOptions& options) {
   WorkLog log;
+  log.traversal = accel::traversal_of(structure);
+  log.mailboxes = options.mailboxes;
   log.width = options.width;
   log.height = options.height;
   log.topology = structure.topology();
@@ -88,7 +91,7 @@ struct Worker {
   std::uint64_t hit_hash = 0;
 };
 
-/// Renders all rows; `rows` is where a RowRecorder's rows go.
+/// Renders all rows; `rows` is where a RowRecorder's rows go, with mailboxes or without.
 template <typename Structure, typename Recorder>
 void render_rows(const scenes::Scene& scene, const Structure& structure, const RenderOptions& options,
                  unsigned threads, std::vector<LogRow>& rows, Frame& frame) {
@@ -98,7 +101,11 @@ void render_rows(const scenes::Scene& scene, const Structure& structure, const R
   const auto render_row = [&](std::uint32_t y) {
     Worker<Recorder>& worker = workers.local();
     Tracer<double, Structure, Recorder> tracer(scene, structure, plane, options, worker.recorder);
-    if constexpr (std::is_same_v<Recorder, RowRecorder>) {
+    constexpr bool recording = std::is_base_of_v<RowRecorder, Recorder>;
+    if constexpr (accel::has_mailboxes<Recorder>) {
+      worker.recorder.prepare(structure.triangles().size());
+    }
+    if constexpr (recording) {
       worker.recorder.begin_row(options.width);
     }
     glm::vec3* pixels = frame.image.pixels.data() + std::size_t{y} * options.width;
@@ -106,7 +113,7 @@ void render_rows(const scenes::Scene& scene, const Structure& structure, const R
       const Vec3<double> color = tracer.trace(x, y);
       pixels[x] = {static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)};
     }
-    if constexpr (std::is_same_v<Recorder, RowRecorder>) {
+    if constexpr (recording) {
       worker.recorder.end_row(rows[y]);
     }
     worker.rays += tracer.rays();
@@ -181,10 +188,17 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
   }
   const auto render_with = [&](const auto& concrete) {
     using Concrete = std::remove_cvref_t<decltype(concrete)>;
-    if (options.record) {
-      render_rows<Concrete, RowRecorder>(scene, concrete, options, threads, log.rows, frame);
+    const auto run = [&]<typename Recorder>(Recorder /*which*/) {
+      render_rows<Concrete, Recorder>(scene, concrete, options, threads, log.rows, frame);
+    };
+    if (options.mailboxes && options.record) {
+      run(accel::Mailboxed<RowRecorder>());
+    } else if (options.mailboxes) {
+      run(accel::Mailboxed<NullRecorder>());
+    } else if (options.record) {
+      run(RowRecorder());
     } else {
-      render_rows<Concrete, NullRecorder>(scene, concrete, options, threads, log.rows, frame);
+      run(NullRecorder());
     }
   };
   accel::visit_structure(structure, [&](const auto& concrete) {

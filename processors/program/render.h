@@ -30,7 +30,8 @@ struct RenderOptions {
   /// The voxel cut (accel/octree_cut.h), for an octree only: cells that cover less than this many pixels on
   /// the screen are shaded as one. 0: off, the image is exact. At least 0 and finite.
   double voxel_cut = 0.0;
-  bool record = false;  ///< also make the work log
+  bool mailboxes = false;  ///< no ray tests a primitive twice; the same image
+  bool record = false;     ///< also make the work log
 };
 
 /// Rays of each kind, in the order of RayKind.

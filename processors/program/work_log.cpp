@@ -30,19 +30,23 @@ class RowChecker {
   void check_pixel(std::size_t at, std::size_t end) {
     auto before = Step::ray;
     while (at < end) {
-      const std::uint32_t word = row_.words[at++];
-      const Step step = step_of(word);
-      ensure((before == Step::cut) == (step == Step::shade && averaged(operand_of(word))),
+      const std::uint32_t* const word = row_.words.data() + at;
+      const Step step = step_of(*word);
+      const std::uint32_t operand = operand_of(*word);
+      const bool long_step = step != Step::mailed_leaf || end - at >= 2;
+      ensure(long_step && step_words(word) <= end - at, "work log: a pixel ends between the words of a step");
+      ensure((before == Step::cut) == (step == Step::shade && averaged(operand)),
              "work log: a cut without its averaged material, or the reverse");
-      ensure(before != Step::pass || step == Step::branch || step == Step::leaf || step == Step::partial_leaf,
+      ensure(before != Step::pass || step == Step::branch || step == Step::leaf ||
+                 step == Step::partial_leaf || step == Step::mailed_leaf,
              "work log: a pass without its node");
       before = step;
-      std::uint32_t second = 0;
-      if (has_second_word(step)) {
-        ensure(at < end, "work log: a pixel ends between the two words of a step");
-        second = row_.words[at++];
+      const std::size_t words = step_words(word);
+      check_step(step, operand, words > 1 ? word[1] : 0);
+      if (step == Step::mailed_leaf) {
+        check_mask(word + 2, word[1]);
       }
-      check_step(step, operand_of(word), second);
+      at += words;
     }
     ensure(before != Step::cut && before != Step::pass, "work log: a pixel ends in the middle of a voxel");
   }
@@ -50,6 +54,13 @@ class RowChecker {
   /// Whether the database has such a material, and it is an averaged one.
   [[nodiscard]] bool averaged(std::uint32_t material) const {
     return material < log_.materials && material >= log_.materials - log_.voxels;
+  }
+
+  void check_mask(const std::uint32_t* mask, std::uint32_t entries) const {
+    ensure(log_.mailboxes, "work log: tests left out by mailboxes without mailboxes");
+    ensure(entries % 32 == 0 || mask[entries / 32] >> (entries % 32) == 0,
+           "work log: a test beyond the entries that were looked up");
+    ensure(tests_of_mask(mask, entries) < entries, "work log: mailboxes that left nothing out");
   }
 
   void check_step(Step step, std::uint32_t operand, std::uint32_t second) const {
@@ -64,6 +75,12 @@ class RowChecker {
         ensure(log_.topology.nodes[operand].leaf, "work log: a leaf step on a branch");
         ensure(step == Step::leaf || second < log_.topology.nodes[operand].count,
                "work log: a partial leaf that tests all its entries or more");
+        return;
+      case Step::mailed_leaf:
+        ensure(operand < log_.topology.nodes.size(), "work log: a leaf that the tree does not have");
+        ensure(log_.topology.nodes[operand].leaf, "work log: a leaf step on a branch");
+        ensure(second <= log_.topology.nodes[operand].count,
+               "work log: more entries looked up than the leaf has");
         return;
       case Step::cut:
         ensure(operand < log_.topology.nodes.size(), "work log: a cut of a node that the tree does not have");
@@ -137,7 +154,7 @@ LogTotals totals_of(const WorkLog& log) {
   LogTotals totals;
   for (const LogRow& row : log.rows) {
     totals.bytes += (row.words.size() + row.begin.size()) * sizeof(std::uint32_t);
-    for (std::size_t at = 0; at < row.words.size(); ++at) {
+    for (std::size_t at = 0; at < row.words.size(); at += step_words(row.words.data() + at)) {
       const std::uint32_t word = row.words[at];
       switch (step_of(word)) {
         case Step::branch:
@@ -146,10 +163,17 @@ LogTotals totals_of(const WorkLog& log) {
         case Step::leaf:
           ++totals.leaves;
           totals.tests += log.topology.nodes[operand_of(word)].count;
+          totals.lookups += log.mailboxes ? log.topology.nodes[operand_of(word)].count : 0;
           break;
         case Step::partial_leaf:
           ++totals.leaves;
-          totals.tests += row.words[++at];
+          totals.tests += row.words[at + 1];
+          totals.lookups += log.mailboxes ? row.words[at + 1] : 0;
+          break;
+        case Step::mailed_leaf:
+          ++totals.leaves;
+          totals.tests += tests_of_mask(row.words.data() + at + 2, row.words[at + 1]);
+          totals.lookups += row.words[at + 1];
           break;
         case Step::ray:
           ++totals.rays[operand_of(word) & 3U];
@@ -162,7 +186,6 @@ LogTotals totals_of(const WorkLog& log) {
           break;
         case Step::texel:
           ++totals.texels;
-          ++at;
           break;
         case Step::cut:
           ++totals.cuts;

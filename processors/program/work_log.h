@@ -2,10 +2,12 @@
 //
 // A pixel is a run of 32-bit words: step kind in the top 4 bits, operand in the lower 28. A leaf's tests
 // are not written: they follow from the leaf (every entry is tested, in list order), except when an
-// occlusion query ended early, which partial_leaf records with its count in a second word. Words are
-// kept per image row, so rows are recorded on any number of host threads and give the same bytes.
+// occlusion query ended early, which partial_leaf records with its count in a second word, and when mailboxes
+// left tests out, which mailed_leaf records with a bit for each entry. Words are kept per image row, so rows
+// are recorded on any number of host threads and give the same bytes.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -13,6 +15,7 @@
 
 #include "accel/quadric_shape.h"
 #include "accel/topology.h"
+#include "accel/traversal.h"
 
 namespace marti::processors {
 
@@ -35,6 +38,9 @@ enum class Step : std::uint32_t {
                  ///< the shade of its averaged material follows.
   pass,          ///< operand: material. The averaged material of a node was read, but too little of the node is
                  ///< covered to take it as a voxel; its branch, leaf or partial_leaf follows.
+  mailed_leaf,   ///< operand: node; second word: how many of its entries were looked up in the mailboxes;
+                 ///< then one bit for each of them, from the lowest bit of the first word on: was it tested?
+                 ///< The last word's other bits are 0. At least one was not.
 };
 
 inline constexpr unsigned operand_bits = 28;
@@ -45,9 +51,29 @@ inline constexpr std::uint32_t max_operand = (1U << operand_bits) - 1U;
 }
 [[nodiscard]] constexpr Step step_of(std::uint32_t word) { return static_cast<Step>(word >> operand_bits); }
 [[nodiscard]] constexpr std::uint32_t operand_of(std::uint32_t word) { return word & max_operand; }
-/// True for the steps that are followed by a second, raw word.
-[[nodiscard]] constexpr bool has_second_word(Step step) {
-  return step == Step::partial_leaf || step == Step::texel;
+/// Words of bits for so many entries.
+[[nodiscard]] constexpr std::uint32_t mask_words(std::uint32_t entries) {
+  return entries / 32 + (entries % 32 != 0 ? 1 : 0);
+}
+/// How many words the step that begins at `word` has, with those that follow it raw.
+[[nodiscard]] constexpr std::size_t step_words(const std::uint32_t* word) {
+  switch (step_of(*word)) {
+    case Step::partial_leaf:
+    case Step::texel:
+      return 2;
+    case Step::mailed_leaf:
+      return std::size_t{2} + mask_words(word[1]);
+    default:
+      return 1;
+  }
+}
+/// The tests of a mailed_leaf: bits set in its mask.
+[[nodiscard]] constexpr std::uint32_t tests_of_mask(const std::uint32_t* mask, std::uint32_t entries) {
+  std::uint32_t tests = 0;
+  for (std::uint32_t i = 0; i < mask_words(entries); ++i) {
+    tests += static_cast<std::uint32_t>(std::popcount(mask[i]));
+  }
+  return tests;
 }
 
 /// One image row: the words of its pixels from left to right. Pixel x is words[begin[x] .. begin[x + 1]).
@@ -62,6 +88,7 @@ struct LogTotals {
   std::uint64_t branches = 0;
   std::uint64_t leaves = 0;
   std::uint64_t tests = 0;
+  std::uint64_t lookups = 0;  ///< of mailboxes; 0 without
   std::uint64_t shades = 0;
   std::uint64_t lights = 0;
   std::uint64_t texels = 0;
@@ -78,6 +105,8 @@ struct LogTotals {
 
 /// A whole frame's log with the tree it refers to. Immutable once recorded; shared read-only by replays.
 struct WorkLog {
+  accel::Traversal traversal = accel::Traversal::octree;  ///< the walk that made it
+  bool mailboxes = false;  ///< every entry of a leaf's list was looked up before it was tested or not
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   accel::Topology topology;

@@ -51,6 +51,50 @@ void write(const fs::path& file, const std::string& text) { std::ofstream(file, 
 
 const std::string small = " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
 
+TEST(Command, StudyOfOperationsWritesItsTables) {
+  const TemporaryDirectory directory;
+  const Outcome outcome =
+      marti("study operations -o " + quoted(directory.path() / "study") + small + " --set image.max_depth=2");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  for (const char* word : {"bsp, push-point", "grid, octree's cells", "per unit length", "HERO"}) {
+    EXPECT_NE(outcome.output.find(word), std::string::npos) << word;
+  }
+  const std::string operations = read(directory.path() / "study" / "operations.csv");
+  EXPECT_EQ(operations.find("walk,mailboxes,nodes,entries,step,steps_per_ray,add,"), 0U);
+  EXPECT_NE(operations.find("\n\"grid, density\",1,"), std::string::npos);
+  EXPECT_NE(read(directory.path() / "study" / "unit_length.csv").find("\n8,128,grid,1.5,"),
+            std::string::npos);
+  EXPECT_EQ(marti("study").status, 2);
+  EXPECT_EQ(marti("study operations --set structure.bsp_walk=push_point").status, 2) << "not used";
+}
+
+// Every walk, and mailboxes, on the same machine: the same image, other times.
+TEST(Command, WalksAndMailboxesChangeTimesAndNoImage) {
+  const TemporaryDirectory directory;
+  const fs::path config = directory.path() / "walks.toml";
+  write(config, "[machine]\nnodes = 4\n");
+  const auto run = [&](const std::string& options) {
+    const Outcome outcome = marti("run " + quoted(config) + small + " --json" + options);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return nlohmann::json::parse(outcome.output);
+  };
+  const auto plain = run(" --set structure.kind=bsp");
+  const auto push = run(" --set structure.kind=bsp --set structure.bsp_walk=push_point");
+  const auto mailed = run(" --set structure.kind=bsp --set structure.mailboxes=true");
+  const auto matched = run(" --set structure.kind=grid --set structure.grid_resolution=octree_cells");
+  for (const auto& other : {push, mailed, matched}) {
+    EXPECT_EQ(other["image"]["hit_hash"], plain["image"]["hit_hash"]);
+    EXPECT_NE(other["machine"]["frame_time_ps"], plain["machine"]["frame_time_ps"]);
+  }
+  EXPECT_EQ(push["structure"]["traversal"], "bsp, push-point");
+  EXPECT_EQ(push["work_log"]["leaves"], plain["work_log"]["leaves"]);
+  EXPECT_GT(push["work_log"]["branches"], plain["work_log"]["branches"]);
+  EXPECT_EQ(mailed["work_log"]["lookups"], plain["work_log"]["tests"]);
+  EXPECT_LT(mailed["work_log"]["tests"], plain["work_log"]["tests"]);
+  EXPECT_EQ(mailed["machine"]["steps"]["lookups"], mailed["work_log"]["lookups"]);
+  EXPECT_EQ(matched["structure"]["notes"].size(), 1U);
+}
+
 TEST(Command, EveryShippedConfigurationRuns) {
   int configurations = 0;
   for (const auto& entry : fs::directory_iterator(fs::path(MARTI_SOURCE) / "configs")) {

@@ -97,6 +97,9 @@ TEST_P(ClosedMesh, LeaksNoRay) {
   const auto triangles = std::make_shared<const accel::TriangleSet>(all);
   const auto octree = accel::make_structure("octree", triangles);
   const auto bsp = accel::make_structure("bsp", triangles);
+  accel::StructureOptions options;
+  options.bsp.walk = accel::BspWalk::push_point;
+  const auto push_point = accel::make_structure("bsp", triangles, options);
   const auto grid = accel::make_structure("grid", triangles);
   Random random(41);
   std::uint64_t leaks = 0;
@@ -107,7 +110,7 @@ TEST_P(ClosedMesh, LeaksNoRay) {
     const glm::dvec3 a = vertices[face[random.below(3)]];
     const glm::dvec3 b = k % 3 == 0 ? a : vertices[face[random.below(3)]];
     ray.direction = a + random.unit() * (b - a) - ray.origin;
-    for (const accel::Structure* structure : {octree.get(), bsp.get(), grid.get()}) {
+    for (const accel::Structure* structure : {octree.get(), bsp.get(), push_point.get(), grid.get()}) {
       leaks += structure->closest(ray).found() && structure->occluded(ray) ? 0U : 1U;
     }
   }

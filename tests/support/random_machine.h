@@ -50,6 +50,8 @@ inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::
   processors::WorkLog log;
   log.width = width;
   log.height = height;
+  log.traversal = static_cast<accel::Traversal>(pick(random, 0, accel::traversals - 1));
+  log.mailboxes = pick(random, 0, 1) == 1;
   log.primitives = 50;
   const bool curved = pick(random, 0, 1) == 1;
   for (std::int64_t left = curved ? pick(random, 1, 40) : 0; left > 0; --left) {
@@ -84,6 +86,13 @@ inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::
             row.words.push_back(make_word(Step::leaf, leaf));
             break;
           case 6:
+            if (log.mailboxes && log.topology.nodes[leaf].count > 0) {
+              // A bit for each entry looked up, at least one of them not set.
+              const auto read = static_cast<std::uint32_t>(pick(random, 1, log.topology.nodes[leaf].count));
+              row.words.push_back(make_word(Step::mailed_leaf, leaf));
+              row.words.push_back(read);
+              row.words.push_back(static_cast<std::uint32_t>(pick(random, 0, (1 << read) - 2)));
+            }
             if (log.topology.nodes[leaf].count > 1) {
               row.words.push_back(make_word(Step::partial_leaf, leaf));
               row.words.push_back(

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
+#include <set>
 #include <vector>
 
 #include "accel/octree.h"
@@ -85,7 +87,145 @@ TEST(Bsp, WalksFrontToBackThroughTheLeavesOnTheRay) {
   EXPECT_GT(check_walks(bsp, boxes_of(bsp), 2), 20000U);
 }
 
-TEST(Bsp, CountingChangesNothing) { check_counting(Bsp::build(set_of(hostile_soup(0.0, 8)), {5, 9})); }
+BspOptions pushing(std::uint32_t max_objects, std::uint32_t max_level) {
+  BspOptions options;
+  options.max_objects = max_objects;
+  options.max_level = max_level;
+  options.walk = accel::BspWalk::push_point;
+  return options;
+}
+
+TEST(Bsp, CountingChangesNothing) {
+  check_counting(Bsp::build(set_of(hostile_soup(0.0, 8)), {5, 9}));
+  check_counting(Bsp::build(set_of(hostile_soup(0.0, 8)), pushing(5, 9)));
+}
+
+/// The leaves of a walk in order, after checking that each was found by a path from the root.
+std::vector<std::uint32_t> leaves_of(const Bsp& bsp, const Recorder& recorder) {
+  std::vector<std::uint32_t> leaves;
+  bool at_root = true;
+  std::uint32_t parent = 0;
+  for (const Recorder::Visit& visit : recorder.visits) {
+    if (at_root) {
+      EXPECT_EQ(visit.node, 0U);
+    } else {
+      const TopologyNode& node = bsp.topology().nodes[parent];
+      EXPECT_TRUE(visit.node == node.first || visit.node == node.first + 1);
+    }
+    parent = visit.node;
+    at_root = visit.leaf;
+    if (visit.leaf) {
+      leaves.push_back(visit.node);
+    }
+  }
+  EXPECT_TRUE(at_root) << "the walk ended on its way";
+  return leaves;
+}
+
+// Every leaf that the ray crosses for longer than rounding can move it, in order, from the root each time,
+// and none twice.
+TEST(Bsp, PushedPointsFindTheLeavesOnTheRay) {
+  const Bsp bsp = Bsp::build(set_of(hostile_soup(0.0, 4)), pushing(3, 5));
+  const std::vector<scenes::Bounds> boxes = boxes_of(bsp);
+  RayMaker maker(bsp.triangles(), bsp.bounds(), 6);
+  const double margin = 8.0 * bsp.delta();
+  std::uint64_t visited = 0;
+  for (int k = 0; k < 6000 && !::testing::Test::HasFailure(); ++k) {
+    const accel::Ray ray = maker.make(all_aims[static_cast<std::size_t>(k) % 6]);
+    Recorder recorder;
+    const accel::Hit hit = bsp.closest(ray, recorder);
+    const std::vector<std::uint32_t> leaves = leaves_of(bsp, recorder);
+    visited += leaves.size();
+    const std::set<std::uint32_t> met(leaves.begin(), leaves.end());
+    ASSERT_EQ(met.size(), leaves.size()) << "a leaf was visited twice";
+    long double last_in = -std::numeric_limits<long double>::infinity();
+    for (const std::uint32_t leaf : leaves) {
+      const Inside exact = inside(ray, boxes[leaf], -margin);
+      if (exact.in < exact.out) {
+        ASSERT_GE(exact.in, last_in) << "not front to back";
+        last_in = exact.in;
+      }
+    }
+    for (std::uint32_t n = 0; n < boxes.size(); ++n) {
+      const Inside on = inside(ray, boxes[n], -margin);
+      if (bsp.topology().nodes[n].leaf && on.in < on.out && (!hit.found() || on.in < hit.t)) {
+        ASSERT_TRUE(met.contains(n)) << "a leaf on the ray was left out";
+      }
+    }
+  }
+  EXPECT_GT(visited, 20000U);
+}
+
+// Both walks meet the same leaves, but for those that a ray only touches.
+TEST(Bsp, BothWalksVisitTheSameLeaves) {
+  const auto triangles = set_of(hostile_soup(0.0, 4));
+  const Bsp recursive = Bsp::build(triangles, {3, 6});
+  const Bsp pushed = Bsp::build(triangles, pushing(3, 6));
+  RayMaker maker(*triangles, recursive.bounds(), 16);
+  std::uint64_t leaves = 0;
+  std::uint64_t different = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const accel::Ray ray = maker.make(Aim::random);
+    Recorder a;
+    Recorder b;
+    static_cast<void>(recursive.closest(ray, a));
+    static_cast<void>(pushed.closest(ray, b));
+    std::erase_if(a.visits, [](const Recorder::Visit& visit) { return !visit.leaf; });
+    std::erase_if(b.visits, [](const Recorder::Visit& visit) { return !visit.leaf; });
+    leaves += a.visits.size();
+    different += a.visits == b.visits ? 0U : 1U;
+  }
+  EXPECT_GT(leaves, 100000U);
+  EXPECT_LE(different, 20U);
+}
+
+// The paper's statement for a step, and what this walk does beside it (bsp_push.h says why).
+TEST(Bsp, ALeafIsLeftBySixDivisionsSevenAdditionsAndFiveComparisons) {
+  struct Marks {
+    std::vector<accel::OperationCounts> at_leaf;
+    accel::OperationCounts descent;
+    std::uint64_t branches = 0;
+    bool in_descent = false;
+    accel::OperationCounts mark;
+    void branch(std::uint32_t /*node*/) {
+      if (in_descent) {
+        descent += accel::operation_counts() - mark;
+      } else if (!at_leaf.empty()) {
+        at_leaf.back() = accel::operation_counts() - at_leaf.back();
+      }
+      ++branches;
+      in_descent = true;
+      mark = accel::operation_counts();
+    }
+    void leaf(std::uint32_t /*node*/, std::uint32_t /*tests*/, std::uint32_t /*entries*/) {
+      descent += accel::operation_counts() - mark;
+      in_descent = false;
+      at_leaf.push_back(accel::operation_counts());
+    }
+  };
+  // Points list where they are and are never hit, so that leaves have tests but no hits: leave those out.
+  std::vector<TriangleCorners> points;
+  for (const double x : {0.0, 1.0}) {
+    for (const double y : {0.0, 1.0}) {
+      for (const double z : {0.0, 1.0}) {
+        points.push_back(corners({x, y, z}, {x, y, z}, {x, y, z}));
+      }
+    }
+  }
+  const Bsp bsp = Bsp::build(set_of(points), pushing(1, 2));
+  Marks marks;
+  const accel::Ray ray{{-0.5, 0.1, 0.2}, {1.0, 0.35, 0.29}};
+  ASSERT_FALSE(bsp.closest<accel::Counted>(ray, marks).found());
+  ASSERT_GE(marks.at_leaf.size(), 3U);
+  marks.at_leaf.pop_back();  // the walk's end
+  for (const accel::OperationCounts& step : marks.at_leaf) {
+    EXPECT_EQ(step.divide, 6U);
+    EXPECT_EQ(step.add, 7U + 2U) << "the paper's, and two coordinates of the point";
+    EXPECT_EQ(step.compare, 5U + 1U + 2U) << "the paper's, the end of the walk, two bounds of the point";
+    EXPECT_EQ(step.multiply, 2U);
+    EXPECT_EQ(step.square_root, 0U);
+  }
+}
 
 // Where both trees split all they can, three levels of one are a level of the other, list for list.
 TEST(Bsp, ThreeLevelsMakeOneOfTheOctree) {

@@ -42,6 +42,10 @@ struct Recorder {
   void leaf(std::uint32_t node, std::uint32_t tests, std::uint32_t entries) {
     visits.push_back({node, tests, entries, true});
   }
+  void mailed_leaf(std::uint32_t node, std::uint32_t read, std::uint32_t entries,
+                   const std::uint32_t* /*tested*/) {
+    visits.push_back({node, read, entries, true});
+  }
 };
 
 /// Where a ray is inside a box enlarged by `margin`, in long double; empty when in > out.

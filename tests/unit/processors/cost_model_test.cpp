@@ -27,39 +27,74 @@ void expect_close(const char* step, const OperationMix& measured, const Operatio
   close("integer", measured.integer, table.integer);
 }
 
-MeasuredMixes measure(const scenes::Scene& scene) {
+struct Walk {
+  accel::Traversal traversal;
+  const char* kind;
+  accel::BspWalk bsp;
+};
+constexpr Walk octree_walk{accel::Traversal::octree, "octree", accel::BspWalk::recursive};
+
+MeasuredMixes measure(const scenes::Scene& scene, const Walk& walk = octree_walk, std::uint32_t side = 128) {
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
   accel::StructureOptions options;
-  options.octree.max_objects = 9;
-  options.octree.max_level = 12;
-  const auto structure = accel::make_structure("octree", triangles, options);
+  options.octree.max_objects = options.bsp.max_objects = 9;
+  options.octree.max_level = options.bsp.max_level = 12;
+  options.bsp.walk = walk.bsp;
+  const auto structure = accel::make_structure(walk.kind, triangles, options);
+  EXPECT_EQ(accel::traversal_of(*structure), walk.traversal);
   return measure_operation_mixes(scene, *triangles, *structure,
-                                 {.width = 128, .height = 128, .max_depth = 2});
+                                 {.width = side, .height = side, .max_depth = 2});
 }
 
-TEST(OperationMixes, TheTableIsWhatTheProgramDoes) {
-  const OperationMixes& table = operation_mixes();
-  const MeasuredMixes teapot = measure(scenes::make_procedural("teapot:12"));
-  expect_close("camera ray", teapot.mixes.ray[0], table.ray[0]);
-  expect_close("shadow ray", teapot.mixes.ray[1], table.ray[1]);
-  expect_close("reflected ray", teapot.mixes.ray[2], table.ray[2]);
-  expect_close("branch", teapot.mixes.branch, table.branch);
-  expect_close("test", teapot.mixes.test, table.test);
-  expect_close("shade", teapot.mixes.shade, table.shade);
-  expect_close("light", teapot.mixes.light, table.light);
-  EXPECT_EQ(teapot.mixes.leaf, table.leaf);
+void expect_walk_close(const OperationMixes& measured, const OperationMixes& table) {
+  expect_close("camera ray", measured.ray[0], table.ray[0]);
+  expect_close("shadow ray", measured.ray[1], table.ray[1]);
+  expect_close("reflected ray", measured.ray[2], table.ray[2]);
+  expect_close("branch", measured.branch, table.branch);
+  expect_close("leaf", measured.leaf, table.leaf);
+  expect_close("test", measured.test, table.test);
+}
+
+class WalkMixes : public ::testing::TestWithParam<Walk> {};
+
+TEST_P(WalkMixes, TheTableIsWhatTheProgramDoes) {
+  const Walk& walk = GetParam();
+  const OperationMixes& table = operation_mixes(walk.traversal);
+  const bool brute = walk.traversal == accel::Traversal::none;
+  const MeasuredMixes teapot =
+      measure(scenes::make_procedural(brute ? "teapot:4" : "teapot:12"), walk, brute ? 32 : 128);
+  expect_walk_close(teapot.mixes, table);
+  if (!brute) {
+    expect_close("shade", teapot.mixes.shade, table.shade);
+    expect_close("light", teapot.mixes.light, table.light);
+  }
   EXPECT_EQ(teapot.mixes.pixel, table.pixel);
 
+  const MeasuredMixes gears =
+      measure(scenes::make_procedural(brute ? "gears:1" : "gears:2"), walk, brute ? 16 : 128);
+  if (!brute) {
+    ASSERT_GT(gears.steps.rays[3], 0U);
+  }
+  if (gears.steps.rays[3] > 0) {
+    expect_close("refracted ray", gears.mixes.ray[3], table.ray[3]);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(
+    OperationMixes, WalkMixes,
+    ::testing::Values(octree_walk, Walk{accel::Traversal::bsp_recursive, "bsp", accel::BspWalk::recursive},
+                      Walk{accel::Traversal::bsp_push_point, "bsp", accel::BspWalk::push_point},
+                      Walk{accel::Traversal::grid, "grid", accel::BspWalk::recursive},
+                      Walk{accel::Traversal::none, "none", accel::BspWalk::recursive}),
+    [](const auto& tested) { return std::to_string(tested.index); });
+
+TEST(OperationMixes, CurvedPrimitivesHaveTestsOfTheirOwn) {
+  const OperationMixes& table = operation_mixes(accel::Traversal::octree);
   const MeasuredMixes lattice = measure(scenes::make_procedural("lattice:4"));
   ASSERT_GT(lattice.tests[1], 10000U);
   ASSERT_GT(lattice.tests[2], 10000U);
   EXPECT_EQ(lattice.tests[0] + lattice.tests[1] + lattice.tests[2], lattice.steps.tests);
   expect_close("sphere test", lattice.mixes.sphere_test, table.sphere_test);
   expect_close("cone test", lattice.mixes.cone_test, table.cone_test);
-
-  const MeasuredMixes gears = measure(scenes::make_procedural("gears:2"));
-  ASSERT_GT(gears.steps.rays[3], 0U);
-  expect_close("refracted ray", gears.mixes.ray[3], table.ray[3]);
 }
 
 TEST(OperationMixes, TexelsAreStraightLineCode) {
@@ -72,7 +107,7 @@ TEST(OperationMixes, TexelsAreStraightLineCode) {
   texture.texels = {{1, 2, 3, 255}};
   const MeasuredMixes measured = measure(scene);
   ASSERT_GT(measured.steps.texels, 0U);
-  EXPECT_EQ(measured.mixes.texel, operation_mixes().texel);
+  EXPECT_EQ(measured.mixes.texel, operation_mixes(accel::Traversal::octree).texel);
 }
 
 // The counting render takes exactly the steps of the real one.
@@ -113,7 +148,7 @@ TEST(CostModel, AnUnknownPresetIsRefusedWithTheNamesOfTheOthers) {
 }
 
 TEST(CostModel, OneKindOfOperationIsPricedByItsColumn) {
-  const OperationMixes& mixes = operation_mixes();
+  const OperationMixes& mixes = operation_mixes(accel::Traversal::octree);
   const RecordWords words;
   OperationCycles only{0, 0, 0, 0, 0, 0, 0, 0};
   only.add = 1000;  // thousandths become cycles
@@ -131,6 +166,34 @@ TEST(CostModel, OneKindOfOperationIsPricedByItsColumn) {
   EXPECT_EQ(steps.light, mixes.light.divide);
   only.divide = 1;  // halves up
   EXPECT_EQ(step_cycles(only, words).test, (mixes.test.divide + 500) / 1000);
+}
+
+TEST(CostModel, EachTraversalIsPricedByItsOwnSteps) {
+  OperationCycles only{0, 0, 0, 0, 0, 0, 0, 0};
+  only.divide = 1000;
+  for (std::size_t t = 0; t < accel::traversals; ++t) {
+    const auto traversal = static_cast<accel::Traversal>(t);
+    const StepCycles steps = step_cycles(only, {}, traversal);
+    EXPECT_EQ(steps.leaf, operation_mixes(traversal).leaf.divide);
+    EXPECT_EQ(steps.ray[0], operation_mixes(traversal).ray[0].divide);
+    EXPECT_EQ(steps.leaf > 0, traversal == accel::Traversal::bsp_push_point) << "it alone divides at a leaf";
+  }
+  only = {0, 0, 0, 0, 0, 0, 0, 0};
+  only.compare = 1000;
+  EXPECT_EQ(step_cycles(only, {}, accel::Traversal::grid).leaf,
+            operation_mixes(accel::Traversal::grid).leaf.compare);
+  EXPECT_GT(step_cycles(only, {}, accel::Traversal::grid).leaf, 2000);
+}
+
+TEST(CostModel, MailboxesTakeTheEntryFromTheTest) {
+  const OperationCycles cycles{0, 0, 0, 0, 0, 10, 3, 7};
+  const RecordWords words{.node = 2, .entry = 1, .primitive = 12, .material = 16, .texel = 1, .pixel = 4};
+  const StepCycles with = step_cycles(cycles, words, accel::Traversal::grid, true);
+  const StepCycles without = step_cycles(cycles, words, accel::Traversal::grid, false);
+  EXPECT_EQ(with.lookup, (10 + 3) + (10 + 3) + 10) << "the entry, its mailbox, the comparison";
+  EXPECT_EQ(with.test + (10 + 3), without.test + 7) << "no entry to fetch, a number to leave";
+  EXPECT_EQ(without.lookup, 0);
+  EXPECT_EQ(with.leaf, without.leaf);
 }
 
 TEST(CostModel, RecordsCostTheirWords) {

@@ -44,6 +44,32 @@ TEST(WorkLog, CountsEveryKindOfStep) {
   EXPECT_EQ(totals.all_steps(), 14U);
 }
 
+TEST(WorkLog, CountsWhatMailboxesLeftOut) {
+  WorkLog log = small_log({make_word(Step::ray, 0), make_word(Step::leaf, 1), make_word(Step::mailed_leaf, 1),
+                           3, 0b101, make_word(Step::leaf, 2), make_word(Step::partial_leaf, 1), 1,
+                           make_word(Step::mailed_leaf, 1), 2, 0});
+  EXPECT_THROW(validate(log), sim::InternalError) << "without mailboxes";
+  log.mailboxes = true;
+  EXPECT_NO_THROW(validate(log));
+  const LogTotals totals = totals_of(log);
+  EXPECT_EQ(totals.leaves, 5U);
+  EXPECT_EQ(totals.tests, 3U + 2 + 0 + 1 + 0);
+  EXPECT_EQ(totals.lookups, 3U + 3 + 0 + 1 + 2);
+  for (const std::vector<std::uint32_t>& words : std::vector<std::vector<std::uint32_t>>{
+           {make_word(Step::mailed_leaf, 1)},           // half a step
+           {make_word(Step::mailed_leaf, 1), 3},        // no bits
+           {make_word(Step::mailed_leaf, 1), 3, 7},     // nothing left out
+           {make_word(Step::mailed_leaf, 1), 3, 9},     // a bit too many
+           {make_word(Step::mailed_leaf, 1), 4, 1},     // more than the leaf has
+           {make_word(Step::mailed_leaf, 0), 1, 0},     // a branch
+           {make_word(Step::mailed_leaf, 1), 33, 1},    // half the bits
+           {make_word(Step::mailed_leaf, 9), 1, 0}}) {  // no such node
+    WorkLog bad = small_log(words);
+    bad.mailboxes = true;
+    EXPECT_THROW(validate(bad), sim::InternalError);
+  }
+}
+
 TEST(WorkLog, RefusesOperandsThatNameNothing) {
   const std::vector<std::vector<std::uint32_t>> bad = {
       {make_word(Step::branch, 3)},           // no such node

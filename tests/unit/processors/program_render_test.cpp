@@ -5,7 +5,9 @@
 #include <limits>
 
 #include <gtest/gtest.h>
+
 #include <rapidcheck/gtest.h>
+#include <set>
 
 #include "processors/program/recorder.h"
 #include "processors/program/tracer.h"
@@ -71,7 +73,7 @@ void check_order(std::span<const std::uint32_t> words, const RenderOptions& opti
   std::uint32_t bounce = 0;  // of the ray whose point is being shaded
   bool shadow = false;       // the ray at hand is a shadow ray
   bool shaded = true;        // no shade since the last camera, reflected or refracted ray
-  for (std::size_t at = 0; at < words.size(); ++at) {
+  for (std::size_t at = 0; at < words.size(); at += step_words(words.data() + at)) {
     const Step step = step_of(words[at]);
     const std::uint32_t operand = operand_of(words[at]);
     if (step == Step::ray) {
@@ -94,7 +96,6 @@ void check_order(std::span<const std::uint32_t> words, const RenderOptions& opti
     } else if (step == Step::partial_leaf) {
       EXPECT_TRUE(shadow) << "only occlusion ends early";
     }
-    at += has_second_word(step) ? 1U : 0U;
   }
 }
 
@@ -268,6 +269,59 @@ TEST(Render, AnEmptySceneIsAllBackground) {
       EXPECT_EQ(pixel, glm::vec3(0.25F, 0.5F, 0.75F));
     }
     EXPECT_NO_THROW(validate(*frame.log));
+  }
+}
+
+// The same image and rays; of the tests exactly those that repeat one of the same ray are left out.
+TEST(Render, MailboxesLeaveOutWhatTheRayHasTested) {
+  for (const std::string_view kind : {"octree", "bsp", "grid", "none"}) {
+    const test::Built built(scenes::make_procedural("gears:1"), kind);
+    RenderOptions options{.width = 40, .height = 40, .max_depth = 3, .record = true};
+    const Frame without = built.render(options);
+    options.mailboxes = true;
+    const Frame with = built.render(options, 3);
+    EXPECT_EQ(with.hit_hash, without.hit_hash) << kind;
+    EXPECT_EQ(with.image.pixels, without.image.pixels) << kind;
+    EXPECT_FALSE(without.log->mailboxes);
+    ASSERT_TRUE(with.log->mailboxes);
+    validate(*with.log);
+    options.record = false;
+    EXPECT_EQ(built.render(options).hit_hash, without.hit_hash) << kind;
+
+    const WorkLog& log = *with.log;
+    std::uint64_t lookups = 0;
+    for (const LogRow& row : log.rows) {
+      std::set<std::uint32_t> tested;
+      for (std::size_t at = 0; at < row.words.size(); at += step_words(row.words.data() + at)) {
+        const std::uint32_t* const word = row.words.data() + at;
+        const Step step = step_of(*word);
+        if (step == Step::ray) {
+          tested.clear();
+        }
+        if (step != Step::leaf && step != Step::partial_leaf && step != Step::mailed_leaf) {
+          continue;
+        }
+        const accel::TopologyNode& leaf = log.topology.nodes[operand_of(*word)];
+        const std::uint32_t read = step == Step::leaf ? leaf.count : word[1];
+        lookups += read;
+        for (std::uint32_t k = 0; k < read; ++k) {
+          const bool is_tested = step != Step::mailed_leaf || ((word[2 + k / 32] >> (k % 32)) & 1U) != 0;
+          ASSERT_EQ(tested.insert(log.topology.entries[leaf.first + k]).second, is_tested) << kind;
+        }
+      }
+    }
+    const LogTotals totals = totals_of(log);
+    const LogTotals all = totals_of(*without.log);
+    EXPECT_EQ(totals.lookups, lookups);
+    EXPECT_EQ(totals.lookups, all.tests);
+    EXPECT_EQ(all.lookups, 0U);
+    EXPECT_EQ(totals.leaves, all.leaves);
+    EXPECT_EQ(totals.branches, all.branches);
+    if (kind == "none") {
+      EXPECT_EQ(totals.tests, all.tests);
+    } else {
+      EXPECT_LT(totals.tests, all.tests);
+    }
   }
 }
 

@@ -83,16 +83,18 @@ RC_GTEST_PROP(Replay, ScalingEveryDurationScalesEveryTimeExactly, (std::uint64_t
 std::array<std::int64_t, 3> tests_by_kind(const WorkLog& log) {
   std::array<std::int64_t, 3> tests{};
   for (const LogRow& row : log.rows) {
-    for (std::size_t i = 0; i < row.words.size(); ++i) {
+    for (std::size_t i = 0; i < row.words.size(); i += step_words(row.words.data() + i)) {
       const Step step = step_of(row.words[i]);
-      if (step == Step::leaf || step == Step::partial_leaf) {
-        const accel::TopologyNode& node = log.topology.nodes[operand_of(row.words[i])];
-        const std::uint32_t count = step == Step::leaf ? node.count : row.words[i + 1];
-        for (std::uint32_t t = 0; t < count; ++t) {
+      if (step != Step::leaf && step != Step::partial_leaf && step != Step::mailed_leaf) {
+        continue;
+      }
+      const accel::TopologyNode& node = log.topology.nodes[operand_of(row.words[i])];
+      const std::uint32_t read = step == Step::leaf ? node.count : row.words[i + 1];
+      for (std::uint32_t t = 0; t < read; ++t) {
+        if (step != Step::mailed_leaf || ((row.words[i + 2 + t / 32] >> (t % 32)) & 1U) != 0) {
           ++tests[static_cast<std::size_t>(log.kind_of(log.topology.entries[node.first + t]))];
         }
       }
-      i += has_second_word(step) ? 1 : 0;
     }
   }
   return tests;
@@ -100,15 +102,16 @@ std::array<std::int64_t, 3> tests_by_kind(const WorkLog& log) {
 
 // Compute time of the whole log, from the counts of the log itself.
 sim::Ticks compute_of(const WorkLog& log, const MachineConfig& machine) {
-  const StepTicks ticks = step_ticks(machine);
+  const StepTicks ticks = step_ticks(machine, log);
   const LogTotals totals = totals_of(log);
   const std::array<std::int64_t, 3> tests = tests_by_kind(log);
   const auto n = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
-  sim::Ticks sum = ticks.branch * n(totals.branches) + ticks.leaf * n(totals.leaves) + ticks.test * tests[0] +
-                   ticks.sphere_test * tests[1] + ticks.cone_test * tests[2] +
-                   ticks.shade * n(totals.shades) + ticks.light * n(totals.lights) +
-                   ticks.texel * n(totals.texels) + ticks.cut * n(totals.cuts) +
-                   ticks.pass * n(totals.passes) + ticks.pixel * std::int64_t{log.width} * log.height;
+  sim::Ticks sum = ticks.branch * n(totals.branches) + ticks.leaf * n(totals.leaves) +
+                   ticks.lookup * n(totals.lookups) + ticks.test * tests[0] + ticks.sphere_test * tests[1] +
+                   ticks.cone_test * tests[2] + ticks.shade * n(totals.shades) +
+                   ticks.light * n(totals.lights) + ticks.texel * n(totals.texels) +
+                   ticks.cut * n(totals.cuts) + ticks.pass * n(totals.passes) +
+                   ticks.pixel * std::int64_t{log.width} * log.height;
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
     sum += ticks.ray[kind] * n(totals.rays[kind]);
   }
@@ -176,6 +179,7 @@ TEST(Replay, CountsDoNotDependOnTheMachine) {
     EXPECT_EQ(static_cast<std::uint64_t>(steps.tests), totals.tests);
     EXPECT_EQ(steps.sphere_tests, tests[1]);
     EXPECT_EQ(steps.cone_tests, tests[2]);
+    EXPECT_EQ(static_cast<std::uint64_t>(steps.lookups), totals.lookups);
     EXPECT_EQ(static_cast<std::uint64_t>(steps.texels), totals.texels);
     EXPECT_GE(result.references().references(),
               static_cast<std::int64_t>(totals.branches + totals.leaves + totals.tests));
@@ -206,7 +210,7 @@ TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
     }
   };
   for (const LogRow& row : log.rows) {
-    for (std::size_t i = 0; i < row.words.size(); ++i) {
+    for (std::size_t i = 0; i < row.words.size(); i += step_words(row.words.data() + i)) {
       const std::uint32_t operand = operand_of(row.words[i]);
       const accel::TopologyNode node =
           operand < log.topology.nodes.size() ? log.topology.nodes[operand] : accel::TopologyNode{};
@@ -225,6 +229,16 @@ TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
           }
           break;
         }
+        case Step::mailed_leaf: {
+          touch(memory::RecordKind::node, operand, 1);
+          touch(memory::RecordKind::list, node.first, row.words[i + 1]);
+          for (std::uint32_t t = 0; t < row.words[i + 1]; ++t) {
+            if ((row.words[i + 2 + t / 32] >> (t % 32) & 1U) != 0) {
+              touch(memory::RecordKind::primitive, log.topology.entries[node.first + t], 1);
+            }
+          }
+          break;
+        }
         case Step::shade:
         case Step::pass:
           touch(memory::RecordKind::material, operand, 1);
@@ -236,7 +250,6 @@ TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
         case Step::light:
           break;
       }
-      i += has_second_word(step_of(row.words[i])) ? 1 : 0;
     }
   }
   EXPECT_EQ(one.references().all_misses(), static_cast<std::int64_t>(lines.size()));

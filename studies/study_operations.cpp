@@ -1,0 +1,90 @@
+#include "studies/study_operations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "accel/structure.h"
+#include "scenes/open.h"
+#include "studies/frame_keys.h"
+#include "studies/image_file.h"
+#include "studies/machine_keys.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr std::uint32_t longest_side = 64;
+// Tests that brute force may be asked for.
+constexpr double most_tests = 0x1p26;
+constexpr std::uint32_t deepest = 8;
+constexpr std::uint32_t unit_length_rays = 4000;
+
+/// A structure to be counted.
+struct Plan {
+  const char* name;
+  const char* kind;
+  accel::BspWalk walk = accel::BspWalk::recursive;
+  accel::GridMatch match = accel::GridMatch::density;
+};
+constexpr std::array<Plan, 7> plans{{
+    {"octree", "octree"},
+    {"bsp, recursive", "bsp"},
+    {"bsp, push-point", "bsp", accel::BspWalk::push_point},
+    {"grid, density", "grid"},
+    {"grid, octree's nodes", "grid", accel::BspWalk::recursive, accel::GridMatch::octree_nodes},
+    {"grid, octree's cells", "grid", accel::BspWalk::recursive, accel::GridMatch::octree_cells},
+    {"none", "none"},
+}};
+
+processors::RenderOptions shrink(processors::RenderOptions options, double side) {
+  const std::uint32_t longer = std::max(options.width, options.height);
+  const double factor = std::min(1.0, side / longer);
+  options.width = std::max(1U, static_cast<std::uint32_t>(options.width * factor));
+  options.height = std::max(1U, static_cast<std::uint32_t>(options.height * factor));
+  return options;
+}
+
+}  // namespace
+
+OperationsStudy study_operations(sim::Config& config) {
+  const FrameConfig frame = read_frame(config);
+  static_cast<void>(read_machine(config));
+  config.refuse_unused();
+  const scenes::Scene scene = scenes::open_scene(frame.scene, frame.open, decode_image);
+  const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
+
+  OperationsStudy study;
+  study.scene = frame.scene;
+  study.max_depth = frame.render.max_depth;
+  study.max_objects = frame.structure_options.octree.max_objects;
+  study.max_level = frame.structure_options.octree.max_level;
+  for (const Plan& plan : plans) {
+    accel::StructureOptions options = frame.structure_options;
+    options.bsp.walk = plan.walk;
+    options.grid_match = plan.match;
+    const auto structure = accel::make_structure(plan.kind, triangles, options);
+    double side = longest_side;
+    if (structure->kind() == "none") {
+      side = std::min(side, std::max(4.0, std::sqrt(most_tests / std::max(1U, triangles->size()))));
+    }
+    processors::RenderOptions render = shrink(frame.render, side);
+    for (const bool mailboxes : {false, true}) {
+      render.mailboxes = mailboxes;
+      if (mailboxes && structure->kind() == "none") {
+        break;  // one list has nothing twice
+      }
+      WalkRow& row = study.walks.emplace_back();
+      row.name = plan.name;
+      row.mailboxes = mailboxes;
+      row.side = std::max(render.width, render.height);
+      row.nodes = structure->topology().nodes.size();
+      row.entries = structure->topology().entries.size();
+      row.measured = processors::measure_operation_mixes(scene, *triangles, *structure, render);
+    }
+  }
+  study.lengths = measure_unit_lengths(deepest, unit_length_rays);
+  return study;
+}
+
+}  // namespace marti::studies

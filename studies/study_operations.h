@@ -1,0 +1,45 @@
+// `marti study operations`: what each walk takes, operation by operation, beside what the paper says.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "processors/operation_mix.h"
+#include "sim/config.h"
+#include "studies/unit_length.h"
+
+namespace marti::studies {
+
+/// One walk over the configured scene, counted.
+struct WalkRow {
+  std::string name;
+  bool mailboxes = false;
+  std::uint32_t side = 0;  ///< pixels of the image's longer side
+  std::uint64_t nodes = 0;
+  std::uint64_t entries = 0;
+  processors::MeasuredMixes measured;
+};
+
+struct OperationsStudy {
+  std::string scene;
+  std::uint32_t max_depth = 0;
+  std::uint32_t max_objects = 0;
+  std::uint32_t max_level = 0;
+  std::vector<WalkRow> walks;
+  std::vector<UnitLengthRow> lengths;
+};
+
+/// Counts all walks over the configured scene. Its image is made small, because counting is slow and brute
+/// force slower. Every structure is built whatever structure.kind is. Reads a configuration of `marti run`,
+/// whose machine it checks and does not use. Throws UserError as that does.
+[[nodiscard]] OperationsStudy study_operations(sim::Config& config);
+
+/// The tables, for people.
+[[nodiscard]] std::string text_of(const OperationsStudy& study);
+/// One line for each walk and kind of step: walk, mailboxes, step, steps_per_ray, then operations a step.
+[[nodiscard]] std::string operations_csv(const OperationsStudy& study);
+/// One line for each depth, per unit length.
+[[nodiscard]] std::string unit_length_csv(const OperationsStudy& study);
+
+}  // namespace marti::studies
