@@ -172,14 +172,15 @@ std::vector<accel::TriangleCorners> corners_of(std::string_view scene) {
 }
 
 // 9 classes x 5,000 rays x 3 scenes x 4 parts and 9 x 5,000 x 8 soups x 2 parts are 1,260,000 rays.
-class SceneContract : public ::testing::TestWithParam<std::tuple<const char*, unsigned>> {};
+class SceneContract : public ::testing::TestWithParam<std::tuple<std::string, unsigned>> {};
 
 TEST_P(SceneContract, SameHitsAsBruteForce) {
   const auto [scene, part] = GetParam();
   EXPECT_GT(compare_with_brute_force(corners_of(scene), 5000, 7 + part), 15000U);
 }
 INSTANTIATE_TEST_SUITE_P(Structures, SceneContract,
-                         ::testing::Combine(::testing::Values("teapot:3", "gears:1", "tetra:4"),
+                         ::testing::Combine(::testing::Values(std::string("teapot:3"), std::string("gears:1"),
+                                                              std::string("tetra:4")),
                                             ::testing::Range(0U, 4U)),
                          [](const auto& tested) {
                            std::string name = std::get<0>(tested.param);
