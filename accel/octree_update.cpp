@@ -16,8 +16,6 @@ namespace marti::accel {
 
 namespace {
 
-constexpr std::uint32_t no_node = 0xffffffffU;
-
 /// Goes through both trees level by level, and decides in the order of the nodes as the fresh build does.
 class Updater {
  public:
@@ -60,10 +58,11 @@ class Updater {
   /// A node of the new tree.
   struct Item {
     std::array<std::uint32_t, 3> at{};
-    std::uint32_t old = no_node;  ///< the old tree's node of the same cell; none below a node sorted in full
-    Range left;                   ///< in Level::ids: the moved triangles it listed; none without `old`
-    Range come;                   ///< the moved triangles it lists; without `old`: all it lists
-    std::size_t count = 0;        ///< triangles it lists
+    std::uint32_t old =
+        no_old_node;        ///< the old tree's node of the same cell; none below a node sorted in full
+    Range left;             ///< in Level::ids: the moved triangles it listed; none without `old`
+    Range come;             ///< the moved triangles it lists; without `old`: all it lists
+    std::size_t count = 0;  ///< triangles it lists
 
     [[nodiscard]] bool touched() const { return left.first != left.second || come.first != come.second; }
   };
@@ -86,6 +85,7 @@ class Updater {
                         out_.build.topology.nodes.size() < most_octree_nodes;
       out_.build.cut = out_.build.cut || (full && !room);
       out_.build.topology.work[number_].listed = static_cast<std::uint32_t>(item.count);
+      out_.was[number_] = item.old;
       if (full && room && divide(item)) {
         ++statistics.branches;
       } else {
@@ -98,7 +98,7 @@ class Updater {
 
   /// Makes a branch of it if that separates anything.
   bool divide(const Item& item) {
-    if (item.old != no_node) {
+    if (item.old != no_old_node) {
       const bool was_branch = !old_.nodes[item.old].leaf;
       if (!item.touched() && (was_branch || !before_.cut())) {
         // What it was, it is. A full leaf of a tree that was not cut could not be separated.
@@ -177,7 +177,7 @@ class Updater {
 
   void leave(const Item& item, LevelStatistics& statistics) {
     NodeUpdate& done = out_.nodes[number_];
-    if (item.old == no_node) {
+    if (item.old == no_old_node) {
       done = NodeUpdate::made;
     } else if (!old_.nodes[item.old].leaf) {
       done = NodeUpdate::collapsed;
@@ -200,7 +200,7 @@ class Updater {
   /// All the item lists, ascending. Valid until the next call.
   std::span<const std::uint32_t> list_of(const Item& item) {
     const auto come = std::span(level_.ids).subspan(item.come.first, item.come.second - item.come.first);
-    if (item.old == no_node) {
+    if (item.old == no_old_node) {
       return come;
     }
     if (old_.nodes[item.old].leaf && !item.touched()) {
@@ -278,6 +278,7 @@ class Updater {
     out_.build.topology.work.emplace_back();
     out_.nodes.push_back(NodeUpdate::kept);
     out_.work.emplace_back();
+    out_.was.push_back(no_old_node);
   }
 
   const Octree& before_;

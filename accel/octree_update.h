@@ -31,6 +31,8 @@ enum class NodeUpdate : std::uint8_t {
   made,       ///< a leaf below a branch that was split
 };
 
+inline constexpr std::uint32_t no_old_node = 0xffffffffU;
+
 struct OctreeUpdate {
   /// The tree of a fresh build: topology (its work as of a fresh build), levels, cut.
   OctreeBuild build;
@@ -40,6 +42,9 @@ struct OctreeUpdate {
   /// moved one counts once for where it was and once for where it is), for which `overlaps` tests were run.
   /// {0, 0} for what was kept; a leaf has some where it turned out that splitting it separates nothing.
   std::vector<SplitWork> work;
+  /// [node of the new tree] The old tree's node of the same cell, whose state it goes on with; no_old_node
+  /// below a node that was split.
+  std::vector<std::uint32_t> was;
   std::uint32_t moved = 0;  ///< triangles that moved
 
   /// Whether the node's own record or list must be made anew. Where altered nodes return to P instead of

@@ -72,10 +72,20 @@ void check_report(const Octree& before, const Octree& fresh, const OctreeUpdate&
   const accel::Topology& topology = fresh.topology();
   RC_ASSERT(update.nodes.size() == topology.nodes.size());
   RC_ASSERT(update.work.size() == topology.nodes.size());
+  RC_ASSERT(update.was.size() == topology.nodes.size());
+  RC_ASSERT(update.was[0] == 0U);
   for (std::uint32_t n = 0; n < topology.nodes.size(); ++n) {
     const accel::TopologyNode& node = topology.nodes[n];
     const accel::SplitWork& done = update.work[n];
     const accel::SplitWork& fresh_work = topology.work[n];
+    // The same cells: the children of what goes on go on with its children, in their order.
+    const std::uint32_t was = update.was[n];
+    RC_ASSERT((update.nodes[n] == NodeUpdate::made) == (was == accel::no_old_node && node.leaf));
+    const bool goes_on = !node.leaf && update.nodes[n] != NodeUpdate::split;
+    for (std::uint32_t child = 0; !node.leaf && child < 8; ++child) {
+      RC_ASSERT(update.was[node.first + child] ==
+                (goes_on ? before.topology().nodes[was].first + child : accel::no_old_node));
+    }
     switch (update.nodes[n]) {
       case NodeUpdate::kept:
         RC_ASSERT(done.listed == 0U);
