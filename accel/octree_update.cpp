@@ -16,6 +16,21 @@ namespace marti::accel {
 
 namespace {
 
+/// By bits, so that a zero that changed its sign counts.
+template <std::size_t N>
+bool same_bits(const std::array<double, N>& a, const std::array<double, N>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+  });
+}
+
+/// In what the rest of a shape is made of.
+bool same_shape(const QuadricShape& a, const QuadricShape& b) {
+  return a.kind == b.kind && same_bits(a.center, b.center) && same_bits(a.axis, b.axis) &&
+         same_bits(std::array{a.half, a.radius, a.slope}, std::array{b.half, b.radius, b.slope}) &&
+         same_bits(a.lo, b.lo) && same_bits(a.hi, b.hi);
+}
+
 /// Goes through both trees level by level, and decides in the order of the nodes as the fresh build does.
 class Updater {
  public:
@@ -301,20 +316,19 @@ class Updater {
 
 }  // namespace
 
-std::vector<std::uint32_t> moved_triangles(const TriangleSet& before, const TriangleSet& after) {
-  if (before.size() != after.size()) {
-    throw sim::UserError("octree update: there are " + std::to_string(after.size()) +
-                         " triangles, there were " + std::to_string(before.size()) +
+std::vector<std::uint32_t> moved_primitives(const TriangleSet& before, const TriangleSet& after) {
+  if (before.size() != after.size() || before.triangles() != after.triangles()) {
+    throw sim::UserError("octree update: there are " + std::to_string(after.triangles()) + " triangles and " +
+                         std::to_string(after.size() - after.triangles()) + " other primitives, there were " +
+                         std::to_string(before.triangles()) + " and " +
+                         std::to_string(before.size() - before.triangles()) +
                          "; only their places may change");
   }
   std::vector<std::uint32_t> moved;
   for (std::uint32_t id = 0; id < after.size(); ++id) {
-    // By bits, so that a zero that changed its sign counts.
-    for (std::size_t c = 0; c < 9; ++c) {
-      if (std::bit_cast<std::uint64_t>(before[id][c]) != std::bit_cast<std::uint64_t>(after[id][c])) {
-        moved.push_back(id);
-        break;
-      }
+    if (id < after.triangles() ? !same_bits(before[id], after[id])
+                               : !same_shape(before.quadric(id), after.quadric(id))) {
+      moved.push_back(id);
     }
   }
   return moved;
@@ -322,7 +336,7 @@ std::vector<std::uint32_t> moved_triangles(const TriangleSet& before, const Tria
 
 OctreeUpdate update_octree(const Octree& before, const TriangleSet& after) {
   OctreeUpdate update;
-  const std::vector<std::uint32_t> moved = moved_triangles(before.triangles(), after);
+  const std::vector<std::uint32_t> moved = moved_primitives(before.triangles(), after);
   const RootFrame frame = make_frame(after, before.options().enclose);
   if (frame.box.lo != before.frame().box.lo || frame.box.hi != before.frame().box.hi ||
       frame.delta != before.frame().delta) {

@@ -1,5 +1,6 @@
 // Rebuilding an octree in part: from the tree over triangles before some of them moved to the tree over them
-// afterwards, which is the one a fresh build gives, node by node and entry by entry.
+// afterwards, which is the one a fresh build gives, node by node and entry by entry. What is said of
+// triangles here holds for all primitives.
 //
 // Nodes that list no moved triangle, neither before nor after, are kept with all that is below them. In a
 // node that stays a branch only the moved triangles are sorted anew: what its other triangles do is known. A
@@ -52,9 +53,10 @@ struct OctreeUpdate {
   [[nodiscard]] bool altered(std::uint32_t node) const { return nodes[node] != NodeUpdate::kept; }
 };
 
-/// The ids of the triangles that differ in any bit of their corners, ascending. Throws UserError when there
-/// are not as many triangles after as before.
-[[nodiscard]] std::vector<std::uint32_t> moved_triangles(const TriangleSet& before, const TriangleSet& after);
+/// The ids of the primitives that differ in any bit of their coordinates, ascending. Throws UserError when
+/// there are not as many of triangles or of others after as before.
+[[nodiscard]] std::vector<std::uint32_t> moved_primitives(const TriangleSet& before,
+                                                          const TriangleSet& after);
 
 /// The update of `before` to the triangles `after`, built by the same options. Throws UserError when there
 /// are not as many triangles as before, and when the root box is another one (OctreeOptions::enclose, given
