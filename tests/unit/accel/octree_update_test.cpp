@@ -153,7 +153,7 @@ RC_GTEST_PROP(OctreeUpdating, GivesTheTreeOfAFreshBuild, ()) {
     now = some_moved(now, *rc::gen::arbitrary<std::uint64_t>(), share);
     std::uint32_t others = 0;
     for (scenes::Quadric& quadric : quadrics) {
-      if (share >= 0.3 || &quadric - quadrics.data() < 30 * share) {
+      if (share > 0.0 && (share >= 0.3 || others == 0)) {
         quadric.radius = quadric.radius > 0.2 ? 0.1 : quadric.radius + 0.01;
         ++others;
       }
