@@ -71,16 +71,16 @@ class ChildSorter {
       inside = inside && lo >= planes_[0][a] && hi <= planes_[2][a];
     }
     std::uint32_t left = plain(candidates);
-    if (inside && std::has_single_bit(left)) {
+    if (inside && (left & (left - 1)) == 0) {
       return left;
     }
-    tests += static_cast<std::uint32_t>(std::popcount(left));
     std::uint32_t met = 0;
     for (; left != 0; left &= left - 1) {
       const auto child = static_cast<std::uint32_t>(std::countr_zero(left));
       const std::size_t x = child & 1U;
       const std::size_t y = (child >> 1U) & 1U;
       const std::size_t z = child >> 2U;
+      ++tests;
       if (overlaps<Real>(set, id, {center_[x][0], center_[y][1], center_[z][2]},
                          {half_[x][0], half_[y][1], half_[z][2]})) {
         met |= 1U << child;

@@ -16,7 +16,20 @@ namespace marti::accel {
 
 namespace {
 
-constexpr std::uint32_t no_node = 0xffffffffU;
+/// By bits, so that a zero that changed its sign counts.
+template <std::size_t N>
+bool same_bits(const std::array<double, N>& a, const std::array<double, N>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+  });
+}
+
+/// In what the rest of a shape is made of.
+bool same_shape(const QuadricShape& a, const QuadricShape& b) {
+  return a.kind == b.kind && same_bits(a.center, b.center) && same_bits(a.axis, b.axis) &&
+         same_bits(std::array{a.half, a.radius, a.slope}, std::array{b.half, b.radius, b.slope}) &&
+         same_bits(a.lo, b.lo) && same_bits(a.hi, b.hi);
+}
 
 /// Goes through both trees level by level, and decides in the order of the nodes as the fresh build does.
 class Updater {
@@ -60,10 +73,11 @@ class Updater {
   /// A node of the new tree.
   struct Item {
     std::array<std::uint32_t, 3> at{};
-    std::uint32_t old = no_node;  ///< the old tree's node of the same cell; none below a node sorted in full
-    Range left;                   ///< in Level::ids: the moved triangles it listed; none without `old`
-    Range come;                   ///< the moved triangles it lists; without `old`: all it lists
-    std::size_t count = 0;        ///< triangles it lists
+    std::uint32_t old =
+        no_old_node;        ///< the old tree's node of the same cell; none below a node sorted in full
+    Range left;             ///< in Level::ids: the moved triangles it listed; none without `old`
+    Range come;             ///< the moved triangles it lists; without `old`: all it lists
+    std::size_t count = 0;  ///< triangles it lists
 
     [[nodiscard]] bool touched() const { return left.first != left.second || come.first != come.second; }
   };
@@ -86,6 +100,7 @@ class Updater {
                         out_.build.topology.nodes.size() < most_octree_nodes;
       out_.build.cut = out_.build.cut || (full && !room);
       out_.build.topology.work[number_].listed = static_cast<std::uint32_t>(item.count);
+      out_.was[number_] = item.old;
       if (full && room && divide(item)) {
         ++statistics.branches;
       } else {
@@ -98,7 +113,7 @@ class Updater {
 
   /// Makes a branch of it if that separates anything.
   bool divide(const Item& item) {
-    if (item.old != no_node) {
+    if (item.old != no_old_node) {
       const bool was_branch = !old_.nodes[item.old].leaf;
       if (!item.touched() && (was_branch || !before_.cut())) {
         // What it was, it is. A full leaf of a tree that was not cut could not be separated.
@@ -177,7 +192,7 @@ class Updater {
 
   void leave(const Item& item, LevelStatistics& statistics) {
     NodeUpdate& done = out_.nodes[number_];
-    if (item.old == no_node) {
+    if (item.old == no_old_node) {
       done = NodeUpdate::made;
     } else if (!old_.nodes[item.old].leaf) {
       done = NodeUpdate::collapsed;
@@ -200,7 +215,7 @@ class Updater {
   /// All the item lists, ascending. Valid until the next call.
   std::span<const std::uint32_t> list_of(const Item& item) {
     const auto come = std::span(level_.ids).subspan(item.come.first, item.come.second - item.come.first);
-    if (item.old == no_node) {
+    if (item.old == no_old_node) {
       return come;
     }
     if (old_.nodes[item.old].leaf && !item.touched()) {
@@ -278,6 +293,7 @@ class Updater {
     out_.build.topology.work.emplace_back();
     out_.nodes.push_back(NodeUpdate::kept);
     out_.work.emplace_back();
+    out_.was.push_back(no_old_node);
   }
 
   const Octree& before_;
@@ -300,20 +316,19 @@ class Updater {
 
 }  // namespace
 
-std::vector<std::uint32_t> moved_triangles(const TriangleSet& before, const TriangleSet& after) {
-  if (before.size() != after.size()) {
-    throw sim::UserError("octree update: there are " + std::to_string(after.size()) +
-                         " triangles, there were " + std::to_string(before.size()) +
+std::vector<std::uint32_t> moved_primitives(const TriangleSet& before, const TriangleSet& after) {
+  if (before.size() != after.size() || before.triangles() != after.triangles()) {
+    throw sim::UserError("octree update: there are " + std::to_string(after.triangles()) + " triangles and " +
+                         std::to_string(after.size() - after.triangles()) + " other primitives, there were " +
+                         std::to_string(before.triangles()) + " and " +
+                         std::to_string(before.size() - before.triangles()) +
                          "; only their places may change");
   }
   std::vector<std::uint32_t> moved;
   for (std::uint32_t id = 0; id < after.size(); ++id) {
-    // By bits, so that a zero that changed its sign counts.
-    for (std::size_t c = 0; c < 9; ++c) {
-      if (std::bit_cast<std::uint64_t>(before[id][c]) != std::bit_cast<std::uint64_t>(after[id][c])) {
-        moved.push_back(id);
-        break;
-      }
+    if (id < after.triangles() ? !same_bits(before[id], after[id])
+                               : !same_shape(before.quadric(id), after.quadric(id))) {
+      moved.push_back(id);
     }
   }
   return moved;
@@ -321,7 +336,7 @@ std::vector<std::uint32_t> moved_triangles(const TriangleSet& before, const Tria
 
 OctreeUpdate update_octree(const Octree& before, const TriangleSet& after) {
   OctreeUpdate update;
-  const std::vector<std::uint32_t> moved = moved_triangles(before.triangles(), after);
+  const std::vector<std::uint32_t> moved = moved_primitives(before.triangles(), after);
   const RootFrame frame = make_frame(after, before.options().enclose);
   if (frame.box.lo != before.frame().box.lo || frame.box.hi != before.frame().box.hi ||
       frame.delta != before.frame().delta) {

@@ -1,5 +1,6 @@
 // Rebuilding an octree in part: from the tree over triangles before some of them moved to the tree over them
-// afterwards, which is the one a fresh build gives, node by node and entry by entry.
+// afterwards, which is the one a fresh build gives, node by node and entry by entry. What is said of
+// triangles here holds for all primitives.
 //
 // Nodes that list no moved triangle, neither before nor after, are kept with all that is below them. In a
 // node that stays a branch only the moved triangles are sorted anew: what its other triangles do is known. A
@@ -31,6 +32,8 @@ enum class NodeUpdate : std::uint8_t {
   made,       ///< a leaf below a branch that was split
 };
 
+inline constexpr std::uint32_t no_old_node = 0xffffffffU;
+
 struct OctreeUpdate {
   /// The tree of a fresh build: topology (its work as of a fresh build), levels, cut.
   OctreeBuild build;
@@ -40,6 +43,9 @@ struct OctreeUpdate {
   /// moved one counts once for where it was and once for where it is), for which `overlaps` tests were run.
   /// {0, 0} for what was kept; a leaf has some where it turned out that splitting it separates nothing.
   std::vector<SplitWork> work;
+  /// [node of the new tree] The old tree's node of the same cell, whose state it goes on with; no_old_node
+  /// below a node that was split.
+  std::vector<std::uint32_t> was;
   std::uint32_t moved = 0;  ///< triangles that moved
 
   /// Whether the node's own record or list must be made anew. Where altered nodes return to P instead of
@@ -47,9 +53,10 @@ struct OctreeUpdate {
   [[nodiscard]] bool altered(std::uint32_t node) const { return nodes[node] != NodeUpdate::kept; }
 };
 
-/// The ids of the triangles that differ in any bit of their corners, ascending. Throws UserError when there
-/// are not as many triangles after as before.
-[[nodiscard]] std::vector<std::uint32_t> moved_triangles(const TriangleSet& before, const TriangleSet& after);
+/// The ids of the primitives that differ in any bit of their coordinates, ascending. Throws UserError when
+/// there are not as many of triangles or of others after as before.
+[[nodiscard]] std::vector<std::uint32_t> moved_primitives(const TriangleSet& before,
+                                                          const TriangleSet& after);
 
 /// The update of `before` to the triangles `after`, built by the same options. Throws UserError when there
 /// are not as many triangles as before, and when the root box is another one (OctreeOptions::enclose, given

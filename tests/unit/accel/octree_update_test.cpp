@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <set>
@@ -67,15 +68,40 @@ std::vector<TriangleCorners> some_moved(std::vector<TriangleCorners> soup, std::
   return soup;
 }
 
+std::vector<scenes::Quadric> some_quadrics(std::uint64_t seed) {
+  Random random(seed);
+  std::vector<scenes::Quadric> quadrics;
+  for (int k = 0; k < 30; ++k) {
+    scenes::Quadric& quadric = quadrics.emplace_back();
+    quadric.kind = std::array{scenes::QuadricKind::sphere, scenes::QuadricKind::cylinder,
+                              scenes::QuadricKind::cone}[random.below(3)];
+    quadric.base = random.in_box(glm::dvec3(-1.2), glm::dvec3(1.2));
+    quadric.tip = quadric.base + 0.3 * random.direction();
+    quadric.radius = random.between(0.01, 0.3);
+    quadric.tip_radius = random.between(0.0, 0.2);
+  }
+  return quadrics;
+}
+
 /// What every update owes, beside the tree.
 void check_report(const Octree& before, const Octree& fresh, const OctreeUpdate& update) {
   const accel::Topology& topology = fresh.topology();
   RC_ASSERT(update.nodes.size() == topology.nodes.size());
   RC_ASSERT(update.work.size() == topology.nodes.size());
+  RC_ASSERT(update.was.size() == topology.nodes.size());
+  RC_ASSERT(update.was[0] == 0U);
   for (std::uint32_t n = 0; n < topology.nodes.size(); ++n) {
     const accel::TopologyNode& node = topology.nodes[n];
     const accel::SplitWork& done = update.work[n];
     const accel::SplitWork& fresh_work = topology.work[n];
+    // The same cells: the children of what goes on go on with its children, in their order.
+    const std::uint32_t was = update.was[n];
+    RC_ASSERT((update.nodes[n] == NodeUpdate::made) == (was == accel::no_old_node && node.leaf));
+    const bool goes_on = !node.leaf && update.nodes[n] != NodeUpdate::split;
+    for (std::uint32_t child = 0; !node.leaf && child < 8; ++child) {
+      RC_ASSERT(update.was[node.first + child] ==
+                (goes_on ? before.topology().nodes[was].first + child : accel::no_old_node));
+    }
     switch (update.nodes[n]) {
       case NodeUpdate::kept:
         RC_ASSERT(done.listed == 0U);
@@ -114,19 +140,32 @@ RC_GTEST_PROP(OctreeUpdating, GivesTheTreeOfAFreshBuild, ()) {
   options.max_entries =
       *rc::gen::element<std::uint64_t>(400, 2000, std::uint64_t{1} << 25, std::uint64_t{1} << 25);
   const std::vector<TriangleCorners> soup = hostile_soup(0.0, *rc::gen::arbitrary<std::uint64_t>());
-  Octree tree = Octree::build(set_of(soup), options);
+  // Spheres, cylinders and cones among them, half the time.
+  std::vector<scenes::Quadric> quadrics;
+  if (*rc::gen::arbitrary<bool>()) {
+    quadrics = some_quadrics(1);
+  }
+  Octree tree = Octree::build(std::make_shared<const TriangleSet>(soup, quadrics), options);
   // Several frames, each from the one before.
   std::vector<TriangleCorners> now = soup;
   for (int frame = 0; frame < 3; ++frame) {
     const double share = *rc::gen::element(0.0, 0.003, 0.02, 0.3, 1.0);
     now = some_moved(now, *rc::gen::arbitrary<std::uint64_t>(), share);
-    const auto after = set_of(now);
+    std::uint32_t others = 0;
+    for (scenes::Quadric& quadric : quadrics) {
+      if (share > 0.0 && (share >= 0.3 || others == 0)) {
+        quadric.radius = quadric.radius > 0.2 ? 0.1 : quadric.radius + 0.01;
+        ++others;
+      }
+    }
+    const auto after = std::make_shared<const TriangleSet>(now, quadrics);
     OctreeUpdate update = accel::update_octree(tree, *after);
     const Octree fresh = Octree::build(after, options);
     RC_ASSERT(same_nodes(update.build.topology, fresh.topology()));
     RC_ASSERT(same_work(update.build.topology.work, fresh.topology().work));
     RC_ASSERT(same_levels(update.build.levels, fresh.levels()));
     RC_ASSERT(update.build.unsplit.empty());
+    RC_ASSERT(update.moved >= others);
     RC_ASSERT(fresh.cut() == update.build.cut);
     check_report(tree, fresh, update);
     tree = Octree(after, options, tree.frame(), std::move(update.build));
@@ -172,7 +211,7 @@ TEST(OctreeUpdating, AltersExactlyWhatListsMovedTriangles) {
   const std::vector<TriangleCorners> moved = some_moved(soup, 4, 0.02);
   const Octree tree = Octree::build(set_of(soup), options);
   const auto after = set_of(moved);
-  const std::vector<std::uint32_t> ids = accel::moved_triangles(tree.triangles(), *after);
+  const std::vector<std::uint32_t> ids = accel::moved_primitives(tree.triangles(), *after);
   ASSERT_FALSE(ids.empty());
   const OctreeUpdate update = accel::update_octree(tree, *after);
   const accel::Topology& topology = update.build.topology;
