@@ -141,7 +141,7 @@ TEST(QuadricKernel, AcceptedHitsAreOnTheSurface) {
           ++hits;
           const double away = travelled(shape, ray);
           ASSERT_LE(Oracle(shape, ray).distance(hit.t),
-                    (0x1p-44 + 13 * 0x1p-53) * shape.reach + 9 * 0x1p-53 * away)
+                    (0x1p-46 + 13 * 0x1p-53) * shape.reach + 9 * 0x1p-53 * away)
               << "quadric " << id << ", ray " << k;
         }
       }
