@@ -51,6 +51,8 @@ struct StepCounts {
   std::int64_t shades = 0;
   std::int64_t lights = 0;
   std::int64_t texels = 0;
+  std::int64_t cuts = 0;
+  std::int64_t passes = 0;
   std::int64_t pixels = 0;
 
   static constexpr auto counters() {
@@ -68,6 +70,8 @@ struct StepCounts {
                       C{"shades", "1", "surface points shaded", &StepCounts::shades},
                       C{"lights", "1", "light contributions added", &StepCounts::lights},
                       C{"texels", "1", "texels read", &StepCounts::texels},
+                      C{"cuts", "1", "nodes taken as one voxel", &StepCounts::cuts},
+                      C{"passes", "1", "nodes too little covered for that", &StepCounts::passes},
                       C{"pixels", "1", "pixels finished", &StepCounts::pixels}};
   }
 };

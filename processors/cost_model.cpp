@@ -100,6 +100,8 @@ StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words) 
   steps.shade = price(mixes.shade, cycles, read_record(cycles, words.material));
   steps.light = price(mixes.light, cycles, 0);
   steps.texel = price(mixes.texel, cycles, read_record(cycles, words.texel));
+  steps.cut = price(mixes.cut, cycles, read_record(cycles, words.node));
+  steps.pass = price(mixes.cut, cycles, read_record(cycles, words.material));
   steps.pixel = price(mixes.pixel, cycles, cycles.integer + words.pixel * cycles.store);
   return steps;
 }

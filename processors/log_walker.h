@@ -382,6 +382,15 @@ class LogWalker {
         spend(cursor, ticks_.shade, 1);
         return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::material, operand,
                                input_.layout.record_bytes(memory::RecordKind::material), stop);
+      case Step::cut:
+        ++steps.cuts;
+        spend(cursor, ticks_.cut, 1);
+        return refer_node<RunAhead>(cache, cursor, statistics, operand, stop);
+      case Step::pass:
+        ++steps.passes;
+        spend(cursor, ticks_.pass, 1);
+        return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::material, operand,
+                               input_.layout.record_bytes(memory::RecordKind::material), stop);
       case Step::light:
         ++steps.lights;
         spend(cursor, ticks_.light, 1);

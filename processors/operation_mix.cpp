@@ -155,6 +155,11 @@ constexpr OperationMix texel_sampling{2000, 2000, 0, 0, 0, 11000};
 /// into one word.
 constexpr OperationMix pixel_conversion{0, 3000, 0, 0, 6000, 5000};
 
+/// A small node, by hand from accel/octree_cut.h: its size (an addition, two products, three comparisons),
+/// the nearest triangle's t compared, the covered share (the form's six products and five sums, the area, a
+/// comparison, a root, over the projection, compared), and the voxel's number looked up.
+constexpr OperationMix voxel_cut{6000, 10000, 0, 1000, 6000, 2000};
+
 OperationMix sum(const OperationMix& a, const OperationMix& b) {
   return {a.add + b.add,         a.multiply + b.multiply, a.divide + b.divide, a.square_root + b.square_root,
           a.compare + b.compare, a.integer + b.integer};
@@ -229,6 +234,7 @@ const OperationMixes& operation_mixes() {
       .light = {41000, 68957, 2000, 1000, 6000, 0},
       .texel = {6000, 11000, 0, 0, 0, 11000},
       .pixel = pixel_conversion,
+      .cut = voxel_cut,
   };
   return table;
 }

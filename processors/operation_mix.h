@@ -40,6 +40,7 @@ struct OperationMix {
 ///   light   one light's contribution
 ///   texel   interpolating the texture's coordinates, finding the texel, applying it
 ///   pixel   converting the finished colour
+///   cut     with the voxel cut: finding that a node is small and which share of it is covered
 /// Fetching a record's words and computing its address is priced from the layout, beside these.
 struct OperationMixes {
   std::array<OperationMix, ray_kinds> ray{};
@@ -52,6 +53,7 @@ struct OperationMixes {
   OperationMix light;
   OperationMix texel;
   OperationMix pixel;
+  OperationMix cut;
 };
 
 /// The table that step_cycles prices. Measured on teapot:12 in an octree (max_objects 9, max_level 12),

@@ -29,6 +29,8 @@ StepTicks step_ticks(const MachineConfig& config) {
   ticks.cone_test = config.clock.cycles(cycles.cone_test);
   ticks.shade = config.clock.cycles(cycles.shade);
   ticks.light = config.clock.cycles(cycles.light);
+  ticks.cut = config.clock.cycles(cycles.cut);
+  ticks.pass = config.clock.cycles(cycles.pass);
   ticks.texel = config.clock.cycles(cycles.texel);
   ticks.pixel = config.clock.cycles(cycles.pixel);
   ticks.hit = config.clock.cycles(config.cache.hit_cycles);
@@ -46,6 +48,8 @@ void add_counted_time(const StepTicks& ticks, const StepCounts& steps, std::int6
   }
   add(Activity::traversal, ticks.branch, steps.branches);
   add(Activity::traversal, ticks.leaf, steps.leaves);
+  add(Activity::traversal, ticks.cut, steps.cuts);
+  add(Activity::traversal, ticks.pass, steps.passes);
   add(Activity::intersection, ticks.test, steps.tests - steps.sphere_tests - steps.cone_tests);
   add(Activity::intersection, ticks.sphere_test, steps.sphere_tests);
   add(Activity::intersection, ticks.cone_test, steps.cone_tests);

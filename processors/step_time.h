@@ -16,6 +16,8 @@ struct StepTicks {
   sim::Ticks shade = 0;
   sim::Ticks light = 0;
   sim::Ticks texel = 0;
+  sim::Ticks cut = 0;
+  sim::Ticks pass = 0;
   sim::Ticks pixel = 0;
   sim::Ticks hit = 0;
 };

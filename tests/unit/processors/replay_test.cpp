@@ -107,7 +107,8 @@ sim::Ticks compute_of(const WorkLog& log, const MachineConfig& machine) {
   sim::Ticks sum = ticks.branch * n(totals.branches) + ticks.leaf * n(totals.leaves) + ticks.test * tests[0] +
                    ticks.sphere_test * tests[1] + ticks.cone_test * tests[2] +
                    ticks.shade * n(totals.shades) + ticks.light * n(totals.lights) +
-                   ticks.texel * n(totals.texels) + ticks.pixel * std::int64_t{log.width} * log.height;
+                   ticks.texel * n(totals.texels) + ticks.cut * n(totals.cuts) +
+                   ticks.pass * n(totals.passes) + ticks.pixel * std::int64_t{log.width} * log.height;
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
     sum += ticks.ray[kind] * n(totals.rays[kind]);
   }
@@ -211,6 +212,7 @@ TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
           operand < log.topology.nodes.size() ? log.topology.nodes[operand] : accel::TopologyNode{};
       switch (step_of(row.words[i])) {
         case Step::branch:
+        case Step::cut:
           touch(memory::RecordKind::node, operand, 1);
           break;
         case Step::leaf:
@@ -224,6 +226,7 @@ TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
           break;
         }
         case Step::shade:
+        case Step::pass:
           touch(memory::RecordKind::material, operand, 1);
           break;
         case Step::texel:
