@@ -300,20 +300,41 @@ class Updater {
 
 }  // namespace
 
+namespace {
+
+// By bits, so that a zero that changed its sign counts.
+template <std::size_t N>
+bool same_bits(const std::array<double, N>& a, const std::array<double, N>& b) {
+  return std::bit_cast<std::array<std::uint64_t, N>>(a) == std::bit_cast<std::array<std::uint64_t, N>>(b);
+}
+
+/// The numbers all others of a shape follow from.
+std::array<double, 10> numbers_of(const QuadricShape& s) {
+  return {s.center[0], s.center[1], s.center[2], s.axis[0], s.axis[1],
+          s.axis[2],   s.half,      s.radius,    s.slope,   s.reach};
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> moved_triangles(const TriangleSet& before, const TriangleSet& after) {
+  if (before.triangles() != after.triangles()) {
+    throw sim::UserError("octree update: there are " + std::to_string(after.triangles()) +
+                         " triangles, there were " + std::to_string(before.triangles()) +
+                         "; only their places may change");
+  }
   if (before.size() != after.size()) {
     throw sim::UserError("octree update: there are " + std::to_string(after.size()) +
-                         " triangles, there were " + std::to_string(before.size()) +
+                         " primitives, there were " + std::to_string(before.size()) +
                          "; only their places may change");
   }
   std::vector<std::uint32_t> moved;
   for (std::uint32_t id = 0; id < after.size(); ++id) {
-    // By bits, so that a zero that changed its sign counts.
-    for (std::size_t c = 0; c < 9; ++c) {
-      if (std::bit_cast<std::uint64_t>(before[id][c]) != std::bit_cast<std::uint64_t>(after[id][c])) {
-        moved.push_back(id);
-        break;
-      }
+    const bool same = id < after.triangles()
+                          ? same_bits(before[id], after[id])
+                          : before.kind(id) == after.kind(id) &&
+                                same_bits(numbers_of(before.quadric(id)), numbers_of(after.quadric(id)));
+    if (!same) {
+      moved.push_back(id);
     }
   }
   return moved;

@@ -10,6 +10,7 @@
 #include "processors/program/quadric_surface.h"
 #include "program_scenes.h"
 #include "scenes/procedural.h"
+#include "sim/error.h"
 
 namespace marti::processors {
 namespace {
@@ -215,6 +216,14 @@ TEST(QuadricSurface, ABallIsLitOnOneSide) {
       EXPECT_GT(lit, 0.0) << x;
     }
   }
+}
+
+// The voxel cut has averages of triangles only and says so.
+TEST(QuadricSurface, TheVoxelCutIsRefused) {
+  const test::Built built(scenes::make_procedural("balls:2"), "octree");
+  EXPECT_THROW(
+      static_cast<void>(built.render({.width = 16, .height = 16, .max_depth = 1, .voxel_cut = 100.0})),
+      sim::UserError);
 }
 
 // Every structure gives the same frame.
