@@ -89,6 +89,7 @@ class CutStructure : public accel::CutOctree {
   CutStructure(const accel::Octree& octree, const VoxelAverages& averages, double threshold)
       : CutOctree(octree, averages.table()), averages_(averages), threshold_(threshold) {}
 
+  [[nodiscard]] const accel::TriangleSet& triangles() const { return octree().triangles(); }
   [[nodiscard]] const VoxelAverages& averages() const { return averages_; }
   [[nodiscard]] double threshold() const { return threshold_; }  ///< in pixels, above 0
 

@@ -66,7 +66,7 @@ TEST(Tessellate, FacetsAreNearTheSurfaceAndFaceOutwards) {
       }
       for (int i = 0; i <= 10; ++i) {
         for (int j = 0; i + j <= 10; ++j) {
-          const double e = excess(quadric, (i * p + j * q + (10 - i - j) * r) / 10.0);
+          const double e = excess(quadric, (1.0 * i * p + 1.0 * j * q + (10.0 - i - j) * r) / 10.0);
           EXPECT_LT(e, 1e-14);
           EXPECT_GT(e, -tolerance * 2.0);
         }
