@@ -35,7 +35,8 @@ struct Approach {
   Real squared;            ///< of the direction
   Real nearest;            ///< parameter of the point nearest to the centre
   Vector<Real> offset;     ///< that point, from the centre
-  Real tolerance;          ///< how far from the surface a hit may be
+  Real rounding;           ///< how far from the surface a good root may be
+  Real tolerance;          ///< how far any accepted one may be
 
   Approach(const RaySetup<Real>& ray, const QuadricShape& shape)
       : center{Real(shape.center[ray.kx]) - ray.origin_x, Real(shape.center[ray.ky]) - ray.origin_y,
@@ -45,7 +46,9 @@ struct Approach {
     squared = ray.shear_x * ray.shear_x + ray.shear_y * ray.shear_y + Real(1.0);
     nearest = (center.x * ray.shear_x + center.y * ray.shear_y + center.z) / squared;
     offset = at(nearest);
-    tolerance = Real(0x1p-44 * shape.reach) + Real(0x1p-51) * (abs(center.x) + abs(center.y) + abs(center.z));
+    const Real away = Real(0x1p-52) * (abs(center.x) + abs(center.y) + abs(center.z));
+    rounding = Real(0x1p-49 * shape.reach) + away;
+    tolerance = Real(0x1p-46 * shape.reach) + (away + away);
   }
 
   /// The point at s, from the primitive's centre.
@@ -53,6 +56,26 @@ struct Approach {
     return {direction.x * s - center.x, direction.y * s - center.y, s - center.z};
   }
 };
+
+/// Improves the root s until its point is within `rounding` of the surface, as long as that helps; then
+/// whether it is within `tolerance` and the cone's ends. surface.place(s) gives a point's signed distance
+/// `excess` beyond the surface and whether it is `within` the ends; surface.rate(place) how fast the excess
+/// grows with s.
+template <class Real, class Surface>
+bool settle(Real& s, const Surface& surface) {
+  using std::abs;
+  auto place = surface.place(s);
+  for (int step = 0; step < 2 && !(abs(place.excess) <= surface.rounding); ++step) {
+    const Real better = s - place.excess / surface.rate(place);
+    const auto next = surface.place(better);
+    if (!(abs(next.excess) < abs(place.excess))) {
+      break;
+    }
+    s = better;
+    place = next;
+  }
+  return abs(place.excess) <= surface.tolerance && surface.within(place);
+}
 
 /// Takes the hit at t when it is the best.
 template <class Real>
@@ -67,16 +90,15 @@ bool offer(Real t, std::uint32_t id, Best<Real>& best) {
   return true;
 }
 
-/// The first of two roots, in order of t, that `settle` confirms and that is not before t_min. `settle` may
-/// improve the root it is given.
-template <class Real, class Settle>
-bool choose(const RaySetup<Real>& ray, Real low, Real high, std::uint32_t id, Best<Real>& best,
-            const Settle& settle) {
+/// The first of two roots, in order of t, that `settle` confirms and that is not before t_min.
+template <class Real, class Surface>
+bool choose(const RaySetup<Real>& ray, Real low, Real high, const Surface& surface, std::uint32_t id,
+            Best<Real>& best) {
   if (ray.scale < Real(0.0)) {
     std::swap(low, high);
   }
   for (Real s : {low, high}) {
-    if (s * ray.scale >= ray.t_min && settle(s)) {
+    if (s * ray.scale >= ray.t_min && settle(s, surface)) {
       const Real t = s * ray.scale;
       if (t >= ray.t_min) {
         return offer(t, id, best);
@@ -85,6 +107,61 @@ bool choose(const RaySetup<Real>& ray, Real low, Real high, std::uint32_t id, Be
   }
   return false;
 }
+
+template <class Real>
+struct SphereSurface {
+  struct Place {
+    Vector<Real> point;
+    Real excess;
+  };
+  const Approach<Real>& approach;
+  Real radius_squared;
+  // The excess is that of the square: | |p|^2 - r^2 | <= tolerance r implies | |p| - r | <= tolerance.
+  Real rounding;
+  Real tolerance;
+
+  [[nodiscard]] Place place(Real s) const {
+    const Vector<Real> point = approach.at(s);
+    return {point, dot(point, point) - radius_squared};
+  }
+  [[nodiscard]] Real rate(const Place& at) const { return Real(2.0) * dot(at.point, approach.direction); }
+  [[nodiscard]] bool within(const Place& /*at*/) const { return true; }
+};
+
+template <class Real>
+struct ConeSurface {
+  struct Place {
+    Vector<Real> out;  ///< from the axis
+    Real distance;
+    Real height;
+    Real excess;
+  };
+  const Approach<Real>& approach;
+  const QuadricShape& shape;
+  const Vector<Real>& axis;
+  const Vector<Real>& across;  ///< the direction's component across the axis
+  Real growth;                 ///< of the radius with s
+  Real rounding;
+  Real tolerance;
+
+  [[nodiscard]] Place place(Real s) const {
+    using std::sqrt;
+    const Vector<Real> point = approach.at(s);
+    const Real height = dot(point, axis);
+    const Vector<Real> out = along(point, axis, -height);
+    const Real distance = sqrt(dot(out, out));
+    const Real radius = Real(shape.radius) + Real(shape.slope) * height;
+    return {out, distance, height, (distance - radius) * Real(shape.cosine)};
+  }
+  [[nodiscard]] Real rate(const Place& at) const {
+    return (dot(at.out, across) / at.distance - growth) * Real(shape.cosine);
+  }
+  /// Whether the nearest point of the cone is between its ends.
+  [[nodiscard]] bool within(const Place& at) const {
+    using std::abs;
+    return abs(at.height + at.excess * Real(shape.slope * shape.cosine)) <= Real(shape.half);
+  }
+};
 
 template <class Real>
 bool intersect_sphere(const RaySetup<Real>& ray, const QuadricShape& shape, std::uint32_t id,
@@ -98,19 +175,10 @@ bool intersect_sphere(const RaySetup<Real>& ray, const QuadricShape& shape, std:
     return false;
   }
   const Real half = sqrt(inside / approach.squared);
-  // | |p|^2 - r^2 | <= tolerance r implies | |p| - r | <= tolerance.
-  const Real limit = approach.tolerance * Real(shape.radius);
-  return choose(ray, approach.nearest - half, approach.nearest + half, id, best, [&](Real& s) {
-    for (int step = 0; step < 3; ++step) {
-      const Vector<Real> point = approach.at(s);
-      const Real excess = dot(point, point) - radius_squared;
-      if (abs(excess) <= limit) {
-        return true;
-      }
-      s = s - excess / (Real(2.0) * dot(point, approach.direction));
-    }
-    return false;
-  });
+  const Real radius(shape.radius);
+  const SphereSurface<Real> surface{approach, radius_squared, approach.rounding * radius,
+                                    approach.tolerance * radius};
+  return choose(ray, approach.nearest - half, approach.nearest + half, surface, id, best);
 }
 
 template <class Real>
@@ -155,21 +223,9 @@ bool intersect_cone(const RaySetup<Real>& ray, const QuadricShape& shape, std::u
     std::swap(low, high);
   }
   const Real start = approach.nearest + moved;
-  const Real foot(shape.slope * shape.cosine * shape.cosine);
-  return choose(ray, start + low, start + high, id, best, [&](Real& s) {
-    for (int step = 0; step < 3; ++step) {
-      const Vector<Real> point = approach.at(s);
-      const Real h = dot(point, axis);
-      const Vector<Real> out = along(point, axis, -h);
-      const Real distance = sqrt(dot(out, out));
-      const Real excess = distance - (radius + slope * h);
-      if (abs(excess) * Real(shape.cosine) <= approach.tolerance) {
-        return abs(h + excess * foot) <= Real(shape.half);
-      }
-      s = s - excess / (dot(out, across) / distance - growth);
-    }
-    return false;
-  });
+  const ConeSurface<Real> surface{approach,          shape, axis, across, growth, approach.rounding,
+                                  approach.tolerance};
+  return choose(ray, start + low, start + high, surface, id, best);
 }
 
 }  // namespace

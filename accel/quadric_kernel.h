@@ -7,17 +7,20 @@
 // chapter 7, 2019). A cone's equation is moved once more, to the point nearest to its axis, and solved by
 // q = -(B + sign(B) sqrt(B^2 - A C)) so that neither root cancels.
 //
-// Then every root is checked, and this is what the structures rely on. With s as it is, the point of the ray
-// is computed afresh, and so is its distance from the surface. A root beyond
-//     2^-44 reach + 4 u L      (u = 2^-53, L the sum of the magnitudes of the centre's offset from the
+// Then every root is checked, and this is what the structures and the tracer rely on. With s as it is, the
+// point of the ray is computed afresh, and so is its distance from the surface. If that is more than the
+// rounding of a good root,
+//     2^-49 reach + 2 u L      (u = 2^-53, L the sum of the magnitudes of the centre's offset from the
 //     origin)
-// is improved by Newton's method, twice at most, and refused if it is still beyond. The point computed errs
-// by less than 5 u of the distance travelled (a rounding each of the offset, e, the product, the sum, and
-// t), and the distance from the surface by a few u of the reach. So of an accepted hit the point of the ray
-// at t lies within
-//     2^-44 reach + 4 u L + 5 u (L + reach) + 8 u reach
+// the root is improved by Newton's method, twice at most and only as long as that helps. It is refused if it
+// is still beyond
+//     2^-46 reach + 4 u L.
+// The point computed errs by less than 5 u of the distance travelled (a rounding each of the offset, e, the
+// product, the sum, and t), and the distance from the surface by a few u of the reach. So of an accepted hit
+// the point of the ray at t lies within
+//     2^-46 reach + 4 u L + 5 u (L + reach) + 8 u reach
 // of the surface: below 2^-42 D for origins within 128 D (half of what octree.h needs), and below
-// 2^-43 D + 24 u L for any origin (far_ray.h has 2^-38 D and 32 u). The height along a cone's axis is
+// 2^-45 D + 24 u L for any origin (far_ray.h has 2^-38 D and 32 u). The height along a cone's axis is
 // checked at the foot of the perpendicular on the cone, so a steep one is hit no farther beyond its ends.
 // No NaN passes the comparisons: what overflows is a miss.
 //

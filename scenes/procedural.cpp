@@ -50,7 +50,7 @@ constexpr std::array<ProceduralScene, 12> registry = {
                     "interlocking rings in a pyramid of n layers before a wall; 5 n (n+1) (2n+1) "
                     "spheres and as many cylinders",
                     {}},
-    ProceduralScene{"shells", 0, 10, 3, "a sea shell; 180 * 2^n + 1 spheres", {}},
+    ProceduralScene{"shells", 0, 10, 1, "a sea shell; 180 * 2^n + 1 spheres", {}},
     ProceduralScene{"sombrero",
                     1,
                     6,

@@ -9,9 +9,10 @@ namespace marti::processors {
 /// The surface at `hit`, the point of a ray at its t, seen along `direction`. The point is moved onto the
 /// surface, along the normal: what is left of its error are the roundings of that, in each coordinate.
 ///
-/// The kernel's equations err by some 16 roundings of lengths up to the shape's reach (quadric_kernel.h): a
-/// ray that starts closer than that outside of the surface may be seen to start inside. The margin of 2^-47
-/// of the reach is four times as much. The outer side is the one away from the centre or axis.
+/// The kernel accepts no hit that is farther than 2^-46 of the shape's reach from the surface, and some 20
+/// roundings (quadric_kernel.h). A ray that leaves outwards from a margin of 2^-45 stays outside of that, and
+/// one that leaves inwards meets it only at the other side. The outer side is the one away from the centre or
+/// axis.
 template <typename Real>
 Surface<Real> quadric_surface(const accel::QuadricShape& shape, const Vec3<Real>& hit,
                               const Vec3<Real>& direction) {
@@ -38,7 +39,7 @@ Surface<Real> quadric_surface(const accel::QuadricShape& shape, const Vec3<Real>
   surface.point = center + offset;
   surface.error = absolute(surface.point) * Real(gamma_bound(1)) +
                   (absolute(on_axis) + absolute(radial)) * Real(gamma_bound(8));
-  surface.margin = Real(0x1p-47 * shape.reach);
+  surface.margin = Real(0x1p-45 * shape.reach);
   surface.outside = dot(surface.geometric, direction) < Real(0.0);
   if (!surface.outside) {
     surface.geometric = -surface.geometric;

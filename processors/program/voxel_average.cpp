@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <tbb/blocked_range.h>
 #include <tbb/info.h>
@@ -11,6 +12,7 @@
 
 #include "accel/voxel_cover.h"
 #include "scenes/texture.h"
+#include "sim/error.h"
 
 namespace marti::processors {
 
@@ -254,6 +256,11 @@ unsigned first_small_level(const scenes::Bounds& root, const scenes::ImagePlane&
 
 VoxelAverages VoxelAverages::build(const scenes::Scene& scene, const accel::Octree& octree,
                                    unsigned first_level, unsigned threads) {
+  if (!scene.quadrics.empty()) {
+    throw sim::UserError("the voxel cut averages triangles only, and the scene has " +
+                         std::to_string(scene.quadrics.size()) +
+                         " spheres, cylinders and cones; use it without the cut");
+  }
   const std::vector<accel::TopologyNode>& nodes = octree.topology().nodes;
   const std::vector<std::uint32_t>& entries = octree.topology().entries;
   VoxelAverages averages;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "accel/intersect.h"
+#include "accel/octree_update.h"
 #include "accel/primitive_overlap.h"
 #include "sim/error.h"
 #include "tests/contract/hostile_quadrics.h"
@@ -141,7 +142,7 @@ TEST(QuadricKernel, AcceptedHitsAreOnTheSurface) {
           ++hits;
           const double away = travelled(shape, ray);
           ASSERT_LE(Oracle(shape, ray).distance(hit.t),
-                    (0x1p-44 + 13 * 0x1p-53) * shape.reach + 9 * 0x1p-53 * away)
+                    (0x1p-46 + 13 * 0x1p-53) * shape.reach + 9 * 0x1p-53 * away)
               << "quadric " << id << ", ray " << k;
         }
       }
@@ -355,6 +356,22 @@ TEST(Quadrics, DegenerateOnesAreRefused) {
     EXPECT_NE(std::string(error.what()).find("cone 1 has no radius"), std::string::npos) << error.what();
   }
   EXPECT_NO_THROW((void)set_of_quadrics({sphere(a, 1e-60), cone(a, b, 1, 0), cone(a, b, 0, 1)}));
+}
+
+// Moving one primitive of a set is seen by the octree's update, whatever its kind.
+TEST(Quadrics, MovedOnesAreFound) {
+  const std::vector<accel::TriangleCorners> triangles = hostile_soup(0.0, 71);
+  std::vector<scenes::Quadric> quadrics = hostile_quadrics(0.0, 73);
+  const TriangleSet before(triangles, quadrics);
+  const auto first = static_cast<std::uint32_t>(triangles.size());
+  EXPECT_TRUE(accel::moved_triangles(before, TriangleSet(triangles, quadrics)).empty());
+  quadrics[3].base.x += 0.001;
+  quadrics[45].tip.y += 0.001;
+  quadrics[85].radius *= 1.5;
+  EXPECT_EQ(accel::moved_triangles(before, TriangleSet(triangles, quadrics)),
+            (std::vector<std::uint32_t>{first + 3, first + 45, first + 85}));
+  quadrics.pop_back();
+  EXPECT_THROW((void)accel::moved_triangles(before, TriangleSet(triangles, quadrics)), sim::UserError);
 }
 
 TEST(Quadrics, BoundsAreTight) {
