@@ -338,6 +338,29 @@ void Model::apply_sparse(const tinygltf::Accessor& accessor, int components, std
   }
 }
 
+std::vector<double> Model::read_matrices(int accessor, std::size_t count, const std::string& user) const {
+  const tinygltf::Accessor& a = at(data_.accessors, accessor, "accessor", user);
+  const std::string name = user + " (accessor " + std::to_string(accessor) + ")";
+  if (a.type != TINYGLTF_TYPE_MAT4 || a.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
+    fail(name + " has the wrong type: 4 x 4 matrices of floats are needed");
+  }
+  if (a.sparse.isSparse) {
+    fail(name + ": sparse matrices are not supported");
+  }
+  if (a.count < count) {
+    fail(name + " has " + std::to_string(a.count) + " matrices; " + std::to_string(count) + " are needed");
+  }
+  const Elements e = elements(a.bufferView, a.byteOffset, a.count, a.componentType, 16, name);
+  std::vector<double> values;
+  values.reserve(count * 16);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t c = 0; c < 16; ++c) {
+      values.push_back(load_value(e.bytes.data() + i * e.stride + c * sizeof(float), a.componentType, false));
+    }
+  }
+  return values;
+}
+
 std::vector<std::uint32_t> Model::read_indices(int accessor, const std::string& user) const {
   const tinygltf::Accessor& a = at(data_.accessors, accessor, "accessor", user);
   const std::string name = user + " (accessor " + std::to_string(accessor) + ")";
