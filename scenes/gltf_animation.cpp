@@ -140,19 +140,18 @@ std::size_t morph_target_count(const Model& model, int mesh) {
   return count;
 }
 
-std::vector<double> default_weights(const Model& model, int node) {
+const std::vector<double>* default_weights(const Model& model, int node, std::size_t count) {
   const tinygltf::Node& source = model.data().nodes[static_cast<std::size_t>(node)];
-  const std::size_t count = morph_target_count(model, source.mesh);
   if (!source.weights.empty()) {
     check_weights(model, source.weights, count, "node " + std::to_string(node));
-    return source.weights;
+    return &source.weights;
   }
   const std::vector<double>& weights = model.data().meshes[static_cast<std::size_t>(source.mesh)].weights;
   if (!weights.empty()) {
     check_weights(model, weights, count, "mesh " + std::to_string(source.mesh));
-    return weights;
+    return &weights;
   }
-  return std::vector<double>(count, 0.0);
+  return nullptr;
 }
 
 Animation::Path Animation::path_of(const Model& model, const std::string& path, const std::string& name) {
@@ -170,6 +169,7 @@ Animation::Animation(const Model& model, int index) {
   name_ = source.name;
   TrackReader reader(model, prefix);
   std::set<std::pair<int, Path>> targets;
+  std::uint64_t changed = 0;
   std::map<std::pair<int, std::size_t>, std::size_t> known;  // tracks by sampler and kind of value
   std::map<int, std::size_t> morphs;                         // targets by mesh
   for (std::size_t i = 0; i < source.channels.size(); ++i) {
@@ -207,6 +207,12 @@ Animation::Animation(const Model& model, int index) {
       duration_ = std::max(duration_, tracks_.back().times.back());
     }
     channels_.push_back({channel.target_node, path, track->second});
+    // A pose holds a copy of all that changes.
+    changed += width;
+    if (changed > model.options().max_triangles) {
+      model.fail(prefix + " changes more than " + std::to_string(model.options().max_triangles) +
+                 " numbers, which is more than is accepted");
+    }
   }
 }
 

@@ -15,8 +15,9 @@ namespace marti::scenes::gltf {
 [[nodiscard]] std::size_t morph_target_count(const Model& model, int mesh);
 
 /// The weights of a node's morph targets where no animation changes them: the node's, else the mesh's, else
-/// zeros (section 3.7.4). The node has a mesh. Throws UserError.
-[[nodiscard]] std::vector<double> default_weights(const Model& model, int node);
+/// none, which stands for zeros (section 3.7.4). They live in the model. The node has a mesh with `count`
+/// targets. Throws UserError.
+[[nodiscard]] const std::vector<double>* default_weights(const Model& model, int node, std::size_t count);
 
 class Animation {
  public:

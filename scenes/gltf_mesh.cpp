@@ -20,15 +20,17 @@ void MeshReader::add(std::size_t place, Pose& pose) {
   }
   User user;
   user.place = place;
-  user.weights = default_weights(model_, index);
+  auto targets = targets_.find(node.mesh);
+  if (targets == targets_.end()) {
+    targets = targets_.emplace(node.mesh, morph_target_count(model_, node.mesh)).first;
+    morph_targets_ += targets->second;
+  }
+  user.weights = default_weights(model_, index, targets->second);
   if (node.skin >= 0) {
     user.skin = static_cast<int>(skins_.use(node.skin, index));
     while (pose.joints.size() < skins_.size()) {
       pose.joints.push_back(skins_.matrices(pose.joints.size(), pose.nodes));
     }
-  }
-  if (meshes_.insert(node.mesh).second) {
-    morph_targets_ += user.weights.size();
   }
   for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
     const std::string name = "mesh " + std::to_string(node.mesh) + ", primitive " + std::to_string(i);

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,7 +56,7 @@ class MeshReader {
   struct User {  // the node whose mesh is added
     std::size_t place = 0;
     int skin = -1;
-    std::vector<double> weights;
+    const std::vector<double>* weights = nullptr;
     // By what they come from, and the accessor of texture coordinates.
     std::map<std::pair<const VertexSource*, int>, Vertices> shared;
   };
@@ -77,7 +76,7 @@ class MeshReader {
   VertexReader vertices_;
   std::vector<VertexInstance> instances_;
   std::vector<TriangleRange> ranges_;
-  std::set<int> meshes_;  // met so far
+  std::map<int, std::size_t> targets_;  // morph targets of the meshes met so far
   std::uint64_t morph_targets_ = 0;
   std::vector<char> bad_vertex_;
   std::uint64_t bad_triangles_ = 0;

@@ -35,13 +35,14 @@ glm::dvec3 unit_or_zero(const glm::dvec3& n) {
   return usable ? unit : glm::dvec3(0.0);
 }
 
-/// The sum of a vertex's vector and its displacements. A weight of 0 leaves out even what is not finite.
-glm::dvec3 morphed(glm::dvec3 vector, const VertexSource& source, const std::vector<double>& weights,
+/// The sum of a vertex's vector and its displacements. A weight of 0 leaves out even what is not finite; so
+/// do no weights.
+glm::dvec3 morphed(glm::dvec3 vector, const VertexSource& source, const std::vector<double>* weights,
                    std::vector<glm::dvec3> MorphTarget::*kind, std::size_t vertex) {
-  for (std::size_t i = 0; i < source.targets.size(); ++i) {
+  for (std::size_t i = 0; weights != nullptr && i < source.targets.size(); ++i) {
     const std::vector<glm::dvec3>& displacements = source.targets[i].*kind;
-    if (weights[i] != 0.0 && !displacements.empty()) {
-      vector += weights[i] * displacements[vertex];
+    if ((*weights)[i] != 0.0 && !displacements.empty()) {
+      vector += (*weights)[i] * displacements[vertex];
     }
   }
   return vector;
@@ -234,9 +235,8 @@ void pose_vertices(const VertexInstance& instance, const Pose& pose, Scene& scen
   const VertexSource& source = *instance.source;
   const PlacedNode& node = pose.nodes[instance.place];
   const auto change = pose.changes.find(node.node);
-  const std::vector<double>& weights = change == pose.changes.end() || change->second.weights.empty()
-                                           ? instance.weights
-                                           : change->second.weights;
+  const bool changed = change != pose.changes.end() && !change->second.weights.empty();
+  const std::vector<double>* const weights = changed ? &change->second.weights : instance.weights;
   const bool skinned = instance.skin >= 0;
   const bool with_normals = !source.normals.empty();
   glm::dmat4 world = node.world;

@@ -46,10 +46,10 @@ struct VertexSource {
 /// One use of vertices in the scene.
 struct VertexInstance {
   std::shared_ptr<const VertexSource> source;
-  std::uint32_t first = 0;      ///< index into Scene::positions
-  std::size_t place = 0;        ///< of its node among the scene's nodes
-  int skin = -1;                ///< place among the skins in use; -1: the node's transform holds
-  std::vector<double> weights;  ///< of the morph targets, unless the pose has others
+  std::uint32_t first = 0;  ///< index into Scene::positions
+  std::size_t place = 0;    ///< of its node among the scene's nodes
+  int skin = -1;            ///< place among the skins in use; -1: the node's transform holds
+  const std::vector<double>* weights = nullptr;  ///< of the morph targets, if the pose has no others
 };
 
 /// A scene's nodes at one time.

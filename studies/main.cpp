@@ -94,7 +94,7 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
   scene->require_subcommand(1);
   scene->add_subcommand("list", "Lists the procedural scenes")->callback(list_scenes);
   CLI::App* info = scene->add_subcommand("info", "Describes a scene");
-  CLI::App* save = scene->add_subcommand("export", "Writes a scene as binary glTF");
+  CLI::App* save = scene->add_subcommand("export", "Writes a scene, in one pose, as binary glTF");
   for (CLI::App* command : {info, save}) {
     command->add_option("SOURCE", arguments.source, "name:size, or a .gltf or .glb file")->required();
     command->add_option("--scene", arguments.gltf.scene, "scene of the file, by index or name");
