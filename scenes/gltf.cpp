@@ -156,9 +156,15 @@ class GltfPoses : public PoseSource {
     facts.chosen = chosen_;
     facts.skins = skins_->size();
     facts.morph_targets = morph_targets_;
+    std::uint64_t numbers = 0;
     guarded([&] {
       for (std::size_t i = 0; i < model_.data().animations.size(); ++i) {
         const gltf::Animation animation(model_, static_cast<int>(i));
+        numbers += animation.size();
+        if (numbers > model_.options().max_triangles) {
+          model_.fail("its animations have more than " + std::to_string(model_.options().max_triangles) +
+                      " key frames and values, which is more than is described");
+        }
         facts.animations.push_back({animation.name(), animation.duration(), animation.channels()});
       }
     });

@@ -54,7 +54,7 @@ struct GltfOptions {
 /// position that is not finite are left out and counted in one note; degenerate ones are kept and counted.
 /// `decode` may be empty; then a material with a base colour texture is refused.
 /// Throws UserError, the path first, for anything missing, broken, out of range or not supported; no input
-/// makes it crash or loop. Of several animations only the chosen one is checked.
+/// makes it crash or loop. Of several animations only the chosen one is checked; facts() checks all.
 [[nodiscard]] AnimatedScene open_gltf(const std::filesystem::path& path, const GltfOptions& options,
                                       const ImageDecoder& decode);
 

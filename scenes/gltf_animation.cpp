@@ -216,6 +216,14 @@ Animation::Animation(const Model& model, int index) {
   }
 }
 
+std::uint64_t Animation::size() const {
+  std::uint64_t numbers = 0;
+  for (const KeyFrames& track : tracks_) {
+    numbers += track.times.size() + track.values.size();
+  }
+  return numbers;
+}
+
 NodeChanges Animation::at(double seconds) const {
   NodeChanges changes;
   for (const Channel& channel : channels_) {

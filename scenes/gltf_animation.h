@@ -30,6 +30,7 @@ class Animation {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] double duration() const { return duration_; }  ///< seconds, to the last key frame
   [[nodiscard]] std::uint64_t channels() const { return channels_.size(); }
+  [[nodiscard]] std::uint64_t size() const;  ///< numbers that were read
 
  private:
   enum class Path { translation, rotation, scale, weights };

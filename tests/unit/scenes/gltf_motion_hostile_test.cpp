@@ -295,6 +295,20 @@ TEST(HostileMotion, LimitsHold) {
   EXPECT_NE(message(file).find("more than 176 displacements"), std::string::npos) << message(file);
 }
 
+TEST(HostileMotion, ManyAnimationsOfOneLargeAccessorAreNotDescribedWithoutEnd) {
+  const test::TemporaryDirectory directory;
+  GltfFile file = everything();
+  GltfOptions options;
+  options.max_triangles = 200;
+  for (int i = 0; i < 20; ++i) {
+    file.json["animations"].push_back(file.json["animations"][0]);
+  }
+  const AnimatedScene scene = open_gltf(file.write_glb(directory.path(), "list.glb"), options, {});
+  EXPECT_EQ(scene.at(0.5).triangles.size(), 2U);
+  const std::string message = test::user_error_of([&] { static_cast<void>(scene.facts()); });
+  EXPECT_NE(message.find("more than is described"), std::string::npos) << message;
+}
+
 TEST(HostileMotion, OneSamplerOfManyWeightsIsNotCopiedWithoutEnd) {
   const test::TemporaryDirectory directory;
   GltfFile file = everything();
