@@ -3,14 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <optional>
+#include <sstream>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include "scenes/animated.h"
+#include "scenes/gltf_animation.h"
 #include "scenes/gltf_material.h"
 #include "scenes/gltf_mesh.h"
 #include "scenes/gltf_model.h"
 #include "scenes/gltf_nodes.h"
+#include "scenes/gltf_skin.h"
+#include "scenes/gltf_vertices.h"
 #include "scenes/gltf_view.h"
 #include "scenes/open.h"
+#include "sim/error.h"
 
 namespace marti::scenes {
 
@@ -18,6 +27,7 @@ namespace {
 
 using gltf::LeftOut;
 using gltf::Model;
+using gltf::Pose;
 
 constexpr std::array<std::string_view, 5> supported_extensions = {
     "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior",
@@ -33,12 +43,6 @@ void check_requirements(const Model& model) {
     if (!is_supported(extension)) {
       model.fail("it requires the extension '" + extension + "', which is not supported");
     }
-  }
-  if (model.options().frame != 0) {
-    model.fail("frame " + std::to_string(model.options().frame) + " is asked for, but " +
-               (model.data().animations.empty()
-                    ? "the file has no animation"
-                    : "animations are not supported: only frame 0, the static pose"));
   }
 }
 
@@ -62,14 +66,14 @@ void note_left_out(const Model& model, const LeftOut& left_out, std::uint64_t ba
       scene.notes.push_back("Left out: " + std::to_string(count) + " " + what + ".");
     }
   }
-  if (!model.data().animations.empty()) {
-    scene.notes.push_back("The file is animated; this is its static pose.");
-  }
   if (bad_triangles > 0) {
     scene.notes.push_back("Left out: " + std::to_string(bad_triangles) + " of " +
                           std::to_string(scene.polygons) +
                           " triangles, because a position is not finite or beyond 1e30.");
   }
+}
+
+void note_degenerate(Scene& scene) {
   const std::uint64_t degenerate = count_degenerate(scene);
   if (degenerate > 0) {
     scene.notes.push_back(std::to_string(degenerate) + " of " + std::to_string(scene.triangles.size()) +
@@ -85,56 +89,236 @@ void read_own_surroundings(const Model& model, Scene& scene) {
   }
 }
 
-Scene build(const Model& model, const ImageDecoder& decode) {
-  check_requirements(model);
-  Scene scene;
-  scene.name = model.path().filename().string();
-  const std::vector<gltf::PlacedNode> nodes = gltf::place_nodes(model);
-  LeftOut left_out;
-  gltf::Materials materials(model, decode, scene, left_out);
-  gltf::MeshReader meshes(model, materials, scene, left_out);
-  for (const gltf::PlacedNode& place : nodes) {
-    const tinygltf::Node& node = model.data().nodes[static_cast<std::size_t>(place.node)];
-    if (node.mesh >= 0) {
-      left_out.features["skins (their meshes are in the bind pose)"] += node.skin >= 0 ? 1U : 0U;
-      meshes.add(node.mesh, place);
+std::string seconds_text(double seconds) {
+  std::ostringstream text;
+  text << seconds << " s";
+  return text.str();
+}
+
+/// Triangles with a bad corner shrink onto a good corner, if need be another triangle's. Returns how many.
+std::uint64_t shrink_bad_triangles(const Model& model, const std::vector<char>& bad, Scene& scene) {
+  const auto good_corner = [&bad](const Triangle& triangle) {
+    return std::find_if(triangle.vertex.begin(), triangle.vertex.end(),
+                        [&bad](std::uint32_t vertex) { return bad[vertex] == 0; });
+  };
+  const auto is_good = [&bad](const Triangle& triangle) {
+    return std::all_of(triangle.vertex.begin(), triangle.vertex.end(),
+                       [&bad](std::uint32_t vertex) { return bad[vertex] == 0; });
+  };
+  const auto good = std::find_if(scene.triangles.begin(), scene.triangles.end(), is_good);
+  if (good == scene.triangles.end()) {
+    model.fail("none of its triangles has finite positions");
+  }
+  const std::uint32_t anywhere = good->vertex[0];
+  std::uint64_t count = 0;
+  for (Triangle& triangle : scene.triangles) {
+    if (!is_good(triangle)) {
+      const auto* const corner = good_corner(triangle);
+      triangle.vertex.fill(corner == triangle.vertex.end() ? anywhere : *corner);
+      ++count;
     }
   }
-  if (scene.triangles.empty()) {
-    model.fail(meshes.bad_triangles() > 0 ? "none of its triangles has finite positions"
-                                          : "the scene has no triangles");
-  }
-  if (!scene.normals.empty()) {
-    scene.normals.resize(scene.positions.size(), glm::dvec3(0.0));
-  }
-  if (!scene.uvs.empty()) {
-    scene.uvs.resize(scene.positions.size(), glm::dvec2(0.0));
-  }
-  if (!gltf::set_camera(model, nodes, scene)) {
-    gltf::frame_camera(scene);
-    scene.notes.emplace_back("The scene has no perspective camera; it is seen by one that frames it.");
-  }
-  gltf::add_lights(model, nodes, scene);
-  read_own_surroundings(model, scene);
-  if (scene.lights.empty()) {
-    gltf::add_default_light(scene);
-    scene.notes.emplace_back(
-        "The scene has no light; it is lit by a directional one over the camera's shoulder and by ambient "
-        "light.");
-  }
-  note_left_out(model, left_out, meshes.bad_triangles(), scene);
-  return scene;
+  return count;
 }
+
+/// A glTF file as a scene over time. The static pose decides which triangles there are; the pose at time 0
+/// decides where a camera or light that the file lacks is.
+class GltfPoses : public PoseSource {
+ public:
+  GltfPoses(const std::filesystem::path& path, const GltfOptions& options, const ImageDecoder& decode)
+      : model_(path, options) {
+    guarded([&] { build(decode); });
+  }
+
+  [[nodiscard]] bool moves() const override { return animation_.has_value(); }
+
+  [[nodiscard]] Scene at(double seconds) const override {
+    Scene scene;
+    guarded([&] {
+      if (!animation_) {
+        scene = still_;
+        return;
+      }
+      try {
+        scene = posed(seconds);
+      } catch (const sim::UserError& error) {
+        throw sim::UserError(std::string(error.what()) + " (at " + seconds_text(seconds) + " of animation '" +
+                             animation_->name() + "')");
+      }
+    });
+    return scene;
+  }
+
+  [[nodiscard]] double duration() const override { return animation_ ? animation_->duration() : 0.0; }
+
+  [[nodiscard]] MotionFacts facts() const override {
+    MotionFacts facts;
+    facts.chosen = chosen_;
+    facts.skins = skins_->size();
+    facts.morph_targets = morph_targets_;
+    std::uint64_t numbers = 0;
+    guarded([&] {
+      for (std::size_t i = 0; i < model_.data().animations.size(); ++i) {
+        const gltf::Animation animation(model_, static_cast<int>(i));
+        numbers += animation.size();
+        if (numbers > model_.options().max_triangles) {
+          model_.fail("its animations have more than " + std::to_string(model_.options().max_triangles) +
+                      " key frames and values, which is more than is described");
+        }
+        facts.animations.push_back({animation.name(), animation.duration(), animation.channels()});
+      }
+    });
+    return facts;
+  }
+
+ private:
+  template <typename Work>
+  void guarded(const Work& work) const {
+    try {
+      work();
+    } catch (const std::bad_alloc&) {
+      model_.fail("there is not enough memory for its scene");
+    }
+  }
+
+  void build(const ImageDecoder& decode) {
+    check_requirements(model_);
+    chosen_ = gltf::chosen_animation(model_);
+    if (chosen_ >= 0) {
+      animation_.emplace(model_, chosen_);
+    }
+    still_.name = model_.path().filename().string();
+    nodes_ = gltf::nodes_of_scene(model_);
+    skins_.emplace(model_, nodes_);
+    Pose pose;
+    pose.nodes = gltf::place_nodes(model_, nodes_, {});
+    LeftOut left_out;
+    gltf::Materials materials(model_, decode, still_, left_out);
+    gltf::MeshReader meshes(model_, materials, *skins_, still_, left_out);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      if (model_.data().nodes[static_cast<std::size_t>(nodes_[i].node)].mesh >= 0) {
+        meshes.add(i, pose);
+      }
+    }
+    if (still_.triangles.empty()) {
+      model_.fail(meshes.bad_triangles() > 0 ? "none of its triangles has finite positions"
+                                             : "the scene has no triangles");
+    }
+    if (!still_.normals.empty()) {
+      still_.normals.resize(still_.positions.size(), glm::dvec3(0.0));
+    }
+    if (!still_.uvs.empty()) {
+      still_.uvs.resize(still_.positions.size(), glm::dvec2(0.0));
+    }
+    morph_targets_ = meshes.morph_targets();
+    read_own_surroundings(model_, still_);
+    if (animation_) {
+      instances_ = meshes.instances();
+      ranges_ = meshes.ranges();
+      pose = pose_at(0.0);
+    }
+    look(pose);
+    note_left_out(model_, left_out, meshes.bad_triangles(), still_);
+    if (animation_) {
+      still_.notes.push_back("Animation '" + animation_->name() + "' plays for " +
+                             seconds_text(animation_->duration()) + ".");
+    } else {
+      if (!model_.data().animations.empty()) {
+        still_.notes.emplace_back("The file is animated; this is its static pose.");
+      }
+      note_degenerate(still_);
+    }
+  }
+
+  /// Camera and lights, made up where the file has none; then they stand still.
+  void look(const Pose& pose) {
+    has_camera_ = gltf::set_camera(model_, pose.nodes, still_);
+    if (!has_camera_) {
+      Scene first = still_;
+      place_vertices(pose, first);
+      gltf::frame_camera(first);
+      still_.camera = first.camera;
+      still_.notes.emplace_back("The scene has no perspective camera; it is seen by one that frames it.");
+    }
+    gltf::add_lights(model_, pose.nodes, still_);
+    has_lights_ = !still_.lights.empty();
+    if (!has_lights_) {
+      gltf::add_default_light(still_);
+      still_.notes.emplace_back(
+          "The scene has no light; it is lit by a directional one over the camera's shoulder and by ambient "
+          "light.");
+    }
+  }
+
+  [[nodiscard]] Pose pose_at(double seconds) const {
+    Pose pose;
+    pose.changes = animation_->at(seconds);
+    pose.nodes = gltf::place_nodes(model_, nodes_, pose.changes);
+    for (std::size_t i = 0; i < skins_->size(); ++i) {
+      pose.joints.push_back(skins_->matrices(i, pose.nodes));
+    }
+    return pose;
+  }
+
+  /// Returns how many triangles had to shrink.
+  std::uint64_t place_vertices(const Pose& pose, Scene& scene) const {
+    std::vector<char> bad(scene.positions.size(), 0);
+    for (const gltf::VertexInstance& instance : instances_) {
+      gltf::pose_vertices(instance, pose, scene, bad);
+    }
+    for (const gltf::TriangleRange& range : ranges_) {
+      if (gltf::is_mirrored(pose.nodes[range.place].world) != range.mirrored) {
+        for (std::uint32_t i = 0; i < range.count; ++i) {
+          std::swap(scene.triangles[range.first + i].vertex[1], scene.triangles[range.first + i].vertex[2]);
+        }
+      }
+    }
+    const bool all_good = std::all_of(bad.begin(), bad.end(), [](char vertex) { return vertex == 0; });
+    return all_good ? 0 : shrink_bad_triangles(model_, bad, scene);
+  }
+
+  [[nodiscard]] Scene posed(double seconds) const {
+    Scene scene = still_;
+    const Pose pose = pose_at(seconds);
+    const std::uint64_t shrunk = place_vertices(pose, scene);
+    if (has_camera_) {
+      static_cast<void>(gltf::set_camera(model_, pose.nodes, scene));
+    }
+    if (has_lights_) {
+      scene.lights.clear();
+      gltf::add_lights(model_, pose.nodes, scene);
+    }
+    if (shrunk > 0) {
+      scene.notes.push_back(std::to_string(shrunk) +
+                            " triangles are shrunk to a point in this pose, because a position is not finite "
+                            "or beyond 1e30.");
+    }
+    note_degenerate(scene);
+    return scene;
+  }
+
+  Model model_;
+  int chosen_ = -1;
+  std::optional<gltf::Animation> animation_;
+  std::vector<gltf::SceneNode> nodes_;
+  std::optional<gltf::Skins> skins_;
+  Scene still_;  // of an animated file all but what moves
+  std::vector<gltf::VertexInstance> instances_;
+  std::vector<gltf::TriangleRange> ranges_;
+  std::uint64_t morph_targets_ = 0;
+  bool has_camera_ = false;
+  bool has_lights_ = false;
+};
 
 }  // namespace
 
+AnimatedScene open_gltf(const std::filesystem::path& path, const GltfOptions& options,
+                        const ImageDecoder& decode) {
+  return AnimatedScene(std::make_shared<const GltfPoses>(path, options, decode));
+}
+
 Scene load_gltf(const std::filesystem::path& path, const GltfOptions& options, const ImageDecoder& decode) {
-  const Model model(path, options);
-  try {
-    return build(model, decode);
-  } catch (const std::bad_alloc&) {
-    model.fail("there is not enough memory for its scene");
-  }
+  return open_gltf(path, options, decode).asked_for(options.time, path.string());
 }
 
 }  // namespace marti::scenes

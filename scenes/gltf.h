@@ -1,11 +1,18 @@
-// Reading glTF 2.0 scenes (.gltf and .glb), Khronos specification 2.0.1, in their static pose.
+// Reading glTF 2.0 scenes (.gltf and .glb), Khronos specification 2.0.1, at rest or in motion.
 //
 // Read: the chosen scene's nodes with their transforms; indexed and unindexed triangles, strips and fans;
-// sparse accessors; positions, normals, the base colour texture's coordinates; materials; perspective
-// cameras; KHR_lights_punctual, KHR_materials_transmission, KHR_materials_ior,
-// KHR_materials_emissive_strength. Left out with a note: points and lines, skins, morph targets, other
-// textures, alpha modes. One source triangle is one polygon. Indices below 0 read as "not given" where
-// glTF allows that.
+// sparse accessors; positions, normals, the base colour texture's coordinates; morph targets of positions and
+// normals (section 3.7.2.2); skins with any number of joints a vertex (3.7.3); animations of nodes and morph
+// weights (3.11, Appendix C); materials; perspective cameras; KHR_lights_punctual,
+// KHR_materials_transmission, KHR_materials_ior, KHR_materials_emissive_strength. Left out with a note:
+// points and lines, displacements of texture coordinates, other textures, alpha modes. One source triangle is
+// one polygon. Indices below 0 read as "not given" where glTF allows that.
+//
+// Motion. The static pose (nodes, morph weights and joints as the file has them, no animation) decides which
+// triangles there are: one with a corner that is not finite or beyond 1e30 there is left out of all poses. A
+// node that is mirrored by its transform turns the winding of its triangles; the transform of a skinned
+// mesh's node is ignored, its mirroring too. A vertex's joint weights are divided by their sum. A camera or a
+// light that the file lacks is made up for the pose at time 0 and stands still.
 //
 // Materials. With base colour c, metallic m, roughness r, transmission t, index of refraction n,
 // F0 = ((n-1)/(n+1))^2 and gloss g = (1-r)^2, our weights are
@@ -26,6 +33,7 @@
 #include <filesystem>
 #include <string>
 
+#include "scenes/animated.h"
 #include "scenes/scene.h"
 #include "scenes/texture.h"
 
@@ -34,16 +42,23 @@ namespace marti::scenes {
 struct GltfOptions {
   std::string scene;   ///< index or name; empty: the file's default, else the first
   std::string camera;  ///< index or name of a camera of the file; empty: the scene's first perspective one
-  std::uint32_t frame = 0;                               ///< only 0, the static pose
+  /// Index or name of the animation that plays; empty: the first, if the file has one; "none": the static
+  /// pose, unless an animation has that name.
+  std::string animation;
+  double time = 0.0;  ///< seconds from the animation's beginning, of the one pose that load_gltf gives
   std::uint64_t max_triangles = std::uint64_t{1} << 25;  ///< more than this is refused; vertices likewise
   std::uint64_t max_file_bytes = (std::uint64_t{1} << 32) - 1;  ///< of each file read
 };
 
-/// Loads a file. A scene without a camera or a light gets one that frames it, and a note. Triangles with a
+/// Opens a file. A scene without a camera or a light gets one that frames it, and a note. Triangles with a
 /// position that is not finite are left out and counted in one note; degenerate ones are kept and counted.
 /// `decode` may be empty; then a material with a base colour texture is refused.
 /// Throws UserError, the path first, for anything missing, broken, out of range or not supported; no input
-/// makes it crash or loop.
+/// makes it crash or loop. Of several animations only the chosen one is checked; facts() checks all.
+[[nodiscard]] AnimatedScene open_gltf(const std::filesystem::path& path, const GltfOptions& options,
+                                      const ImageDecoder& decode);
+
+/// The pose at `options.time`. A time other than 0 is refused when no animation plays.
 [[nodiscard]] Scene load_gltf(const std::filesystem::path& path, const GltfOptions& options,
                               const ImageDecoder& decode);
 

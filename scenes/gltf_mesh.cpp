@@ -1,63 +1,45 @@
 #include "scenes/gltf_mesh.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
-#include <utility>
 
-#include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
+#include "scenes/gltf_animation.h"
 
 namespace marti::scenes::gltf {
 
-namespace {
-
-// Beyond this, products of three differences of coordinates could overflow.
-constexpr double largest_coordinate = 1e30;
-
-int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
-  const auto found = primitive.attributes.find(name);
-  return found == primitive.attributes.end() ? -1 : found->second;
-}
-
-bool is_usable(const glm::dvec3& p) {
-  return std::abs(p.x) <= largest_coordinate && std::abs(p.y) <= largest_coordinate &&
-         std::abs(p.z) <= largest_coordinate;
-}
-
-/// The inverse transpose of the upper 3 x 3 part up to a positive factor: its cofactors, negated for a
-/// mirroring transform. Needs no division, so a flattening transform does no harm.
-glm::dmat3 normal_transform(const glm::dmat4& world) {
-  const glm::dmat3 m(world);
-  const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-  return glm::dot(m[0], cofactors[0]) < 0.0 ? -cofactors : cofactors;
-}
-
-bool is_mirrored(const glm::dmat4& world) {
-  const glm::dmat3 m(world);
-  return glm::dot(m[0], glm::cross(m[1], m[2])) < 0.0;
-}
-
-}  // namespace
-
-void MeshReader::add(int mesh, const PlacedNode& place) {
-  const tinygltf::Mesh& source =
-      model_.at(model_.data().meshes, mesh, "mesh", "node " + std::to_string(place.node));
-  std::map<VertexKey, Vertices> shared;
+void MeshReader::add(std::size_t place, Pose& pose) {
+  const int index = pose.nodes[place].node;
+  const tinygltf::Node& node = model_.data().nodes[static_cast<std::size_t>(index)];
+  const std::string user_name = "node " + std::to_string(index);
+  const tinygltf::Mesh& mesh = model_.at(model_.data().meshes, node.mesh, "mesh", user_name);
   // Primitives that give no triangle would else be free: many nodes times many points take for ever.
-  visits_ += source.primitives.size();
+  visits_ += mesh.primitives.size();
   if (visits_ > model_.options().max_triangles) {
     model_.fail("the scene has more than " + std::to_string(model_.options().max_triangles) +
                 " primitives, which is more than is accepted");
   }
-  for (std::size_t i = 0; i < source.primitives.size(); ++i) {
-    const std::string name = "mesh " + std::to_string(mesh) + ", primitive " + std::to_string(i);
-    add_primitive(source.primitives[i], place, name, shared);
+  User user;
+  user.place = place;
+  auto targets = targets_.find(node.mesh);
+  if (targets == targets_.end()) {
+    targets = targets_.emplace(node.mesh, morph_target_count(model_, node.mesh)).first;
+    morph_targets_ += targets->second;
+  }
+  user.weights = default_weights(model_, index, targets->second);
+  if (node.skin >= 0) {
+    user.skin = static_cast<int>(skins_.use(node.skin, index));
+    while (pose.joints.size() < skins_.size()) {
+      pose.joints.push_back(skins_.matrices(pose.joints.size(), pose.nodes));
+    }
+  }
+  for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+    const std::string name = "mesh " + std::to_string(node.mesh) + ", primitive " + std::to_string(i);
+    add_primitive(mesh.primitives[i], pose, name, user);
   }
 }
 
-void MeshReader::add_primitive(const tinygltf::Primitive& primitive, const PlacedNode& place,
-                               const std::string& name, std::map<VertexKey, Vertices>& shared) {
+void MeshReader::add_primitive(const tinygltf::Primitive& primitive, const Pose& pose,
+                               const std::string& name, User& user) {
   if (primitive.mode < TINYGLTF_MODE_POINTS || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
     model_.fail(name + ": there is no primitive mode " + std::to_string(primitive.mode));
   }
@@ -65,22 +47,34 @@ void MeshReader::add_primitive(const tinygltf::Primitive& primitive, const Place
     left_out_.features["primitives of points or lines"] += 1;
     return;
   }
-  VertexKey key{attribute(primitive, "POSITION"), attribute(primitive, "NORMAL"), -1};
-  if (std::get<0>(key) < 0) {
+  if (attribute(primitive.attributes, "POSITION") < 0) {
     left_out_.features["primitives without positions"] += 1;
     return;
   }
-  left_out_.features["morph targets"] += primitive.targets.size();
-  left_out_.features["vertex colours"] += attribute(primitive, "COLOR_0") >= 0 ? 1U : 0U;
+  left_out_.features["vertex colours"] += attribute(primitive.attributes, "COLOR_0") >= 0 ? 1U : 0U;
   const Materials::Use use = materials_.use(primitive.material);
+  int coordinates = -1;
   if (use.texture_coordinates >= 0) {
-    std::get<2>(key) = attribute(primitive, "TEXCOORD_" + std::to_string(use.texture_coordinates));
+    const std::string semantic = "TEXCOORD_" + std::to_string(use.texture_coordinates);
+    coordinates = attribute(primitive.attributes, semantic);
     left_out_.features["textures on primitives without the texture coordinates for them"] +=
-        std::get<2>(key) < 0 ? 1U : 0U;
+        coordinates < 0 ? 1U : 0U;
+    for (const auto& target : primitive.targets) {
+      left_out_.features["displacements of texture coordinates"] += target.contains(semantic) ? 1U : 0U;
+    }
   }
-  auto known = shared.find(key);
-  if (known == shared.end()) {
-    known = shared.emplace(key, add_vertices(key, place, name)).first;
+  const std::shared_ptr<const VertexSource> source = vertices_.read(primitive, user.skin >= 0, name);
+  if (user.skin >= 0 && source->highest_joint >= skins_.joints(static_cast<std::size_t>(user.skin))) {
+    model_.fail(name + ": joint " + std::to_string(source->highest_joint) +
+                " is out of range; the skin has " +
+                std::to_string(skins_.joints(static_cast<std::size_t>(user.skin))));
+  }
+  auto known = user.shared.find({source.get(), coordinates});
+  if (known == user.shared.end()) {
+    known = user.shared
+                .emplace(std::pair(source.get(), coordinates),
+                         add_vertices(source, coordinates, pose, name, user))
+                .first;
   }
   const Vertices vertices = known->second;
 
@@ -102,7 +96,9 @@ void MeshReader::add_primitive(const tinygltf::Primitive& primitive, const Place
   if (corners < 3 || (is_list && corners % 3 != 0)) {
     model_.fail(name + ": " + std::to_string(corners) + " corners do not make triangles");
   }
-  const bool mirrored = is_mirrored(place.world);
+  // The transform of a skinned mesh's node is ignored (section 3.7.3.2), and so is its mirroring.
+  const bool mirrored = user.skin < 0 && is_mirrored(pose.nodes[user.place].world);
+  const auto first = static_cast<std::uint32_t>(scene_.triangles.size());
   const std::size_t count = is_list ? corners / 3 : corners - 2;
   for (std::size_t i = 0; i < count; ++i) {
     // The orders of glTF 2.0, section 3.7.2.1.
@@ -117,51 +113,33 @@ void MeshReader::add_primitive(const tinygltf::Primitive& primitive, const Place
     }
     add_triangle(corner(at[0]), corner(at[1]), corner(at[2]), use.material);
   }
+  if (user.skin < 0) {
+    ranges_.push_back(
+        {first, static_cast<std::uint32_t>(scene_.triangles.size()) - first, user.place, mirrored});
+  }
 }
 
-MeshReader::Vertices MeshReader::add_vertices(const VertexKey& key, const PlacedNode& place,
-                                              const std::string& name) {
-  const auto& [position, normal, coordinates] = key;
-  const std::vector<double> values = model_.read_values(position, 3, name + ": POSITION");
-  const std::size_t count = values.size() / 3;
+MeshReader::Vertices MeshReader::add_vertices(std::shared_ptr<const VertexSource> source, int coordinates,
+                                              const Pose& pose, const std::string& name, const User& user) {
+  const std::size_t count = source->positions.size();
   if (scene_.positions.size() + count > model_.options().max_triangles) {
     model_.fail("the scene has more than " + std::to_string(model_.options().max_triangles) +
                 " vertices, which is more than is accepted");
   }
+  vertices_.charge_instance(*source);
   const Vertices vertices{static_cast<std::uint32_t>(scene_.positions.size()),
                           static_cast<std::uint32_t>(count)};
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::dvec3 p(place.world * glm::dvec4(values[3 * i], values[3 * i + 1], values[3 * i + 2], 1.0));
-    const bool usable = is_usable(p);
-    bad_vertex_.push_back(usable ? 0 : 1);
-    scene_.positions.push_back(usable ? p : glm::dvec3(0.0));
+  scene_.positions.resize(vertices.first + count);
+  bad_vertex_.resize(vertices.first + count);
+  if (!source->normals.empty()) {
+    scene_.normals.resize(vertices.first + count, glm::dvec3(0.0));
   }
-  if (normal >= 0) {
-    add_normals(normal, vertices, place, name);
-  }
+  instances_.push_back({std::move(source), vertices.first, user.place, user.skin, user.weights});
+  pose_vertices(instances_.back(), pose, scene_, bad_vertex_);
   if (coordinates >= 0) {
     add_coordinates(coordinates, vertices, name);
   }
   return vertices;
-}
-
-void MeshReader::add_normals(int accessor, const Vertices& vertices, const PlacedNode& place,
-                             const std::string& name) {
-  const std::vector<double> values = model_.read_values(accessor, 3, name + ": NORMAL");
-  if (values.size() / 3 != vertices.count) {
-    model_.fail(name + ": it has " + std::to_string(vertices.count) + " positions, but " +
-                std::to_string(values.size() / 3) + " normals");
-  }
-  const glm::dmat3 transform = normal_transform(place.world);
-  scene_.normals.resize(vertices.first, glm::dvec3(0.0));
-  for (std::size_t i = 0; i < vertices.count; ++i) {
-    const glm::dvec3 n = transform * glm::dvec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
-    const double length = glm::length(n);
-    const glm::dvec3 unit = n / length;
-    const bool usable = std::isfinite(unit.x) && std::isfinite(unit.y) && std::isfinite(unit.z) &&
-                        std::abs(glm::length(unit) - 1.0) < 1e-6;
-    scene_.normals.push_back(usable ? unit : glm::dvec3(0.0));
-  }
 }
 
 void MeshReader::add_coordinates(int accessor, const Vertices& vertices, const std::string& name) {

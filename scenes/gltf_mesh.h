@@ -3,45 +3,81 @@
 
 #include <cstdint>
 #include <map>
-#include <tuple>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "scenes/gltf_material.h"
 #include "scenes/gltf_model.h"
 #include "scenes/gltf_nodes.h"
+#include "scenes/gltf_skin.h"
+#include "scenes/gltf_vertices.h"
 #include "scenes/scene.h"
 
 namespace marti::scenes::gltf {
 
+/// Triangles in a row that belong to one node without a skin.
+struct TriangleRange {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+  std::size_t place = 0;  ///< of the node among the scene's nodes
+  bool mirrored = false;  ///< is their winding turned round against the file's?
+};
+
 class MeshReader {
  public:
-  MeshReader(const Model& model, Materials& materials, Scene& scene, LeftOut& left_out)
-      : model_(model), materials_(materials), scene_(scene), left_out_(left_out) {}
+  /// All must outlive this.
+  MeshReader(const Model& model, Materials& materials, Skins& skins, Scene& scene, LeftOut& left_out)
+      : model_(model),
+        materials_(materials),
+        skins_(skins),
+        scene_(scene),
+        left_out_(left_out),
+        vertices_(model) {}
 
-  /// Adds the triangles of one instance of a mesh.
-  void add(int mesh, const PlacedNode& place);
+  /// Adds the triangles of the mesh of a node, vertices placed as in `pose`, whose skins are brought up to
+  /// date.
+  void add(std::size_t place, Pose& pose);
 
   /// Triangles left out because a position is not finite (or beyond 1e30).
   [[nodiscard]] std::uint64_t bad_triangles() const { return bad_triangles_; }
+
+  /// What it takes to place the vertices anew.
+  [[nodiscard]] const std::vector<VertexInstance>& instances() const { return instances_; }
+  [[nodiscard]] const std::vector<TriangleRange>& ranges() const { return ranges_; }
+  [[nodiscard]] std::uint64_t morph_targets() const { return morph_targets_; }
 
  private:
   struct Vertices {
     std::uint32_t first = 0;
     std::uint32_t count = 0;
   };
-  using VertexKey = std::tuple<int, int, int>;  // accessors of positions, normals, texture coordinates
+  struct User {  // the node whose mesh is added
+    std::size_t place = 0;
+    int skin = -1;
+    const std::vector<double>* weights = nullptr;
+    // By what they come from, and the accessor of texture coordinates.
+    std::map<std::pair<const VertexSource*, int>, Vertices> shared;
+  };
 
-  void add_primitive(const tinygltf::Primitive& primitive, const PlacedNode& place, const std::string& name,
-                     std::map<VertexKey, Vertices>& shared);
-  Vertices add_vertices(const VertexKey& key, const PlacedNode& place, const std::string& name);
-  void add_normals(int accessor, const Vertices& vertices, const PlacedNode& place, const std::string& name);
+  void add_primitive(const tinygltf::Primitive& primitive, const Pose& pose, const std::string& name,
+                     User& user);
+  Vertices add_vertices(std::shared_ptr<const VertexSource> source, int coordinates, const Pose& pose,
+                        const std::string& name, const User& user);
   void add_coordinates(int accessor, const Vertices& vertices, const std::string& name);
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material);
 
   const Model& model_;
   Materials& materials_;
+  Skins& skins_;
   Scene& scene_;
   LeftOut& left_out_;
+  VertexReader vertices_;
+  std::vector<VertexInstance> instances_;
+  std::vector<TriangleRange> ranges_;
+  std::map<int, std::size_t> targets_;  // morph targets of the meshes met so far
+  std::uint64_t morph_targets_ = 0;
   std::vector<char> bad_vertex_;
   std::uint64_t bad_triangles_ = 0;
   std::uint64_t visits_ = 0;  // of primitives, in all instances

@@ -1,5 +1,7 @@
 #include "scenes/gltf_model.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <new>
@@ -106,6 +108,22 @@ std::string one_line(std::string text) {
   }
   constexpr std::size_t longest = 400;
   return text.size() > longest ? text.substr(0, longest) + "..." : text;
+}
+
+/// tinygltf's complaints without those about what glTF 2.0 allows: skins without inverse bind matrices
+/// (section 3.7.3.1), and channels without a target node, which are to be ignored (3.11) and are.
+std::string true_faults(const std::string& error) {
+  static constexpr std::array<std::string_view, 3> allowed = {
+      "'inverseBindMatrices' property is missing in Skin.", "'node' property is missing.",
+      "`node` field is missing in animation.channels.target"};
+  std::istringstream lines(error);
+  std::string faults;
+  for (std::string line; std::getline(lines, line);) {
+    if (std::find(allowed.begin(), allowed.end(), line) == allowed.end()) {
+      faults += line + "\n";
+    }
+  }
+  return faults;
 }
 
 bool is_component_type(int type) {
@@ -221,8 +239,9 @@ void Model::parse() {
                                         reinterpret_cast<const unsigned char*>(file.data()), size, directory)
           : parser.LoadASCIIFromString(&data_, &error, &warning, file.data(), size, directory);
   // Some faults only leave a message: a primitive that cannot be parsed is dropped, for example.
-  if (!parsed || !error.empty()) {
-    fail("it is no valid glTF 2.0: " + (error.empty() ? "unknown fault" : one_line(error)));
+  const std::string faults = true_faults(error);
+  if (!parsed || !faults.empty()) {
+    fail("it is no valid glTF 2.0: " + (error.empty() ? "unknown fault" : one_line(parsed ? faults : error)));
   }
 }
 
@@ -336,6 +355,29 @@ void Model::apply_sparse(const tinygltf::Accessor& accessor, int components, std
                      accessor.componentType, accessor.normalized);
     }
   }
+}
+
+std::vector<double> Model::read_matrices(int accessor, std::size_t count, const std::string& user) const {
+  const tinygltf::Accessor& a = at(data_.accessors, accessor, "accessor", user);
+  const std::string name = user + " (accessor " + std::to_string(accessor) + ")";
+  if (a.type != TINYGLTF_TYPE_MAT4 || a.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
+    fail(name + " has the wrong type: 4 x 4 matrices of floats are needed");
+  }
+  if (a.sparse.isSparse) {
+    fail(name + ": sparse matrices are not supported");
+  }
+  if (a.count < count) {
+    fail(name + " has " + std::to_string(a.count) + " matrices; " + std::to_string(count) + " are needed");
+  }
+  const Elements e = elements(a.bufferView, a.byteOffset, a.count, a.componentType, 16, name);
+  std::vector<double> values;
+  values.reserve(count * 16);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t c = 0; c < 16; ++c) {
+      values.push_back(load_value(e.bytes.data() + i * e.stride + c * sizeof(float), a.componentType, false));
+    }
+  }
+  return values;
 }
 
 std::vector<std::uint32_t> Model::read_indices(int accessor, const std::string& user) const {

@@ -46,6 +46,10 @@ class Model {
   /// applied and normalised integers mapped to 0..1 or -1..1: count * components values.
   [[nodiscard]] std::vector<double> read_values(int accessor, int components, const std::string& user) const;
 
+  /// The first `count` matrices of an accessor of 4 x 4 float matrices, 16 values each, column by column.
+  [[nodiscard]] std::vector<double> read_matrices(int accessor, std::size_t count,
+                                                  const std::string& user) const;
+
   /// An accessor of unsigned scalars, for vertex indices.
   [[nodiscard]] std::vector<std::uint32_t> read_indices(int accessor, const std::string& user) const;
 

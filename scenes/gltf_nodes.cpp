@@ -24,7 +24,20 @@ bool is_finite(const glm::dmat4& m) {
   return std::all_of(values, values + 16, [](double v) { return std::isfinite(v); });
 }
 
-glm::dmat4 local_transform(const Model& model, int index) {
+/// Three or four numbers of a node, as the animation has them or else the file.
+template <typename Vector>
+std::vector<double> changed(const std::optional<Vector>& change, const std::vector<double>& given) {
+  if (!change) {
+    return given;
+  }
+  std::vector<double> numbers;
+  for (int i = 0; i < Vector::length(); ++i) {
+    numbers.push_back((*change)[i]);
+  }
+  return numbers;
+}
+
+glm::dmat4 local_transform(const Model& model, int index, const NodeChange& change) {
   const tinygltf::Node& node = model.data().nodes[static_cast<std::size_t>(index)];
   const auto check = [&](const std::vector<double>& values, std::size_t size, const char* what) {
     if ((!values.empty() && values.size() != size) || !all_finite(values)) {
@@ -33,9 +46,6 @@ glm::dmat4 local_transform(const Model& model, int index) {
     }
   };
   check(node.matrix, 16, "matrix");
-  check(node.translation, 3, "translation");
-  check(node.rotation, 4, "rotation");
-  check(node.scale, 3, "scale");
   if (!node.matrix.empty()) {
     const glm::dmat4 m = glm::make_mat4(node.matrix.data());
     if (m[0][3] != 0.0 || m[1][3] != 0.0 || m[2][3] != 0.0 || m[3][3] != 1.0) {
@@ -43,20 +53,26 @@ glm::dmat4 local_transform(const Model& model, int index) {
     }
     return m;
   }
+  const std::vector<double> translation = changed(change.translation, node.translation);
+  const std::vector<double> rotation = changed(change.rotation, node.rotation);
+  const std::vector<double> scale = changed(change.scale, node.scale);
+  check(translation, 3, "translation");
+  check(rotation, 4, "rotation");
+  check(scale, 3, "scale");
   glm::dmat4 m(1.0);
-  if (!node.rotation.empty()) {
-    const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+  if (!rotation.empty()) {
+    const glm::dquat q(rotation[3], rotation[0], rotation[1], rotation[2]);
     const double length = glm::length(q);
     if (!(length > 1e-6 && length < 1e6)) {
       model.fail(name_of_node(index) + ": its rotation is no unit quaternion");
     }
     m = glm::mat4_cast(q / length);
   }
-  for (int axis = 0; axis < 3 && !node.scale.empty(); ++axis) {
-    m[axis] *= node.scale[static_cast<std::size_t>(axis)];
+  for (int axis = 0; axis < 3 && !scale.empty(); ++axis) {
+    m[axis] *= scale[static_cast<std::size_t>(axis)];
   }
-  for (int axis = 0; axis < 3 && !node.translation.empty(); ++axis) {
-    m[3][axis] = node.translation[static_cast<std::size_t>(axis)];
+  for (int axis = 0; axis < 3 && !translation.empty(); ++axis) {
+    m[3][axis] = translation[static_cast<std::size_t>(axis)];
   }
   return m;
 }
@@ -132,25 +148,41 @@ std::vector<int> roots_of_scene(const Model& model, const std::vector<int>& pare
 
 }  // namespace
 
-std::vector<PlacedNode> place_nodes(const Model& model) {
+std::vector<SceneNode> nodes_of_scene(const Model& model) {
   const std::vector<int> roots = roots_of_scene(model, find_parents(model));
-  std::vector<PlacedNode> placed;
+  std::vector<SceneNode> nodes;
   // A stack of our own: the depth of the hierarchy is the file's choice. Pushed in reverse to keep order.
-  std::vector<PlacedNode> open;
+  std::vector<SceneNode> open;
   for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
-    open.push_back({*root, glm::dmat4(1.0)});
+    open.push_back({*root, -1});
   }
   while (!open.empty()) {
-    PlacedNode here = open.back();
+    const SceneNode here = open.back();
     open.pop_back();
-    here.world = here.world * local_transform(model, here.node);
-    if (!is_finite(here.world)) {
-      model.fail(name_of_node(here.node) + ": its transform to world space is not finite");
-    }
-    placed.push_back(here);
+    const int place = static_cast<int>(nodes.size());
+    nodes.push_back(here);
     const std::vector<int>& children = model.data().nodes[static_cast<std::size_t>(here.node)].children;
     for (auto child = children.rbegin(); child != children.rend(); ++child) {
-      open.push_back({*child, here.world});
+      open.push_back({*child, place});
+    }
+  }
+  return nodes;
+}
+
+std::vector<PlacedNode> place_nodes(const Model& model, const std::vector<SceneNode>& nodes,
+                                    const NodeChanges& changes) {
+  static const NodeChange none;
+  std::vector<PlacedNode> placed;
+  placed.reserve(nodes.size());
+  for (const SceneNode& node : nodes) {
+    const auto change = changes.find(node.node);
+    const glm::dmat4 local =
+        local_transform(model, node.node, change == changes.end() ? none : change->second);
+    const glm::dmat4 above =
+        node.parent < 0 ? glm::dmat4(1.0) : placed[static_cast<std::size_t>(node.parent)].world;
+    placed.push_back({node.node, above * local});
+    if (!is_finite(placed.back().world)) {
+      model.fail(name_of_node(node.node) + ": its transform to world space is not finite");
     }
   }
   return placed;

@@ -17,22 +17,36 @@ bool names_a_file(std::string_view spec) {
   return lower.ends_with(".gltf") || lower.ends_with(".glb");
 }
 
-}  // namespace
+// An absolute path on the right replaces the base directory.
+std::filesystem::path path_of(std::string_view spec, const OpenOptions& options) {
+  return options.base_directory / std::filesystem::path(spec);
+}
 
-Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode) {
-  if (names_a_file(spec)) {
-    // An absolute path on the right replaces the base directory.
-    return load_gltf(options.base_directory / std::filesystem::path(spec), options.gltf, decode);
-  }
+Scene open_procedural(std::string_view spec, const GltfOptions& options) {
   Scene scene = make_procedural(spec);
   const std::string where = "scene '" + std::string(spec) + "': ";
-  if (!options.gltf.scene.empty() || !options.gltf.camera.empty()) {
+  if (!options.scene.empty() || !options.camera.empty()) {
     throw sim::UserError(where + "a procedural scene has one camera and no parts to choose from");
   }
-  if (options.gltf.frame != 0) {
-    throw sim::UserError(where + "a procedural scene has only frame 0");
+  if (!options.animation.empty() && options.animation != "none") {
+    throw sim::UserError(where + "a procedural scene has no animations");
   }
   return scene;
+}
+
+}  // namespace
+
+AnimatedScene open_animated(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode) {
+  if (names_a_file(spec)) {
+    return open_gltf(path_of(spec, options), options.gltf, decode);
+  }
+  return AnimatedScene(open_procedural(spec, options.gltf));
+}
+
+Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode) {
+  const std::string name =
+      names_a_file(spec) ? path_of(spec, options).string() : "scene '" + std::string(spec) + "'";
+  return open_animated(spec, options, decode).asked_for(options.gltf.time, name);
 }
 
 }  // namespace marti::scenes

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "scenes/animated.h"
 #include "scenes/gltf.h"
 #include "scenes/scene.h"
 #include "scenes/texture.h"
@@ -18,8 +19,13 @@ struct OpenOptions {
 };
 
 /// Opens `spec`: a file when it ends in .gltf or .glb (in any case), else a procedural scene such as
-/// "teapot:12". Choosing a scene or camera of a procedural scene is an error, as is any frame but 0.
-/// Throws UserError as load_gltf and make_procedural do.
+/// "teapot:12", which has one pose. `options.gltf.time` is not looked at. Choosing a scene, a camera or an
+/// animation other than "none" of a procedural scene is an error.
+/// Throws UserError as open_gltf and make_procedural do.
+[[nodiscard]] AnimatedScene open_animated(std::string_view spec, const OpenOptions& options,
+                                          const ImageDecoder& decode);
+
+/// The pose at `options.gltf.time`. A time other than 0 is an error where nothing moves.
 [[nodiscard]] Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode);
 
 /// The counts that describe a scene.

@@ -52,8 +52,14 @@ void declare_frame_keys(sim::Schema& schema) {
               "the configuration (with --set: to the current directory)");
   schema.text("scene.scene", "", "scene of the file, by index or name; empty: the file's default");
   schema.text("scene.camera", "", "camera of the file, by index or name; empty: the first");
-  schema.integer("scene.frame", 0, {0, std::numeric_limits<std::uint32_t>::max()}, "",
-                 "frame of the file's animation; only 0, the static pose");
+  schema.text("scene.animation", "",
+              "animation of the file that plays, by index or name; empty: the first, if there is one; none: "
+              "the file's static pose");
+  schema.section("frames", "the frames of an animated scene");
+  schema.integer("frames.count", 1, {1, 1'000'000}, "frames", "how many; `marti run` renders one");
+  schema.integer("frames.first", 0, {0, 1'000'000'000}, "",
+                 "number of the first; frame i shows the animation at i / rate seconds");
+  schema.real("frames.rate", 24.0, {1e-6, 1e6}, "frames a second", "frames of a second of the animation");
   schema.section("image", "the image and the rays it takes");
   schema.integer("image.width", 512, {1, 32768}, "pixels", "columns");
   schema.integer("image.height", 512, {1, 32768}, "pixels", "rows");
@@ -106,7 +112,11 @@ FrameConfig read_frame(sim::Config& config) {
   }
   frame.open.gltf.scene = config.text("scene.scene");
   frame.open.gltf.camera = config.text("scene.camera");
-  frame.open.gltf.frame = static_cast<std::uint32_t>(config.integer("scene.frame"));
+  frame.open.gltf.animation = config.text("scene.animation");
+  frame.frames.count = static_cast<std::uint32_t>(config.integer("frames.count"));
+  frame.frames.first = static_cast<std::uint32_t>(config.integer("frames.first"));
+  frame.frames.rate = config.real("frames.rate");
+  frame.open.gltf.time = frame.frames.time(0);
   frame.render.width = static_cast<std::uint32_t>(config.integer("image.width"));
   frame.render.height = static_cast<std::uint32_t>(config.integer("image.height"));
   frame.render.max_depth = static_cast<std::uint32_t>(config.integer("image.max_depth"));

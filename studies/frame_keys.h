@@ -13,10 +13,23 @@
 
 namespace marti::studies {
 
+/// Which frames of an animated scene.
+struct FrameRange {
+  std::uint32_t count = 1;
+  std::uint32_t first = 0;
+  double rate = 24.0;  ///< frames a second
+
+  /// Seconds from the animation's beginning, of frame `first + i`.
+  [[nodiscard]] double time(std::uint32_t i) const {
+    return (static_cast<double>(first) + static_cast<double>(i)) / rate;
+  }
+};
+
 /// What is traced, and how. Equal values give the same image and the same work log.
 struct FrameConfig {
   std::string scene;
-  scenes::OpenOptions open;
+  scenes::OpenOptions open;  ///< its time is that of the first frame
+  FrameRange frames;
   std::string structure;
   accel::StructureOptions structure_options;
   processors::RenderOptions render;

@@ -135,19 +135,29 @@ scenes::Scene open(const SceneArguments& arguments) {
   return scenes::open_scene(arguments.source, {{}, arguments.gltf}, studies::decode_image);
 }
 
+std::string scene_info(const SceneArguments& arguments) {
+  const scenes::AnimatedScene scene =
+      scenes::open_animated(arguments.source, {{}, arguments.gltf}, studies::decode_image);
+  return scenes::describe(scene.asked_for(arguments.gltf.time, arguments.source)) +
+         scenes::describe(scene.facts());
+}
+
 void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
   CLI::App* scene = app.add_subcommand("scene", "Lists, describes and exports scenes");
   scene->require_subcommand(1);
   scene->add_subcommand("list", "Lists the procedural scenes")->callback(list_scenes);
   CLI::App* info = scene->add_subcommand("info", "Describes a scene");
-  CLI::App* save = scene->add_subcommand("export", "Writes a scene as binary glTF");
+  CLI::App* save = scene->add_subcommand("export", "Writes a scene, in one pose, as binary glTF");
   for (CLI::App* command : {info, save}) {
     command->add_option("SOURCE", arguments.source, "name:size, or a .gltf or .glb file")->required();
     command->add_option("--scene", arguments.gltf.scene, "scene of the file, by index or name");
     command->add_option("--camera", arguments.gltf.camera, "camera of the file, by index or name");
+    command->add_option("--animation", arguments.gltf.animation,
+                        "animation of the file, by index or name; none: the static pose");
+    command->add_option("--time", arguments.gltf.time, "the pose at this many seconds of the animation");
   }
   save->add_option("FILE", arguments.target, "the .glb file to write")->required();
-  info->callback([&] { print(scenes::describe(open(arguments))); });
+  info->callback([&] { print(scene_info(arguments)); });
   save->callback([&] {
     if (!arguments.target.ends_with(".glb")) {
       throw sim::UserError(arguments.target + ": the name of a binary glTF file must end in .glb");

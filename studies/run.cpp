@@ -19,6 +19,14 @@ void refuse_beyond_memory(const sim::Config& config, const RunResult& result) {
   }
 }
 
+void refuse_several_frames(const sim::Config& config, const FrameRange& frames) {
+  if (frames.count > 1) {
+    config.fail("frames.count",
+                std::to_string(frames.count) +
+                    " frames are asked for, but `marti run` renders one, frames.first: set frames.count = 1");
+  }
+}
+
 }  // namespace
 
 sim::Schema run_schema() {
@@ -32,6 +40,7 @@ RunResult run(sim::Config& config) {
   RunResult result;
   result.config_name = config.name();
   result.frame_config = read_frame(config);
+  refuse_several_frames(config, result.frame_config.frames);
   result.machine = read_machine(config);
   config.refuse_unused();
   refuse_beyond_memory(config, result);

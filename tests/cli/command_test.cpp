@@ -100,7 +100,7 @@ TEST(Command, EveryShippedConfigurationRuns) {
   for (const auto& entry : fs::directory_iterator(fs::path(MARTI_SOURCE) / "configs")) {
     if (entry.path().extension() == ".toml") {
       ++configurations;
-      const Outcome outcome = marti("run " + quoted(entry.path()) + small);
+      const Outcome outcome = marti("run " + quoted(entry.path()) + small + " --set frames.count=1");
       EXPECT_EQ(outcome.status, 0) << entry.path() << "\n" << outcome.output;
       for (const char* line : {"frame time", "speed-up", "hit ratio", "limited by"}) {
         EXPECT_NE(outcome.output.find(line), std::string::npos) << entry.path() << " lacks " << line;
@@ -301,6 +301,50 @@ TEST(Command, AnExportedSceneRendersLikeItsSource) {
   EXPECT_NEAR(camera_hits(rendered), camera_hits(original), 3);
   EXPECT_EQ(marti("scene export teapot:2 " + quoted(directory.path() / "teapot.obj")).status, 2);
   EXPECT_EQ(marti("scene list").status, 0);
+}
+
+TEST(Command, FramesOfAnAnimationDiffer) {
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "animation.toml";
+  const std::string options =
+      " --set image.width=40 --set image.height=30 --set frames.count=1 --set structure.max_level=6";
+  const auto hash = [&](const std::string& more) {
+    const Outcome outcome = marti("run --json " + quoted(config) + options + more);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return nlohmann::json::parse(outcome.output)["image"]["image_hash"].get<std::string>();
+  };
+  const std::string begin = hash("");
+  const std::string third = hash(" --set frames.first=3");
+  EXPECT_NE(begin, third);
+  EXPECT_EQ(third, hash(" --set frames.first=6 --set frames.rate=16")) << "the same time";
+  EXPECT_EQ(hash(" --set frames.first=8"), hash(" --set frames.first=9")) << "it stands still after its end";
+
+  const Outcome all = marti("run " + quoted(config));
+  EXPECT_EQ(all.status, 2);
+  EXPECT_NE(all.output.find("animation.toml:8: frames.count: 8 frames"), std::string::npos) << all.output;
+  for (const char* what : {"scene.source=tetra:2", "scene.animation=none"}) {
+    const Outcome still =
+        marti("run " + quoted(config) + options + " --set frames.first=1 --set " + std::string(what));
+    EXPECT_EQ(still.status, 2);
+    EXPECT_NE(still.output.find("no animation plays"), std::string::npos) << still.output;
+  }
+}
+
+TEST(Command, AnExportedPoseIsAStaticScene) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "pose.glb";
+  const std::string scene = quoted(fs::path(MARTI_SOURCE) / "configs" / "scenes" / "swing.glb");
+  const Outcome info = marti("scene info " + scene + " --time 0.375");
+  EXPECT_NE(info.output.find("animation 0: 'swing', 1 s, 4 channels (plays)"), std::string::npos)
+      << info.output;
+  EXPECT_NE(info.output.find("skins: 1\nmorph targets: 1\n"), std::string::npos) << info.output;
+  ASSERT_EQ(marti("scene export " + scene + " " + quoted(file) + " --time 0.375").status, 0);
+  const Outcome exported = marti("scene info " + quoted(file));
+  EXPECT_NE(exported.output.find("animations: 0\n"), std::string::npos) << exported.output;
+  const std::string bounds = info.output.substr(info.output.find("bounds:"), 20);
+  EXPECT_NE(exported.output.find(bounds), std::string::npos) << exported.output;
+  EXPECT_EQ(marti("scene info " + scene + " --time nan").status, 2);
+  EXPECT_EQ(marti("scene info " + quoted(file) + " --time 1").status, 2);
+  EXPECT_EQ(marti("scene info " + scene + " --animation swim").status, 2);
 }
 
 TEST(Command, BrokenGltfFilesAreRefused) {

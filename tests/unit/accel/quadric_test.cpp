@@ -364,14 +364,14 @@ TEST(Quadrics, MovedOnesAreFound) {
   std::vector<scenes::Quadric> quadrics = hostile_quadrics(0.0, 73);
   const TriangleSet before(triangles, quadrics);
   const auto first = static_cast<std::uint32_t>(triangles.size());
-  EXPECT_TRUE(accel::moved_triangles(before, TriangleSet(triangles, quadrics)).empty());
+  EXPECT_TRUE(accel::moved_primitives(before, TriangleSet(triangles, quadrics)).empty());
   quadrics[3].base.x += 0.001;
   quadrics[45].tip.y += 0.001;
   quadrics[85].radius *= 1.5;
-  EXPECT_EQ(accel::moved_triangles(before, TriangleSet(triangles, quadrics)),
+  EXPECT_EQ(accel::moved_primitives(before, TriangleSet(triangles, quadrics)),
             (std::vector<std::uint32_t>{first + 3, first + 45, first + 85}));
   quadrics.pop_back();
-  EXPECT_THROW((void)accel::moved_triangles(before, TriangleSet(triangles, quadrics)), sim::UserError);
+  EXPECT_THROW((void)accel::moved_primitives(before, TriangleSet(triangles, quadrics)), sim::UserError);
 }
 
 TEST(Quadrics, BoundsAreTight) {

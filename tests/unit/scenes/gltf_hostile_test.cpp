@@ -382,8 +382,11 @@ TEST(Hostile, LimitsHold) {
   options.max_file_bytes = 100;
   EXPECT_NE(message(options).find("many.glb"), std::string::npos);
   options = {};
-  options.frame = 1;
-  EXPECT_NE(message(options).find("frame 1"), std::string::npos);
+  options.time = 1;
+  EXPECT_NE(message(options).find("no animation plays"), std::string::npos);
+  options = {};
+  options.animation = "walk";
+  EXPECT_NE(message(options).find("no animation"), std::string::npos);
 }
 
 TEST(Hostile, ManyInstancesOfManyPointsEnd) {

@@ -436,8 +436,16 @@ TEST(OpenScene, ChoosesByTheEndOfTheName) {
       test::user_error_of([&] { static_cast<void>(open_scene("tetra:1", options, {})); }).find("tetra:1"),
       std::string::npos);
   options.gltf.camera.clear();
-  options.gltf.frame = 2;
-  EXPECT_NE(test::user_error_of([&] { static_cast<void>(open_scene("tetra:1", options, {})); }).find("frame"),
+  options.gltf.time = 2;
+  EXPECT_NE(test::user_error_of([&] {
+              static_cast<void>(open_scene("tetra:1", options, {}));
+            }).find("no animation plays"),
+            std::string::npos);
+  EXPECT_EQ(open_animated("tetra:1", options, {}).at(2.0).triangles.size(), 4U);
+  options.gltf.animation = "walk";
+  EXPECT_NE(test::user_error_of([&] {
+              static_cast<void>(open_animated("tetra:1", options, {}));
+            }).find("no animations"),
             std::string::npos);
 }
 

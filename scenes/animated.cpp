@@ -1,0 +1,86 @@
+#include "scenes/animated.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "sim/error.h"
+
+namespace marti::scenes {
+
+namespace {
+
+class OnePose : public PoseSource {
+ public:
+  explicit OnePose(Scene scene) : scene_(std::move(scene)) {}
+  [[nodiscard]] Scene at(double /*seconds*/) const override { return scene_; }
+  [[nodiscard]] bool moves() const override { return false; }
+  [[nodiscard]] double duration() const override { return 0.0; }
+  [[nodiscard]] MotionFacts facts() const override { return {}; }
+
+ private:
+  Scene scene_;
+};
+
+using Bits = std::array<std::uint64_t, 9>;
+
+Bits bits_of(const Scene& scene, const Triangle& triangle) {
+  Bits bits{};
+  std::size_t next = 0;
+  for (const std::uint32_t vertex : triangle.vertex) {
+    for (int axis = 0; axis < 3; ++axis) {
+      bits[next++] = std::bit_cast<std::uint64_t>(scene.positions[vertex][axis]);
+    }
+  }
+  return bits;
+}
+
+}  // namespace
+
+AnimatedScene::AnimatedScene(Scene only) : source_(std::make_shared<OnePose>(std::move(only))) {}
+
+Scene AnimatedScene::at(double seconds) const {
+  if (!std::isfinite(seconds)) {
+    throw sim::UserError("the time of a pose must be a finite number of seconds");
+  }
+  return source_->at(seconds);
+}
+
+Scene AnimatedScene::asked_for(double seconds, const std::string& name) const {
+  if (seconds != 0.0 && !moves()) {
+    std::ostringstream text;
+    text << name << ": its pose at " << seconds << " s is asked for, but no animation plays";
+    throw sim::UserError(text.str());
+  }
+  return at(seconds);
+}
+
+std::vector<std::uint32_t> moved_primitives(const Scene& before, const Scene& after) {
+  sim::ensure(before.triangles.size() == after.triangles.size(),
+              "poses of one scene must have the same number of triangles");
+  std::vector<std::uint32_t> moved;
+  for (std::size_t i = 0; i < before.triangles.size(); ++i) {
+    if (bits_of(before, before.triangles[i]) != bits_of(after, after.triangles[i])) {
+      moved.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  return moved;
+}
+
+std::string describe(const MotionFacts& facts) {
+  std::ostringstream out;
+  out << "animations: " << facts.animations.size() << "\n";
+  for (std::size_t i = 0; i < facts.animations.size(); ++i) {
+    const AnimationFacts& animation = facts.animations[i];
+    out << "animation " << i << ": '" << animation.name << "', " << animation.duration << " s, "
+        << animation.channels << " channels" << (static_cast<int>(i) == facts.chosen ? " (plays)" : "")
+        << "\n";
+  }
+  out << "skins: " << facts.skins << "\n"
+      << "morph targets: " << facts.morph_targets << "\n";
+  return out.str();
+}
+
+}  // namespace marti::scenes

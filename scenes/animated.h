@@ -1,0 +1,87 @@
+// Scenes that move: opened once, posed at any time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace marti::scenes {
+
+struct AnimationFacts {
+  std::string name;            ///< may be empty
+  double duration = 0.0;       ///< seconds, to the last key frame
+  std::uint64_t channels = 0;  ///< properties of nodes that it changes
+};
+
+/// What can move in a scene.
+struct MotionFacts {
+  std::vector<AnimationFacts> animations;  ///< all of the file
+  int chosen = -1;                         ///< the one that plays, -1 for none
+  std::uint64_t skins = 0;                 ///< that meshes of the scene use
+  std::uint64_t morph_targets = 0;         ///< of the meshes of the scene
+};
+
+/// Where poses come from. Any number of threads may ask at once.
+class PoseSource {
+ public:
+  PoseSource() = default;
+  PoseSource(const PoseSource&) = delete;
+  PoseSource& operator=(const PoseSource&) = delete;
+  virtual ~PoseSource() = default;
+  /// The pose at a finite time. See AnimatedScene::at.
+  [[nodiscard]] virtual Scene at(double seconds) const = 0;
+  /// False when there is one pose only.
+  [[nodiscard]] virtual bool moves() const = 0;
+  /// Seconds to the last key frame; 0 when there is one pose only.
+  [[nodiscard]] virtual double duration() const = 0;
+  [[nodiscard]] virtual MotionFacts facts() const = 0;
+};
+
+/// A scene over time. Copies share their data.
+///
+/// All poses have the same triangles: the same number in the same order with the same materials and source
+/// polygons, so that a primitive id means the same one in each. Only positions, normals, lights, camera and
+/// notes differ, and the order of a triangle's corners where a node is mirrored in one pose and not in the
+/// other. What does not move has bit-identical positions.
+class AnimatedScene {
+ public:
+  /// A scene of one pose.
+  explicit AnimatedScene(Scene only);
+  explicit AnimatedScene(std::shared_ptr<const PoseSource> source) : source_(std::move(source)) {}
+
+  /// The pose at a time in seconds; before the animation's beginning and after its end it stands still.
+  /// The same time gives the same bits. A triangle with a corner that is not finite or beyond 1e30 in this
+  /// pose shrinks to a point without area, so that no id moves up, and a note counts such triangles.
+  /// Throws UserError when the time is not finite, when no triangle has finite positions, and when a
+  /// transform is not finite or leaves a light or the camera no direction.
+  [[nodiscard]] Scene at(double seconds) const;
+
+  /// The same, but a time other than 0 is refused where there is one pose only; `name` of the scene begins
+  /// the message.
+  [[nodiscard]] Scene asked_for(double seconds, const std::string& name) const;
+
+  /// Does an animation play? If not there is one pose only.
+  [[nodiscard]] bool moves() const { return source_->moves(); }
+
+  /// Seconds to the last key frame; 0 when there is one pose only.
+  [[nodiscard]] double duration() const { return source_->duration(); }
+
+  /// Throws UserError when an animation of the file is broken, chosen or not.
+  [[nodiscard]] MotionFacts facts() const { return source_->facts(); }
+
+ private:
+  std::shared_ptr<const PoseSource> source_;
+};
+
+/// The primitives whose corners differ between two poses of one scene, compared bit for bit; ids, ascending.
+/// Throws InternalError when the two differ in their number of triangles.
+[[nodiscard]] std::vector<std::uint32_t> moved_primitives(const Scene& before, const Scene& after);
+
+/// The facts as text, one "name: value" line each.
+[[nodiscard]] std::string describe(const MotionFacts& facts);
+
+}  // namespace marti::scenes
