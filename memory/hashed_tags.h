@@ -102,8 +102,8 @@ class HashedTags {
     std::uint32_t older = empty;
   };
   struct Set {
-    std::uint32_t used = 0;           // ways ever used
-    std::uint32_t emptied = empty;    // the first of them that is empty again
+    std::uint32_t used = 0;         // ways ever used
+    std::uint32_t emptied = empty;  // the first of them that is empty again
     std::uint32_t newest = empty;
     std::uint32_t oldest = empty;
   };

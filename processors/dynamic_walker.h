@@ -22,6 +22,7 @@
 #include "processors/replay_input.h"
 #include "processors/step_time.h"
 #include "processors/tree_copies.h"
+#include "processors/visit_plan.h"
 
 namespace marti::processors {
 
@@ -99,7 +100,12 @@ class DynamicWalker {
         local_beat_(input.config.local.clock.cycles(input.config.local.cycles_per_beat)),
         local_base_(input.config.placement == Placement::replicated ? 0
                     : private_()                                    ? plan_.lower_base()
-                                                                    : ~memory::Address{0}) {}
+                                                                    : ~memory::Address{0}) {
+    if (Caches::present && !input.step_by_step) {
+      visits_ = plan_initial_visits(plan_, topology_, layout_, unit_shift_, ticks_);
+      planned_limit_ = visits_.empty() ? 0 : 2U << operand_bits;
+    }
+  }
 
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
   [[nodiscard]] const BuildTicks& times() const { return build_ticks_; }
@@ -134,6 +140,9 @@ class DynamicWalker {
             }
             read_record(cursor, copy, plan_.eager()[cursor.eager++], Todo::split);
             break;
+          }
+          if constexpr (RunAhead && Caches::present) {
+            take_planned(lines, cache, cursor, statistics);
           }
           if (cursor.word == cursor.word_end) {
             ++statistics.steps.pixels;
@@ -307,6 +316,59 @@ class DynamicWalker {
          layout_.record_bytes(memory::RecordKind::primitive));
   }
 
+  // Takes visits to the initial tree whose lines are all settled and in the cache. The visit at which that
+  // ends is made record by record from its beginning: using lines once more in the same order changes
+  // nothing.
+  void take_planned(const LineStates& lines, View cache, DynamicCursor& cursor, NodeStatistics& statistics) {
+    VisitCounts counts;
+    std::uint32_t visits = 0;
+    sim::Ticks time = cursor.time;
+    const std::uint32_t* word = cursor.word;
+    for (; word != cursor.word_end && *word < planned_limit_; ++word) {
+      const Visit& visit = visits_.visits[operand_of(*word)];
+      const std::uint32_t* line = visits_.lines.data() + visit.begin;
+      const std::uint32_t* const end = line + visit.lines;
+      while (line != end && lines.settled(*line) && look_up(cache, line)) {
+        ++line;
+      }
+      if (line != end || visit.lines == 0) {
+        break;
+      }
+      time = sim::add_ticks(time, visit.time);
+      counts += visit.counts;
+      if (++visits == most_summed_visits) [[unlikely]] {
+        add_visits(std::exchange(counts, {}), statistics);
+        visits = 0;
+      }
+    }
+    cursor.word = word;
+    cursor.time = time;
+    add_visits(counts, statistics);
+  }
+
+  [[gnu::always_inline]] bool look_up(View cache, const std::uint32_t* line) const {
+    if constexpr (Caches::by_kind) {
+      const auto at = static_cast<std::size_t>(line - visits_.lines.data());
+      return cache.touch(kind_of_label(visits_.labels[at]), *line);
+    } else {
+      return cache.touch(memory::RecordKind::node, *line);  // such caches do not look at the kind
+    }
+  }
+
+  static void add_visits(const VisitCounts& counts, NodeStatistics& statistics) {
+    const auto of = [&](VisitCount what) { return std::int64_t{counts.of(what)}; };
+    const auto add_hits = [&](memory::RecordKind kind, VisitCount what) {
+      statistics.references.hits[static_cast<std::size_t>(kind)] += of(what);
+    };
+    statistics.steps.branches += of(VisitCount::branch);
+    statistics.steps.leaves += of(VisitCount::leaf);
+    statistics.steps.lists += of(VisitCount::list);
+    statistics.steps.tests += of(VisitCount::test);
+    add_hits(memory::RecordKind::node, VisitCount::node_line);
+    add_hits(memory::RecordKind::list, VisitCount::list_line);
+    add_hits(memory::RecordKind::primitive, VisitCount::primitive_line);
+  }
+
   // Whether the node sees the lazy branch built whose record it reads now.
   void look(std::uint32_t copy, DynamicCursor& cursor) const {
     if (cursor.todo == Todo::branch) {
@@ -475,6 +537,8 @@ class DynamicWalker {
   std::uint32_t line_bytes_;
   unsigned unit_shift_;
   TreeCopies copies_;
+  VisitPlan visits_;  // of the initial tree
+  std::uint32_t planned_limit_ = 0;
   BranchLists lists_;
   StepTicks ticks_;
   BuildTicks build_ticks_;

@@ -54,8 +54,8 @@ struct ReplayOptions {
                                    const ReplayOptions& options = {});
 
 /// The conservation laws that every result must obey: each node's time adds up to the end; every pixel is
-/// written once; what the nodes waited is what the interconnect and the banks made them wait; what was built is
-/// what is there.
+/// written once; what the nodes waited is what the interconnect and the banks made them wait; what was built
+/// is what is there.
 void check_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result);
 
 }  // namespace marti::processors

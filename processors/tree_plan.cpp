@@ -101,4 +101,35 @@ void TreePlan::place_behind(const memory::Layout& layout, std::uint32_t line_byt
   end_ = first_block() + all_block_bytes_;
 }
 
+VisitPlan plan_initial_visits(const TreePlan& plan, const accel::Topology& topology,
+                              const memory::Layout& layout, unsigned line_shift, const StepTicks& ticks) {
+  // The same tree with its lists where the plan puts them.
+  accel::Topology placed;
+  placed.nodes = topology.nodes;
+  placed.entries.resize(plan.initial_entries());
+  std::vector<std::uint32_t> records(topology.nodes.size());
+  const auto planned = [&](std::uint32_t node) {
+    return plan.place(node).home == TreePlan::none && plan.place(node).lazy == TreePlan::none;
+  };
+  for (std::uint32_t number = 0; number < records.size(); ++number) {
+    accel::TopologyNode& node = placed.nodes[number];
+    records[number] = plan.place(number).record;
+    if (!planned(number)) {
+      node.leaf = true;
+      node.count = 0;
+    } else if (node.leaf) {
+      const auto first = topology.entries.begin() + node.first;
+      node.first = static_cast<std::uint32_t>(plan.place(number).list);
+      std::copy(first, first + node.count, placed.entries.begin() + node.first);
+    }
+  }
+  VisitPlan visits = plan_visits(placed, layout, records, line_shift, ticks);
+  for (std::uint32_t number = 0; number < visits.visits.size(); ++number) {
+    if (!planned(number)) {
+      visits.visits[number].lines = 0;
+    }
+  }
+  return visits;
+}
+
 }  // namespace marti::processors

@@ -18,6 +18,7 @@
 #include "memory/layout.h"
 #include "processors/build_start.h"
 #include "processors/machine_config.h"
+#include "processors/visit_plan.h"
 
 namespace marti::processors {
 
@@ -94,5 +95,10 @@ class TreePlan {
   memory::Address lower_base_ = 0;
   memory::Address end_ = 0;
 };
+
+/// The visits to nodes of the initial tree that are no P nodes; those to others have no lines.
+[[nodiscard]] VisitPlan plan_initial_visits(const TreePlan& plan, const accel::Topology& topology,
+                                            const memory::Layout& layout, unsigned line_shift,
+                                            const StepTicks& ticks);
 
 }  // namespace marti::processors
