@@ -64,7 +64,7 @@ class Measurement {
     for (const std::uint32_t id : list) {
       std::uint32_t tests = 0;
       before = accel::operation_counts();
-      const std::uint32_t met = sorter.children(octree_.triangles()[id], tests);
+      const std::uint32_t met = sorter.children(octree_.triangles(), id, tests);
       (tests == 0 ? untested_counts_ : tested_counts_) += accel::operation_counts() - before;
       ++(tests == 0 ? untested_ : tested_);
       measured_.overlaps += tests;
@@ -120,10 +120,10 @@ BuildTicks build_ticks(const MachineConfig& config) {
     return (std::int64_t{bytes} + config.word_bytes - 1) / config.word_bytes;
   };
   const memory::LayoutConfig& layout = config.layout;
-  const BuildCycles cycles =
-      build_cycles(config.operations,
-                   {words(layout.node_bytes), words(layout.entry_bytes), words(layout.primitive_bytes),
-                    words(layout.material_bytes), words(layout.texel_bytes), words(layout.pixel_bytes)});
+  const BuildCycles cycles = build_cycles(
+      config.operations, {words(layout.node_bytes), words(layout.entry_bytes), words(layout.primitive_bytes),
+                          words(layout.quadric_bytes), words(layout.material_bytes),
+                          words(layout.texel_bytes), words(layout.pixel_bytes)});
   const sim::Clock& clock = config.clock;
   return {.lock = clock.cycles(cycles.lock),
           .listed = clock.cycles(cycles.listed),

@@ -33,6 +33,7 @@ enum class Todo : std::uint8_t {
   tests,    ///< test the next primitive of the leaf
   branch,   ///< a lazy branch's record was read: is it built?
   inherit,  ///< a private tree's slot was empty and the shared record was read: split the branch
+  voxel,    ///< the record of a node that is taken as one voxel was read; it may stay a P node
   lock,     ///< the lock transaction is under way
   split,    ///< a branch to be split before the frame was read: split it
   sort,     ///< the list of the branch was read: read and sort its next primitive
@@ -102,7 +103,7 @@ class DynamicWalker {
                     : private_()                                    ? plan_.lower_base()
                                                                     : ~memory::Address{0}) {
     if (Caches::present && !input.step_by_step) {
-      visits_ = plan_initial_visits(plan_, topology_, layout_, unit_shift_, ticks_);
+      visits_ = plan_initial_visits(plan_, input.log, layout_, unit_shift_, ticks_);
       planned_limit_ = visits_.empty() ? 0 : 2U << operand_bits;
     }
   }
@@ -161,8 +162,7 @@ class DynamicWalker {
             cursor.todo = Todo::step;
             break;
           }
-          ++statistics.steps.tests;
-          spend(cursor, ticks_.test, 1);
+          begin_test(cursor, statistics.steps, *cursor.entry);
           read_primitive(cursor);
           break;
         case Todo::branch:
@@ -172,11 +172,18 @@ class DynamicWalker {
             spend(cursor, build_ticks_.lock, 1);
             cursor.todo = Todo::lock;
             return DynamicStop::lock;
-          } else if (plan_.place(cursor.node).home == TreePlan::none) {
+          } else if (has_slot(plan_.place(cursor.node))) {
             cursor.todo = Todo::inherit;
             read(cursor, memory::RecordKind::node, initial_record(cursor.node), node_bytes());
           } else {
             take(node, copy, cursor, built);
+          }
+          break;
+        case Todo::voxel:
+          cursor.todo = Todo::step;
+          if (const TreePlan::Place& place = plan_.place(cursor.node);
+              has_slot(place) && !copies_.built(copy, place.lazy)) {
+            read(cursor, memory::RecordKind::node, initial_record(cursor.node), node_bytes());
           }
           break;
         case Todo::inherit:
@@ -265,6 +272,9 @@ class DynamicWalker {
     cursor.time = sim::add_ticks(cursor.time, sim::multiply_ticks(each, count));
   }
 
+  [[nodiscard]] bool has_slot(const TreePlan::Place& place) const {
+    return place.lazy != TreePlan::none && plan_.lazy()[place.lazy].slot != TreePlan::none;
+  }
   [[nodiscard]] memory::Address initial_record(std::uint32_t tree_node) const {
     return layout_.address(memory::RecordKind::node, plan_.place(tree_node).record);
   }
@@ -273,7 +283,7 @@ class DynamicWalker {
     if (place.home != TreePlan::none) {
       return block_of(copy, place) + place.record * plan_.stride();
     }
-    if (place.lazy != TreePlan::none && plan_.lazy()[place.lazy].slot != TreePlan::none) {
+    if (has_slot(place)) {
       return plan_.slot_address(plan_.lazy()[place.lazy].slot);
     }
     return initial_record(tree_node);
@@ -311,9 +321,27 @@ class DynamicWalker {
     read(cursor, memory::RecordKind::node, record_address(copy, tree_node), node_bytes());
   }
   void read_primitive(DynamicCursor& cursor) const {
-    read(cursor, memory::RecordKind::primitive,
-         layout_.address(memory::RecordKind::primitive, *cursor.entry++),
-         layout_.record_bytes(memory::RecordKind::primitive));
+    const std::uint32_t primitive = *cursor.entry++;
+    read(cursor, memory::RecordKind::primitive, layout_.address(memory::RecordKind::primitive, primitive),
+         layout_.record_bytes(memory::RecordKind::primitive, primitive));
+  }
+
+  // A test's computing, at its price.
+  void begin_test(DynamicCursor& cursor, StepCounts& steps, std::uint32_t primitive) const {
+    ++steps.tests;
+    switch (input_.log.kind_of(primitive)) {
+      case accel::PrimitiveKind::triangle:
+        spend(cursor, ticks_.test, 1);
+        return;
+      case accel::PrimitiveKind::sphere:
+        ++steps.sphere_tests;
+        spend(cursor, ticks_.sphere_test, 1);
+        return;
+      case accel::PrimitiveKind::cone:
+        ++steps.cone_tests;
+        spend(cursor, ticks_.cone_test, 1);
+        return;
+    }
   }
 
   // Takes visits to the initial tree whose lines are all settled and in the cache. The visit at which that
@@ -337,13 +365,13 @@ class DynamicWalker {
       time = sim::add_ticks(time, visit.time);
       counts += visit.counts;
       if (++visits == most_summed_visits) [[unlikely]] {
-        add_visits(std::exchange(counts, {}), statistics);
+        add_visits(std::exchange(counts, {}), visits, statistics);
         visits = 0;
       }
     }
     cursor.word = word;
     cursor.time = time;
-    add_visits(counts, statistics);
+    add_visits(counts, visits, statistics);
   }
 
   [[gnu::always_inline]] bool look_up(View cache, const std::uint32_t* line) const {
@@ -355,15 +383,18 @@ class DynamicWalker {
     }
   }
 
-  static void add_visits(const VisitCounts& counts, NodeStatistics& statistics) {
+  static void add_visits(const VisitCounts& counts, std::uint32_t visits, NodeStatistics& statistics) {
     const auto of = [&](VisitCount what) { return std::int64_t{counts.of(what)}; };
     const auto add_hits = [&](memory::RecordKind kind, VisitCount what) {
       statistics.references.hits[static_cast<std::size_t>(kind)] += of(what);
     };
-    statistics.steps.branches += of(VisitCount::branch);
-    statistics.steps.leaves += of(VisitCount::leaf);
-    statistics.steps.lists += of(VisitCount::list);
-    statistics.steps.tests += of(VisitCount::test);
+    StepCounts& steps = statistics.steps;
+    steps.branches += visits - of(VisitCount::leaf);
+    steps.leaves += of(VisitCount::leaf);
+    steps.lists += of(VisitCount::list);
+    steps.tests += of(VisitCount::test) + of(VisitCount::sphere_test) + of(VisitCount::cone_test);
+    steps.sphere_tests += of(VisitCount::sphere_test);
+    steps.cone_tests += of(VisitCount::cone_test);
     add_hits(memory::RecordKind::node, VisitCount::node_line);
     add_hits(memory::RecordKind::list, VisitCount::list_line);
     add_hits(memory::RecordKind::primitive, VisitCount::primitive_line);
@@ -512,6 +543,17 @@ class DynamicWalker {
       case Step::shade:
         ++steps.shades;
         spend(cursor, ticks_.shade, 1);
+        read(cursor, memory::RecordKind::material, layout_.address(memory::RecordKind::material, operand),
+             layout_.record_bytes(memory::RecordKind::material));
+        break;
+      case Step::cut:
+        ++steps.cuts;
+        spend(cursor, ticks_.cut, 1);
+        read_record(cursor, copy, operand, Todo::voxel);
+        break;
+      case Step::pass:
+        ++steps.passes;
+        spend(cursor, ticks_.pass, 1);
         read(cursor, memory::RecordKind::material, layout_.address(memory::RecordKind::material, operand),
              layout_.record_bytes(memory::RecordKind::material));
         break;

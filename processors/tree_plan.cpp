@@ -101,10 +101,14 @@ void TreePlan::place_behind(const memory::Layout& layout, std::uint32_t line_byt
   end_ = first_block() + all_block_bytes_;
 }
 
-VisitPlan plan_initial_visits(const TreePlan& plan, const accel::Topology& topology,
-                              const memory::Layout& layout, unsigned line_shift, const StepTicks& ticks) {
+VisitPlan plan_initial_visits(const TreePlan& plan, const WorkLog& log, const memory::Layout& layout,
+                              unsigned line_shift, const StepTicks& ticks) {
   // The same tree with its lists where the plan puts them.
-  accel::Topology placed;
+  const accel::Topology& topology = log.topology;
+  WorkLog placed_log;
+  placed_log.primitives = log.primitives;
+  placed_log.quadrics = log.quadrics;
+  accel::Topology& placed = placed_log.topology;
   placed.nodes = topology.nodes;
   placed.entries.resize(plan.initial_entries());
   std::vector<std::uint32_t> records(topology.nodes.size());
@@ -123,7 +127,7 @@ VisitPlan plan_initial_visits(const TreePlan& plan, const accel::Topology& topol
       std::copy(first, first + node.count, placed.entries.begin() + node.first);
     }
   }
-  VisitPlan visits = plan_visits(placed, layout, records, line_shift, ticks);
+  VisitPlan visits = plan_visits(placed_log, layout, records, line_shift, ticks);
   for (std::uint32_t number = 0; number < visits.visits.size(); ++number) {
     if (!planned(number)) {
       visits.visits[number].lines = 0;

@@ -97,7 +97,7 @@ class TreePlan {
 };
 
 /// The visits to nodes of the initial tree that are no P nodes; those to others have no lines.
-[[nodiscard]] VisitPlan plan_initial_visits(const TreePlan& plan, const accel::Topology& topology,
+[[nodiscard]] VisitPlan plan_initial_visits(const TreePlan& plan, const WorkLog& log,
                                             const memory::Layout& layout, unsigned line_shift,
                                             const StepTicks& ticks);
 

@@ -75,7 +75,8 @@ TEST(DynamicFrames, ABranchListedWhatItsLeavesDo) {
 TEST(DynamicFrames, WhatTheRaysVisitIsBuiltAndNothingElse) {
   for (const char* kind : {"octree", "bsp"}) {
     const test::Built built(scenes::make_procedural("teapot:4"), kind);
-    const WorkLog& log = *built.render({.width = 48, .height = 48, .max_depth = 2, .record = true}).log;
+    const Frame frame = built.render({.width = 48, .height = 48, .max_depth = 2, .record = true});
+    const WorkLog& log = *frame.log;
     std::set<std::uint32_t> visited;
     for (const LogRow& row : log.rows) {
       for (std::size_t at = 0; at < row.words.size(); ++at) {
