@@ -16,71 +16,17 @@
 #include "processors/branch_lists.h"
 #include "processors/build_mix.h"
 #include "processors/build_result.h"
+#include "processors/dynamic_cursor.h"
+#include "processors/local_memory.h"
 #include "processors/node_caches.h"
-#include "processors/packets.h"
 #include "processors/program/work_log.h"
 #include "processors/replay_input.h"
 #include "processors/step_time.h"
+#include "processors/tree_addresses.h"
 #include "processors/tree_copies.h"
 #include "processors/visit_plan.h"
 
 namespace marti::processors {
-
-/// What follows when the bytes from DynamicCursor::at to `end` are dealt with.
-enum class Todo : std::uint8_t {
-  step,     ///< the next step of the log, or the next branch to split before the frame
-  list,     ///< a leaf's record was read: read its list
-  tests,    ///< test the next primitive of the leaf
-  branch,   ///< a lazy branch's record was read: is it built?
-  inherit,  ///< a private tree's slot was empty and the shared record was read: split the branch
-  voxel,    ///< the record of a node that is taken as one voxel was read; it may stay a P node
-  lock,     ///< the lock transaction is under way
-  split,    ///< a branch to be split before the frame was read: split it
-  sort,     ///< the list of the branch was read: read and sort its next primitive
-  make,     ///< the next child: write its list
-  record,   ///< its list was written: write its record
-  publish,  ///< all children were written: write the branch's own record
-  done,     ///< it was written
-};
-
-/// How a lock transaction came out.
-enum class Lock : std::uint8_t { won, wait, built };
-
-struct DynamicCursor {
-  sim::Ticks time = 0;
-  const std::uint32_t* word = nullptr;
-  const std::uint32_t* word_end = nullptr;
-  memory::Address at = 0;                ///< next byte to read or write
-  memory::Address end = 0;               ///< one past the last of them
-  const std::uint32_t* entry = nullptr;  ///< primitives still to be tested or sorted
-  const std::uint32_t* entry_end = nullptr;
-  sim::Ticks arrived = 0;             ///< waiting: when the lock transaction was done; -1 before
-  sim::Ticks published = 0;           ///< waiting: when the branch can be seen; -1 before
-  std::uint32_t node = 0;             ///< the leaf that is tested, or the branch that is looked at or split
-  std::uint32_t child = 0;            ///< next child to make
-  std::uint32_t eager = 0;            ///< next branch to split before the frame
-  std::uint32_t tests = 0;            ///< entries of the leaf's list to read
-  std::uint32_t first_waiter = none;  ///< of the nodes that wait for this one to publish
-  std::uint32_t next_waiter = none;   ///< in the list this one waits in
-  std::uint32_t x = 0;
-  std::uint32_t y = 0;
-  std::uint32_t writes = 0;  ///< where the next posted write goes in the write buffer
-  Packet packet;
-  memory::RecordKind kind = memory::RecordKind::node;
-  Todo todo = Todo::step;
-  Lock lock = Lock::won;
-  bool writing = false;  ///< the bytes are written, not read
-  bool due = false;      ///< the simulation has reached the reference that comes next
-  bool seen = false;     ///< the lazy branch just read was seen built
-  bool before = false;   ///< it still splits branches before the frame
-
-  static constexpr std::uint32_t none = 0xffffffffU;
-};
-
-/// Why a walk stopped. due: the reference at the cursor's time must wait for the simulation. lock, miss: it
-/// asks the interconnect. write: it posts a write, of a pixel when todo is `step`. ready: nothing is left to
-/// split before the frame.
-enum class DynamicStop : std::uint8_t { due, miss, lock, write, ready };
 
 template <class Caches>
 class DynamicWalker {
@@ -94,11 +40,11 @@ class DynamicWalker {
         line_bytes_(Caches::present ? input.config.cache.cache.line : input.config.banks.interleave),
         unit_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
         copies_(plan_, topology_, layout_, input.config, unit_shift_),
+        addresses_(plan_, topology_, layout_, copies_),
         lists_(topology_),
         ticks_(step_ticks(input.config)),
         build_ticks_(build_ticks(input.config)),
-        local_access_(input.config.local.clock.cycles(input.config.local.access_cycles)),
-        local_beat_(input.config.local.clock.cycles(input.config.local.cycles_per_beat)),
+        local_(input.config.local),
         local_base_(input.config.placement == Placement::replicated ? 0
                     : private_()                                    ? plan_.lower_base()
                                                                     : ~memory::Address{0}) {
@@ -107,6 +53,9 @@ class DynamicWalker {
       planned_limit_ = visits_.empty() ? 0 : 2U << operand_bits;
     }
   }
+
+  DynamicWalker(const DynamicWalker&) = delete;  // its parts know each other
+  DynamicWalker& operator=(const DynamicWalker&) = delete;
 
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
   [[nodiscard]] const BuildTicks& times() const { return build_ticks_; }
@@ -154,7 +103,7 @@ class DynamicWalker {
           break;
         case Todo::list:
           cursor.todo = Todo::tests;
-          read(cursor, memory::RecordKind::list, list_address(copy, cursor.node),
+          read(cursor, memory::RecordKind::list, addresses_.list(copy, cursor.node),
                std::uint64_t{cursor.tests} * layout_.record_bytes(memory::RecordKind::list));
           break;
         case Todo::tests:
@@ -172,9 +121,9 @@ class DynamicWalker {
             spend(cursor, build_ticks_.lock, 1);
             cursor.todo = Todo::lock;
             return DynamicStop::lock;
-          } else if (has_slot(plan_.place(cursor.node))) {
+          } else if (addresses_.has_slot(plan_.place(cursor.node))) {
             cursor.todo = Todo::inherit;
-            read(cursor, memory::RecordKind::node, initial_record(cursor.node), node_bytes());
+            read(cursor, memory::RecordKind::node, addresses_.initial_record(cursor.node), node_bytes());
           } else {
             take(node, copy, cursor, built);
           }
@@ -182,8 +131,8 @@ class DynamicWalker {
         case Todo::voxel:
           cursor.todo = Todo::step;
           if (const TreePlan::Place& place = plan_.place(cursor.node);
-              has_slot(place) && !copies_.built(copy, place.lazy)) {
-            read(cursor, memory::RecordKind::node, initial_record(cursor.node), node_bytes());
+              addresses_.has_slot(place) && !copies_.built(copy, place.lazy)) {
+            read(cursor, memory::RecordKind::node, addresses_.initial_record(cursor.node), node_bytes());
           }
           break;
         case Todo::inherit:
@@ -191,7 +140,8 @@ class DynamicWalker {
           break;
         case Todo::lock:
           if (cursor.lock == Lock::won) {
-            take_won(copy, cursor, built);
+            ++built.splits;
+            begin_split(copy, cursor, built);
           } else {
             ++built.rereads;
             read_record(cursor, copy, cursor.node, Todo::branch);
@@ -209,12 +159,12 @@ class DynamicWalker {
           break;
         case Todo::record:
           cursor.todo = Todo::make;
-          write(cursor, record_address(copy, first_child(cursor) + cursor.child++), node_bytes());
+          write(cursor, addresses_.record(copy, first_child(cursor) + cursor.child++), node_bytes());
           break;
         case Todo::publish:
           cursor.todo = Todo::done;
           spend(cursor, build_ticks_.publish, 1);
-          write(cursor, record_address(copy, cursor.node), node_bytes());
+          write(cursor, addresses_.record(copy, cursor.node), node_bytes());
           break;
         case Todo::done:
           cursor.todo = Todo::step;
@@ -233,7 +183,7 @@ class DynamicWalker {
   }
   /// The record that a lock transaction is about.
   [[nodiscard]] memory::Address locked_address(std::uint32_t node, const DynamicCursor& cursor) const {
-    return record_address(copies_.copy_of(node), cursor.node);
+    return addresses_.record(copies_.copy_of(node), cursor.node);
   }
 
   /// The time of the miss has come: its line is brought in.
@@ -272,38 +222,6 @@ class DynamicWalker {
     cursor.time = sim::add_ticks(cursor.time, sim::multiply_ticks(each, count));
   }
 
-  [[nodiscard]] bool has_slot(const TreePlan::Place& place) const {
-    return place.lazy != TreePlan::none && plan_.lazy()[place.lazy].slot != TreePlan::none;
-  }
-  [[nodiscard]] memory::Address initial_record(std::uint32_t tree_node) const {
-    return layout_.address(memory::RecordKind::node, plan_.place(tree_node).record);
-  }
-  [[nodiscard]] memory::Address record_address(std::uint32_t copy, std::uint32_t tree_node) const {
-    const TreePlan::Place& place = plan_.place(tree_node);
-    if (place.home != TreePlan::none) {
-      return block_of(copy, place) + place.record * plan_.stride();
-    }
-    if (has_slot(place)) {
-      return plan_.slot_address(plan_.lazy()[place.lazy].slot);
-    }
-    return initial_record(tree_node);
-  }
-  [[nodiscard]] memory::Address list_address(std::uint32_t copy, std::uint32_t tree_node) const {
-    const TreePlan::Place& place = plan_.place(tree_node);
-    if (place.home != TreePlan::none) {
-      return block_of(copy, place) + place.list;
-    }
-    if (!topology_.nodes[tree_node].leaf && place.lazy == TreePlan::none) {
-      return plan_.dynamic_base() + place.list;
-    }
-    return layout_.address(memory::RecordKind::list, place.list);
-  }
-  [[nodiscard]] memory::Address block_of(std::uint32_t copy, const TreePlan::Place& place) const {
-    const memory::Address block = copies_.block(copy, place.home);
-    sim::ensure(block != 0, "the log visits a node before its parent");
-    return block;
-  }
-
   static void read(DynamicCursor& cursor, memory::RecordKind kind, memory::Address at, std::uint64_t bytes) {
     cursor.kind = kind;
     cursor.at = at;
@@ -311,14 +229,13 @@ class DynamicWalker {
     cursor.writing = false;
   }
   static void write(DynamicCursor& cursor, memory::Address at, std::uint64_t bytes) {
-    cursor.at = at;
-    cursor.end = at + bytes;
+    read(cursor, memory::RecordKind::node, at, bytes);  // the kind of a write does not matter
     cursor.writing = true;
   }
   void read_record(DynamicCursor& cursor, std::uint32_t copy, std::uint32_t tree_node, Todo todo) const {
     cursor.node = tree_node;
     cursor.todo = todo;
-    read(cursor, memory::RecordKind::node, record_address(copy, tree_node), node_bytes());
+    read(cursor, memory::RecordKind::node, addresses_.record(copy, tree_node), node_bytes());
   }
   void read_primitive(DynamicCursor& cursor) const {
     const std::uint32_t primitive = *cursor.entry++;
@@ -435,11 +352,7 @@ class DynamicWalker {
   }
 
   void use_local(DynamicCursor& cursor, NodeStatistics& statistics, std::uint32_t bytes) const {
-    const std::int64_t width = input_.config.local.width;
-    const sim::Ticks transfer = sim::multiply_ticks(local_beat_, (std::int64_t{bytes} + width - 1) / width);
-    statistics.time[static_cast<std::size_t>(Activity::transfer)] += transfer;
-    statistics.time[static_cast<std::size_t>(Activity::bank_access)] += local_access_;
-    cursor.time = sim::add_ticks(cursor.time, sim::add_ticks(transfer, local_access_));
+    cursor.time = sim::add_ticks(cursor.time, local_.use(bytes, statistics.time));
   }
 
   void write_local(std::uint32_t copy, DynamicCursor& cursor, NodeStatistics& statistics,
@@ -455,9 +368,6 @@ class DynamicWalker {
 
   void take(std::uint32_t node, std::uint32_t copy, DynamicCursor& cursor, BuildCounts& built) {
     copies_.take(copy, plan_.place(cursor.node).lazy, node);
-    take_won(copy, cursor, built);
-  }
-  void take_won(std::uint32_t copy, DynamicCursor& cursor, BuildCounts& built) {
     ++built.splits;
     begin_split(copy, cursor, built);
   }
@@ -470,7 +380,7 @@ class DynamicWalker {
     cursor.entry = primitives.data();
     cursor.entry_end = primitives.data() + primitives.size();
     cursor.todo = Todo::sort;
-    read(cursor, memory::RecordKind::list, list_address(copy, cursor.node),
+    read(cursor, memory::RecordKind::list, addresses_.list(copy, cursor.node),
          std::uint64_t{listed} * layout_.record_bytes(memory::RecordKind::list));
   }
 
@@ -503,7 +413,7 @@ class DynamicWalker {
     spend(cursor, build_ticks_.entry, entries);
     cursor.todo = Todo::record;
     if (entries != 0) {
-      write(cursor, list_address(copy, child),
+      write(cursor, addresses_.list(copy, child),
             std::uint64_t{entries} * layout_.record_bytes(memory::RecordKind::list));
     }
   }
@@ -579,13 +489,13 @@ class DynamicWalker {
   std::uint32_t line_bytes_;
   unsigned unit_shift_;
   TreeCopies copies_;
+  TreeAddresses addresses_;
   VisitPlan visits_;  // of the initial tree
   std::uint32_t planned_limit_ = 0;
   BranchLists lists_;
   StepTicks ticks_;
   BuildTicks build_ticks_;
-  sim::Ticks local_access_;
-  sim::Ticks local_beat_;
+  LocalMemory local_;
   memory::Address local_base_;  ///< from here on addresses are those of a node's own memory
 };
 

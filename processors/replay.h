@@ -28,7 +28,7 @@ struct MachineResult {
   HostStatistics host;
   BuildResult build;  ///< empty when the tree is given
   std::uint64_t packets = 0;
-  std::uint64_t database_bytes = 0;  ///< of one copy
+  std::uint64_t database_bytes = 0;  ///< of one copy, as the frame begins
   std::uint64_t copies = 0;          ///< one for each cluster, or for each node when replicated
   std::uint64_t events = 0;
   std::size_t host_bytes_per_node = 0;
