@@ -159,7 +159,8 @@ class DynamicWalker {
           break;
         case Todo::record:
           cursor.todo = Todo::make;
-          write(cursor, addresses_.record(copy, first_child(cursor) + cursor.child++), node_bytes());
+          write(cursor, addresses_.record(copy, topology_.nodes[cursor.node].first + cursor.child++),
+                node_bytes());
           break;
         case Todo::publish:
           cursor.todo = Todo::done;
@@ -211,9 +212,6 @@ class DynamicWalker {
 
   [[nodiscard]] bool private_() const { return input_.config.build.sharing == Sharing::private_trees; }
   [[nodiscard]] std::uint32_t node_bytes() const { return layout_.record_bytes(memory::RecordKind::node); }
-  [[nodiscard]] std::uint32_t first_child(const DynamicCursor& cursor) const {
-    return topology_.nodes[cursor.node].first;
-  }
   [[nodiscard]] std::uint32_t part(const DynamicCursor& cursor) const {
     const memory::Address next = ((cursor.at >> unit_shift_) + 1) << unit_shift_;
     return static_cast<std::uint32_t>(std::min(cursor.end, next) - cursor.at);
@@ -405,7 +403,7 @@ class DynamicWalker {
       cursor.todo = Todo::publish;
       return;
     }
-    const std::uint32_t child = first_child(cursor) + cursor.child;
+    const std::uint32_t child = topology_.nodes[cursor.node].first + cursor.child;
     const std::uint32_t entries = plan_.listed(child);
     ++built.children;
     built.entries += entries;
