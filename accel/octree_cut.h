@@ -262,6 +262,7 @@ bool walk_far_cut_node(const OctreeView& view, const FarRay& far, std::uint32_t 
 class CutOctree {
  public:
   CutOctree(const Octree& octree, const VoxelTable& voxels) : octree_(octree), voxels_(voxels) {}
+  [[nodiscard]] const TriangleSet& triangles() const { return octree_.triangles(); }
 
   /// What a ray of unit direction sees. With a pixel of (nearly) no size, the octree's nearest hit.
   template <class Real = double, class Visitor>

@@ -95,6 +95,11 @@ void run(std::uint32_t size, int repeats) {
   longer.cache.cache.line = 64;
   longer.banks.interleave = 64;
   print("64 nodes, 64-byte lines", time_replay(*frame.log, longer, repeats), render, 0.0);
+  processors::MachineConfig dynamic = machine_of(64, 8);
+  dynamic.build.sharing = processors::Sharing::shared;
+  print("64 nodes, shared building", time_replay(*frame.log, dynamic, repeats), render, 0.0);
+  dynamic.build.sharing = processors::Sharing::private_trees;
+  print("64 nodes, private building", time_replay(*frame.log, dynamic, repeats), render, 0.0);
   print("1 node, 8x8 packets", time_replay(*frame.log, machine_of(1, 8), repeats), render, per_reference);
   print("1,024 nodes, 8x8 packets", time_replay(*frame.log, machine_of(1024, 8), repeats), render,
         per_reference);

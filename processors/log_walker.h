@@ -342,8 +342,7 @@ class LogWalker {
     if (cursor.tested == nullptr) {
       return false;
     }
-    const std::uint32_t number = cursor.entry_number++;
-    return ((cursor.tested[number / 32] >> (number % 32)) & 1U) == 0;
+    return !tested_in_mask(cursor.tested, cursor.entry_number++);
   }
 
   // A test's computing, at its price.

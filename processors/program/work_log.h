@@ -67,6 +67,10 @@ inline constexpr std::uint32_t max_operand = (1U << operand_bits) - 1U;
       return 1;
   }
 }
+/// Whether the entry of that number was tested, by a mailed_leaf's mask.
+[[nodiscard]] constexpr bool tested_in_mask(const std::uint32_t* mask, std::uint32_t entry) {
+  return ((mask[entry / 32] >> (entry % 32)) & 1U) != 0;
+}
 /// The tests of a mailed_leaf: bits set in its mask.
 [[nodiscard]] constexpr std::uint32_t tests_of_mask(const std::uint32_t* mask, std::uint32_t entries) {
   std::uint32_t tests = 0;

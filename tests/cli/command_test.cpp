@@ -167,6 +167,29 @@ TEST(Command, TheImageDoesNotDependOnTheMachineNorOnTheStructure) {
   EXPECT_NE(hashes(" --set image.max_depth=1"), expected);
 }
 
+TEST(Command, TheImageDoesNotDependOnHowTheTreeIsBuilt) {
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
+  const auto result = [&](const std::string& options) {
+    const Outcome outcome = marti("run --json " + quoted(config) + small + options);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return nlohmann::json::parse(outcome.output);
+  };
+  const nlohmann::json given = result("");
+  EXPECT_FALSE(given["machine"].contains("build"));
+  for (const char* structure : {"octree", "bsp"}) {
+    for (const char* sharing :
+         {"none", "shared", "shared --set build.initial_level=4", "private --set build.initial_level=full"}) {
+      const nlohmann::json built =
+          result(std::string(" --set structure.kind=") + structure + " --set build.sharing=" + sharing);
+      EXPECT_EQ(built["image"]["image_hash"], given["image"]["image_hash"]) << structure << " " << sharing;
+      const nlohmann::json& build = built["machine"]["build"];
+      EXPECT_EQ(build["per_node"].size(), 16U);
+      EXPECT_GT(build["start_up_ps"].get<std::int64_t>(), 0);
+      EXPECT_EQ(build["all_levels"]["made"], build["counts"]["children"]);
+    }
+  }
+}
+
 struct Wrong {
   const char* text;
   std::vector<std::string> complaint;  // parts of the message
@@ -200,6 +223,17 @@ TEST(Command, WrongConfigurationsGetOneMessageWithFileLineAndKey) {
       {"[structure]\nkind = \"grid\"\nmax_level = 3\n", {"wrong.toml:3", "structure.max_level", "grid"}},
       {"[structure]\nkind = \"bsp\"\ngrid_density = 3.0\n",
        {"wrong.toml:3", "structure.grid_density", "bsp"}},
+      {"[build]\nrule_k = 3.0\n", {"wrong.toml:2", "build.rule_k", "given"}},
+      {"[build]\nsharing = \"none\"\ninitial_level = \"3\"\n",
+       {"wrong.toml:3", "build.initial_level", "none"}},
+      {"[build]\nsharing = \"shared\"\ninitial_level = \"3\"\nrule_k = 3.0\n",
+       {"wrong.toml:4", "build.rule_k", "rule"}},
+      {"[build]\nsharing = \"shared\"\ninitial_level = \"0\"\n", {"wrong.toml:3", "build.initial_level"}},
+      {"[build]\nsharing = \"shared\"\ninitial_level = \"low\"\n", {"wrong.toml:3", "full", "rule", "low"}},
+      {"[structure]\nkind = \"grid\"\n[build]\nsharing = \"none\"\n",
+       {"wrong.toml:4", "build.sharing", "structure.kind", "grid"}},
+      {"[database]\nplacement = \"replicated\"\n[build]\nsharing = \"shared\"\n",
+       {"wrong.toml:4", "build.sharing", "replicated"}},
       {"nodes = 3\n", {"wrong.toml:1", "nodes"}},
       {"[cache\n", {"wrong.toml:1"}},
       {"[cache]\nsize = \"1536 MiB\"\nline = \"1 B\"\nways = 0\n", {"wrong.toml:2", "cache.size", "2^28"}},

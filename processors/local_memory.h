@@ -1,0 +1,30 @@
+// The time of one access to a node's own memory.
+#pragma once
+
+#include "processors/accounting.h"
+#include "processors/machine_config.h"
+
+namespace marti::processors {
+
+class LocalMemory {
+ public:
+  explicit LocalMemory(const LocalMemoryConfig& config)
+      : width_(config.width),
+        access_(config.clock.cycles(config.access_cycles)),
+        beat_(config.clock.cycles(config.cycles_per_beat)) {}
+
+  /// The time that reading or writing `bytes` takes; adds it to `time`. Nobody else is in the way.
+  [[nodiscard]] sim::Ticks use(std::uint32_t bytes, TimeDivision& time) const {
+    const sim::Ticks transfer = sim::multiply_ticks(beat_, (std::int64_t{bytes} + width_ - 1) / width_);
+    time[static_cast<std::size_t>(Activity::transfer)] += transfer;
+    time[static_cast<std::size_t>(Activity::bank_access)] += access_;
+    return sim::add_ticks(transfer, access_);
+  }
+
+ private:
+  std::int64_t width_;
+  sim::Ticks access_;
+  sim::Ticks beat_;
+};
+
+}  // namespace marti::processors

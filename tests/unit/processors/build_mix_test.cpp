@@ -1,0 +1,120 @@
+// What splitting a node costs, against a new measurement; and real frames on machines that build their tree.
+#include "processors/build_mix.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "accel/octree.h"
+#include "processors/branch_lists.h"
+#include "processors/replay.h"
+#include "program_scenes.h"
+#include "scenes/procedural.h"
+
+namespace marti::processors {
+namespace {
+
+// Within 3 %, or a fiftieth of an operation where there is next to none.
+void expect_close(const char* part, const OperationMix& measured, const OperationMix& table) {
+  for (const auto member : {&OperationMix::add, &OperationMix::multiply, &OperationMix::divide,
+                            &OperationMix::square_root, &OperationMix::compare, &OperationMix::integer}) {
+    const auto expected = static_cast<double>(table.*member);
+    EXPECT_NEAR(static_cast<double>(measured.*member), expected, std::max(20.0, 0.03 * expected)) << part;
+  }
+}
+
+TEST(BuildMixes, TheTableIsWhatTheBuilderDoes) {
+  const scenes::Scene scene = scenes::make_procedural("teapot:12");
+  const auto octree = accel::Octree::build(std::make_shared<const accel::TriangleSet>(scene),
+                                           {.max_objects = 9, .max_level = 12});
+  const MeasuredBuild measured = measure_build_mixes(octree);
+  expect_close("listed", measured.mixes.listed, build_mixes().listed);
+  expect_close("overlap", measured.mixes.overlap, build_mixes().overlap);
+  expect_close("child", measured.mixes.child, build_mixes().child);
+  // The counting split does what the builder's did.
+  const accel::Topology& topology = octree.topology();
+  std::uint64_t listed = 0;
+  std::uint64_t overlaps = 0;
+  for (std::size_t node = 0; node < topology.nodes.size(); ++node) {
+    listed += topology.nodes[node].leaf ? 0 : topology.work[node].listed;
+    overlaps += topology.work[node].overlaps;
+  }
+  EXPECT_EQ(measured.listed, listed);
+  EXPECT_EQ(measured.overlaps, overlaps);
+  EXPECT_EQ(measured.children, topology.nodes.size() - 1);
+}
+
+TEST(BuildMixes, UnitCostsAddUpByHand) {
+  const OperationCycles unit;
+  const BuildCycles cycles = build_cycles(unit, {.node = 2, .entry = 1, .primitive = 12});
+  const auto all = [](const OperationMix& mix) {
+    return (mix.add + mix.multiply + mix.divide + mix.square_root + mix.compare + mix.integer + 500) / 1000;
+  };
+  EXPECT_EQ(cycles.lock, 3);
+  EXPECT_EQ(cycles.listed, all(build_mixes().listed) + 2 + 13);
+  EXPECT_EQ(cycles.overlap, all(build_mixes().overlap));
+  EXPECT_EQ(cycles.child, all(build_mixes().child) + 3);
+  EXPECT_EQ(cycles.entry, 2);
+  EXPECT_EQ(cycles.publish, 3);
+}
+
+// The list that the timing world puts together from the leaves is the one that the builder split.
+TEST(DynamicFrames, ABranchListedWhatItsLeavesDo) {
+  for (const char* kind : {"octree", "bsp"}) {
+    const test::Built built(scenes::make_procedural("gears:2"), kind);
+    const accel::Topology& topology = built.structure->topology();
+    BranchLists lists(topology);
+    for (std::uint32_t node = 0; node < topology.nodes.size(); ++node) {
+      ASSERT_EQ(lists.of(node).size(), topology.work[node].listed) << kind << " node " << node;
+    }
+  }
+}
+
+TEST(DynamicFrames, WhatTheRaysVisitIsBuiltAndNothingElse) {
+  for (const char* kind : {"octree", "bsp"}) {
+    const test::Built built(scenes::make_procedural("teapot:4"), kind);
+    const Frame frame = built.render({.width = 48, .height = 48, .max_depth = 2, .record = true});
+    const WorkLog& log = *frame.log;
+    std::set<std::uint32_t> visited;
+    for (const LogRow& row : log.rows) {
+      for (std::size_t at = 0; at < row.words.size(); at += step_words(row.words.data() + at)) {
+        if (step_of(row.words[at]) == Step::branch) {
+          visited.insert(operand_of(row.words[at]));
+        }
+      }
+    }
+    MachineConfig machine;
+    machine.clock = sim::Clock::from_hertz(100e6);
+    machine.build = {Sharing::shared, InitialTree::level, 1, 10.0};
+    std::int64_t branches = 0;
+    for (const accel::TopologyNode& node : log.topology.nodes) {
+      branches += node.leaf ? 0 : 1;
+    }
+    for (const std::uint32_t nodes : {1U, 5U, 64U}) {
+      machine.nodes = nodes;
+      const MachineResult result = replay(log, machine);
+      EXPECT_EQ(result.build.counts().splits, static_cast<std::int64_t>(visited.size())) << kind;
+      EXPECT_LT(result.build.counts().splits, branches) << "the rays of one view do not need the whole tree";
+      EXPECT_EQ(result.build.start_up, 0);
+      EXPECT_GT(result.time()[static_cast<std::size_t>(Activity::building)], 0);
+    }
+    // Private trees: at least what is needed by somebody, at most that by everybody.
+    machine.nodes = 5;
+    machine.build.sharing = Sharing::private_trees;
+    const MachineResult own = replay(log, machine);
+    EXPECT_EQ(own.build.all_levels().distinct_splits, static_cast<std::int64_t>(visited.size()));
+    EXPECT_GT(own.build.wasted_splits(), 0);
+    EXPECT_LE(own.build.counts().splits, 5 * static_cast<std::int64_t>(visited.size()));
+    // Building everything costs more memory and time than building what is needed.
+    machine.build.sharing = Sharing::none;
+    const MachineResult none = replay(log, machine);
+    EXPECT_EQ(none.build.counts().start_up_splits, branches);
+    EXPECT_GT(none.build.start_up, 0);
+    EXPECT_EQ(none.build.all_levels().partial, 0);
+  }
+}
+
+}  // namespace
+}  // namespace marti::processors
