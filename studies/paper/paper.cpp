@@ -1,0 +1,119 @@
+#include "studies/paper/paper.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "processors/replay.h"
+#include "sim/error.h"
+#include "sim/units.h"
+#include "studies/image_file.h"
+#include "studies/paper/building_table.h"
+#include "studies/paper/claims.h"
+#include "studies/paper/figures.h"
+#include "studies/paper/paper_keys.h"
+#include "studies/paper/traced_run.h"
+#include "studies/paper/tree_table.h"
+#include "studies/results/provenance.h"
+#include "studies/results/text_table.h"
+#include "studies/scene_hash.h"
+
+namespace marti::studies {
+
+namespace {
+
+/// Opens a scene and lays a fault at the key that named it.
+scenes::Scene open(const sim::Config& config, const PaperConfig& paper, const std::string& name,
+                   std::string_view key) {
+  try {
+    return scenes::open_scene(name, paper.frame.open, decode_image);
+  } catch (const sim::UserError& error) {
+    config.fail(key, error.what());
+  }
+}
+
+/// "scenes": every scene of the study.
+Table scene_table(const sim::Config& config, const PaperConfig& paper, std::span<const SceneTrees> trees) {
+  Table table("scenes", "The scenes",
+              {{"scene", ColumnType::text, "", "scene"},
+               {"hash", ColumnType::text, "", "hash of vertices, triangles, materials, lights and camera"}});
+  std::set<std::string> known;
+  for (const SceneTrees& scene : trees) {
+    known.insert(scene.scene);
+    table.add_row({scene.scene, fmt::format("{:016x}", scene.hash)});
+  }
+  for (const PaperRun& run : paper.runs) {
+    if (known.insert(run.scene).second) {
+      const std::uint64_t hash = scene_hash(open(config, paper, run.scene, "paper.run_scenes"));
+      table.add_row({run.scene, fmt::format("{:016x}", hash)});
+    }
+  }
+  return table;
+}
+
+std::string head_of(const sim::Config& config, const PaperConfig& paper) {
+  const accel::OctreeOptions& octree = paper.frame.structure_options.octree;
+  return fmt::format(
+      "Space subdivision as the paper of 1992 studied it\n"
+      "trees    at most {} triangles in a leaf, {} levels\n"
+      "images   {} x {}\n"
+      "machine  {} node{} at {}, operations as \"{}\"\n",
+      octree.max_objects, octree.max_level, paper.frame.render.width, paper.frame.render.height,
+      paper.machine.all_nodes(), paper.machine.all_nodes() == 1 ? "" : "s",
+      sim::print_frequency(config.frequency("node.clock")), config.choice_name("costs.preset"));
+}
+
+}  // namespace
+
+StudyOutput run_paper(sim::Config& config) {
+  const PaperConfig paper = read_paper(config);
+  const memory::LayoutConfig& layout = paper.machine.layout;
+
+  // One after the other, so that the host's seconds mean something.
+  std::vector<SceneTrees> trees;
+  for (const std::string& name : paper.scenes) {
+    trees.push_back(
+        measure_trees(name, open(config, paper, name, "paper.scenes"), paper.frame.structure_options));
+  }
+  Table scenes = scene_table(config, paper, trees);
+
+  std::vector<TracedRun> runs;
+  for (const PaperRun& run : paper.runs) {
+    runs.push_back(trace_run(paper, run));
+  }
+  std::vector<TaskTimes> times(runs.size());
+  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
+    times[i] = tasks_of(processors::replay(*runs[i].log, paper.machine).time());
+  });
+
+  std::vector<Claim> claims = check_tree_claims(trees);
+  for (Claim& claim : check_access_claims(runs)) {
+    claims.push_back(std::move(claim));
+  }
+
+  StudyOutput output;
+  output.tables = {
+      tree_table(trees, layout), rule_table(trees),          rule_level_table(trees, paper.rules),
+      task_table(runs, times),   memory_table(runs, layout), access_table(runs),
+      claim_table(claims)};
+  output.report = head_of(config, paper);
+  for (const Table& table : output.tables) {
+    if (table.name() != "claims") {
+      output.report += "\n" + text_of(table);
+    }
+  }
+  output.report += "\n" + text_of(claims);
+  output.tables.push_back(std::move(scenes));
+  output.tables.push_back(provenance_table(config.effective_values()));
+  output.host_tables = {host_tree_table(trees), host_table()};
+  for (const Table& table : output.host_tables) {
+    output.host_report += (output.host_report.empty() ? "" : "\n") + text_of(table);
+  }
+  return output;
+}
+
+}  // namespace marti::studies
