@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <set>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,6 +23,7 @@
 #include "studies/paper/tree_table.h"
 #include "studies/results/provenance.h"
 #include "studies/results/text_table.h"
+#include "studies/results/wide_table.h"
 #include "studies/scene_hash.h"
 
 namespace marti::studies {
@@ -67,6 +71,32 @@ std::string head_of(const sim::Config& config, const PaperConfig& paper) {
       sim::print_frequency(config.frequency("node.clock")), config.choice_name("costs.preset"));
 }
 
+/// The tables for people: those with a row for each level get a column for each instead. The claims have a
+/// text of their own.
+std::string text_of_tables(std::span<const Table> tables) {
+  std::string text;
+  for (const Table& table : tables) {
+    const std::string& name = table.name();
+    if (name == "claims") {
+      continue;
+    }
+    text += "\n";
+    if (name == "rules") {
+      text += text_of(widen(table, std::array{std::string_view("scene")}, "level", "l", "ratio"));
+    } else if (name == "figure1") {
+      text += text_of(widen(table, std::array{std::string_view("run")}, "task", "", "share"));
+    } else if (name == "figure2") {
+      text += text_of(
+          widen(table, std::array{std::string_view("run"), std::string_view("tree")}, "level", "l", "bytes"));
+    } else if (name == "figure3") {
+      text += text_of(widen(table, std::array{std::string_view("run")}, "level", "l", "share"));
+    } else {
+      text += text_of(table);
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 StudyOutput run_paper(sim::Config& config) {
@@ -100,13 +130,7 @@ StudyOutput run_paper(sim::Config& config) {
       tree_table(trees, layout), rule_table(trees),          rule_level_table(trees, paper.rules),
       task_table(runs, times),   memory_table(runs, layout), access_table(runs),
       claim_table(claims)};
-  output.report = head_of(config, paper);
-  for (const Table& table : output.tables) {
-    if (table.name() != "claims") {
-      output.report += "\n" + text_of(table);
-    }
-  }
-  output.report += "\n" + text_of(claims);
+  output.report = head_of(config, paper) + text_of_tables(output.tables) + "\n" + text_of(claims);
   output.tables.push_back(std::move(scenes));
   output.tables.push_back(provenance_table(config.effective_values()));
   output.host_tables = {host_tree_table(trees), host_table()};
