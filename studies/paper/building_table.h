@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "memory/layout.h"
-#include "studies/paper/traced_run.h"
+#include "sim/time.h"
+#include "studies/paper/level_counts.h"
+#include "studies/paper/paper_keys.h"
 #include "studies/results/table.h"
 
 namespace marti::studies {
@@ -28,14 +30,40 @@ struct InitialLevel {
 [[nodiscard]] std::vector<InitialLevel> initial_levels(const PaperConfig& config,
                                                        std::span<const LevelCount> levels);
 
-/// The tree that a frame on one shared tree leaves.
-struct BuiltTree {
+/// One machine that began with the tree built to an initial level.
+struct LevelOutcome {
   InitialLevel initial;
-  std::vector<LevelCount> levels;
+  sim::Ticks build = 0;      ///< until the initial tree was there
+  sim::Ticks render = 0;     ///< from then to the end of the frame, building on demand included
+  sim::Ticks computing = 0;  ///< all nodes' compute time for building, before the frame and in it
+  std::uint64_t splits = 0;  ///< branches divided, before the frame and in it
+  std::uint64_t nodes = 0;   ///< of the tree that the frame leaves: branches, leaves, partial
+  std::uint64_t partial = 0;
+  std::uint64_t bytes = 0;  ///< of its records and lists
 
-  [[nodiscard]] LevelCount total() const;
+  [[nodiscard]] sim::Ticks total() const { return sim::add_ticks(build, render); }
 };
 
-[[nodiscard]] std::vector<BuiltTree> built_trees(const PaperConfig& config, const TracedRun& run);
+/// A run and all its outcomes; the last is the whole tree's.
+struct RunOutcomes {
+  PaperRun run;
+  std::vector<LevelOutcome> levels;
+
+  [[nodiscard]] const LevelOutcome& whole() const { return levels.back(); }
+  /// The outcome of the level that a rule chooses; null when the rule was not tried.
+  [[nodiscard]] const LevelOutcome* by_rule(double k) const;
+};
+
+/// How much smaller `value` is than `whole`, as a fraction of it; 0 where there is nothing to save.
+[[nodiscard]] double saved(std::uint64_t value, std::uint64_t whole);
+
+/// "table2" for the first run, "table3" for the second, and so on: a row for each initial level.
+[[nodiscard]] Table building_table(std::size_t index, const RunOutcomes& outcomes);
+
+/// "initial_levels": the rows of all of them, for charts.
+[[nodiscard]] Table initial_level_table(std::span<const RunOutcomes> runs);
+
+/// "savings": what each rule saves against building the whole tree.
+[[nodiscard]] Table savings_table(std::span<const RunOutcomes> runs, std::span<const double> rules);
 
 }  // namespace marti::studies

@@ -13,7 +13,6 @@
 #include "processors/program/render.h"
 #include "processors/program/vector.h"
 #include "scenes/procedural.h"
-#include "studies/paper/building_table.h"
 #include "studies/paper/level_counts.h"
 
 namespace marti::tests {
@@ -51,24 +50,6 @@ TEST(Rules, RatioOfLeaves) {
   EXPECT_EQ(level(2, 3, 2).leaf_ratio(), 0.75);
   EXPECT_EQ(level(0, 3).leaf_ratio(), std::numeric_limits<double>::infinity());
   EXPECT_EQ(level(0, 0).leaf_ratio(), std::nullopt);
-}
-
-TEST(InitialLevels, AreTheListTheRulesAndTheWholeTree) {
-  studies::PaperConfig config;
-  config.levels = {1, 2, 4, 9};
-  config.rules = {3.0, 10.0, 1e6};
-  const std::vector<LevelCount> levels = {level(1, 0), level(8, 0), level(1, 4), level(1, 7), level(0, 8)};
-  const auto chosen = initial_levels(config, levels);
-  ASSERT_EQ(chosen.size(), 5U);
-  EXPECT_EQ(chosen[0].level, 1U);
-  EXPECT_EQ(chosen[1].level, 2U);
-  EXPECT_EQ(chosen[2].level, 3U) << "put in between for the first rule";
-  EXPECT_EQ(chosen[2].note(), "k = 3");
-  EXPECT_EQ(chosen[3].level, 4U);
-  EXPECT_EQ(chosen[3].note(), "");
-  EXPECT_EQ(chosen[4].level, 5U);
-  EXPECT_TRUE(chosen[4].whole);
-  EXPECT_EQ(chosen[4].note(), "whole tree, k = 10, k = 1e+06");
 }
 
 // Ten entries at the root, which is divided into seven leaves and a branch; that into eight leaves.
