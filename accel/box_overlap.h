@@ -22,67 +22,79 @@ namespace marti::accel {
 namespace detail {
 
 /// Edge i cross axis a, against the box: false when it separates by more than the error bound.
-inline bool edge_axis_meets(double e_b, double e_c, double h_b, double h_c, double v_b, double v_c,
-                            double w_b, double w_c, double bound) {
+template <class Real>
+inline bool edge_axis_meets(Real e_b, Real e_c, Real h_b, Real h_c, Real v_b, Real v_c, Real w_b, Real w_c,
+                            Real bound) {
+  using std::abs;
+  using std::max;
+  using std::min;
   // Both ends of the edge project to the same value, so one of them and the opposite corner suffice.
-  const double p = e_c * v_b - e_b * v_c;
-  const double q = e_c * w_b - e_b * w_c;
-  const double r = h_b * std::abs(e_c) + h_c * std::abs(e_b) + bound;
-  return std::min(p, q) <= r && std::max(p, q) >= -r;
+  const Real p = e_c * v_b - e_b * v_c;
+  const Real q = e_c * w_b - e_b * w_c;
+  const Real r = h_b * abs(e_c) + h_c * abs(e_b) + bound;
+  return min(p, q) <= r && max(p, q) >= -r;
 }
 
 }  // namespace detail
 
 /// True when the closed triangle meets the closed box [center - half, center + half]; may also be true when
 /// they are apart by no more than the rounding of the test (about 1e-13 of the triangle's size).
-[[nodiscard]] inline bool overlaps(const TriangleCorners& triangle, const glm::dvec3& center,
-                                   const glm::dvec3& half) {
-  std::array<std::array<double, 3>, 3> v{};  // v[corner][axis]
-  std::array<double, 3> reach{};             // m + h
-  const std::array<double, 3> c{center.x, center.y, center.z};
-  const std::array<double, 3> h{half.x, half.y, half.z};
+/// Real is the scalar the arithmetic is done in (double, or Counted to count it).
+template <class Real>
+[[nodiscard]] inline bool overlaps(const TriangleCorners& triangle, const std::array<Real, 3>& c,
+                                   const std::array<Real, 3>& h) {
+  using std::abs;
+  using std::max;
+  using std::min;
+  std::array<std::array<Real, 3>, 3> v{};  // v[corner][axis]
+  std::array<Real, 3> reach{};             // m + h
   for (std::size_t a = 0; a < 3; ++a) {
-    v[0][a] = triangle[a] - c[a];
-    v[1][a] = triangle[3 + a] - c[a];
-    v[2][a] = triangle[6 + a] - c[a];
-    const double lo = std::min({v[0][a], v[1][a], v[2][a]});
-    const double hi = std::max({v[0][a], v[1][a], v[2][a]});
+    v[0][a] = Real(triangle[a]) - c[a];
+    v[1][a] = Real(triangle[3 + a]) - c[a];
+    v[2][a] = Real(triangle[6 + a]) - c[a];
+    const Real lo = min(min(v[0][a], v[1][a]), v[2][a]);
+    const Real hi = max(max(v[0][a], v[1][a]), v[2][a]);
     if (lo > h[a] || hi < -h[a]) {
       return false;
     }
-    reach[a] = std::max(-lo, hi) + h[a];
+    reach[a] = max(-lo, hi) + h[a];
   }
 
   const auto edge = [&v](std::size_t i, std::size_t a) { return v[(i + 1) % 3][a] - v[i][a]; };
-  const std::array<double, 3> e0{edge(0, 0), edge(0, 1), edge(0, 2)};
-  const std::array<double, 3> e1{edge(1, 0), edge(1, 1), edge(1, 2)};
+  const std::array<Real, 3> e0{edge(0, 0), edge(0, 1), edge(0, 2)};
+  const std::array<Real, 3> e1{edge(1, 0), edge(1, 1), edge(1, 2)};
 
-  double distance = 0.0;
-  double radius = 0.0;
+  Real distance = 0.0;
+  Real radius = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {
     const std::size_t b = (a + 1) % 3;
     const std::size_t d = (a + 2) % 3;
-    const double normal = e0[b] * e1[d] - e0[d] * e1[b];
+    const Real normal = e0[b] * e1[d] - e0[d] * e1[b];
     distance += normal * v[0][a];
-    radius += h[a] * std::abs(normal);
+    radius += h[a] * abs(normal);
   }
-  if (std::abs(distance) > radius + 256 * 0x1p-53 * (reach[0] * reach[1] * reach[2])) {
+  if (abs(distance) > radius + Real(256 * 0x1p-53) * (reach[0] * reach[1] * reach[2])) {
     return false;
   }
 
   for (std::size_t a = 0; a < 3; ++a) {
     const std::size_t b = (a + 1) % 3;
     const std::size_t d = (a + 2) % 3;
-    const double bound = 24 * 0x1p-53 * (reach[b] * reach[d]);
+    const Real bound = Real(24 * 0x1p-53) * (reach[b] * reach[d]);
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t opposite = (i + 2) % 3;
-      if (!detail::edge_axis_meets(edge(i, b), edge(i, d), h[b], h[d], v[i][b], v[i][d], v[opposite][b],
-                                   v[opposite][d], bound)) {
+      if (!detail::edge_axis_meets<Real>(edge(i, b), edge(i, d), h[b], h[d], v[i][b], v[i][d], v[opposite][b],
+                                         v[opposite][d], bound)) {
         return false;
       }
     }
   }
   return true;
+}
+
+[[nodiscard]] inline bool overlaps(const TriangleCorners& triangle, const glm::dvec3& center,
+                                   const glm::dvec3& half) {
+  return overlaps<double>(triangle, {center.x, center.y, center.z}, {half.x, half.y, half.z});
 }
 
 }  // namespace marti::accel

@@ -15,12 +15,40 @@ namespace {
 // within delta of it, and their triangles are not listed twice. And no power of two, so that the flat side of
 // a flat scene is in no plane of any level.
 constexpr double root_margin = 192.0;
+// As for triangles: products of three coordinates must stay far from overflow.
+constexpr double largest_coordinate = 0x1p300;
+
+void check_enclosed(const scenes::Bounds& box) {
+  for (int a = 0; a < 3; ++a) {
+    if (!(std::abs(box.lo[a]) <= largest_coordinate && std::abs(box.hi[a]) <= largest_coordinate &&
+          box.lo[a] <= box.hi[a])) {
+      std::ostringstream message;
+      message << "the box that a structure's root is to enclose reaches from " << box.lo[a] << " to "
+              << box.hi[a] << " along "
+              << "xyz"[a] << "; both must be numbers of magnitude up to 2^300, the "
+              << "first no larger than the second";
+      throw sim::UserError(message.str());
+    }
+  }
+}
+
+/// Whether a box was given at all: the default one is inside out on every axis.
+bool given(const scenes::Bounds& box) {
+  return !(box.lo.x > box.hi.x && box.lo.y > box.hi.y && box.lo.z > box.hi.z);
+}
 
 }  // namespace
 
-RootFrame make_frame(const TriangleSet& triangles) {
+RootFrame make_frame(const TriangleSet& triangles, const scenes::Bounds& enclose) {
   RootFrame frame;
-  const scenes::Bounds& tight = triangles.bounds();
+  scenes::Bounds tight = triangles.bounds();
+  if (given(enclose)) {
+    check_enclosed(enclose);
+    if (!tight.empty()) {
+      tight.include(enclose.lo);
+      tight.include(enclose.hi);
+    }
+  }
   if (tight.empty()) {
     return frame;
   }

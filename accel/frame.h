@@ -22,7 +22,10 @@ struct RootFrame {
   double largest_inverse = 0.0;  ///< cap on 1 / |direction component|, so that no plane's parameter overflows
 };
 
-[[nodiscard]] RootFrame make_frame(const TriangleSet& triangles);
+/// `enclose`, unless empty, is a box that the root box must hold too: that of all frames of an animation, so
+/// that every frame has the same root. Without triangles it is not looked at. Throws UserError when it has a
+/// coordinate that is no number of magnitude up to 2^300, or is turned inside out on some axis.
+[[nodiscard]] RootFrame make_frame(const TriangleSet& triangles, const scenes::Bounds& enclose = {});
 
 /// Throws UserError, naming the structure and its option, when the value is out of range.
 void require_range(std::string_view structure, std::string_view option, std::uint64_t value, std::uint64_t lo,

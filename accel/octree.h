@@ -24,7 +24,9 @@
 
 #include <glm/vec3.hpp>
 
+#include "accel/octree_build.h"
 #include "accel/octree_nodes.h"
+#include "accel/octree_options.h"
 #include "accel/octree_walk.h"
 #include "accel/ray.h"
 #include "accel/topology.h"
@@ -34,32 +36,11 @@
 
 namespace marti::accel {
 
-struct OctreeOptions {
-  /// A node that lists more than this many triangles is split, unless it is at max_level. At least 1.
-  std::uint32_t max_objects = 8;
-  /// The deepest level; the root is level 1. From 1 to 21.
-  std::uint32_t max_level = 12;
-  /// No node is split once the leaves made so far and the nodes waiting list more than this many triangles in
-  /// all; it bounds the memory of hostile scenes (4 bytes an entry). At least 1.
-  std::uint64_t max_entries = std::uint64_t{1} << 25;
-};
-
-/// One level of the tree.
-struct LevelStatistics {
-  std::uint64_t branches = 0;
-  std::uint64_t leaves = 0;  ///< empty ones included
-  std::uint64_t empty_leaves = 0;
-  std::uint64_t entries = 0;          ///< triangles listed in this level's leaves
-  std::uint64_t overfull_leaves = 0;  ///< leaves with more than max_objects entries
-
-  [[nodiscard]] std::uint64_t nodes() const { return branches + leaves; }
-};
-
 class Octree {
  public:
   static constexpr std::string_view kind_name = "octree";
 
-  /// Builds the whole tree. Throws UserError when an option is out of range.
+  /// Builds the whole tree, on options.threads host threads. Throws UserError when an option is out of range.
   ///
   /// A node with more than max_objects triangles stays a leaf all the same when
   ///  - it is at max_level,
@@ -70,14 +51,22 @@ class Octree {
   [[nodiscard]] static Octree build(std::shared_ptr<const TriangleSet> triangles,
                                     const OctreeOptions& options = {});
 
+  /// The tree over `triangles` that was built elsewhere as build_octree builds it (octree_update.h).
+  Octree(std::shared_ptr<const TriangleSet> triangles, const OctreeOptions& options, const RootFrame& frame,
+         OctreeBuild build);
+
   [[nodiscard]] const Topology& topology() const { return topology_; }
   [[nodiscard]] const TriangleSet& triangles() const { return *triangles_; }
   [[nodiscard]] const OctreeOptions& options() const { return options_; }
-  /// The root box: the tight box of the triangles enlarged by 192 delta, and at least D / 4096 thick on every
-  /// axis (it grows upwards, so that a flat scene does not lie in a mid-plane). Empty without triangles.
+  /// The root box: the tight box of the triangles (and of what the options have it enclose) enlarged by 192
+  /// delta, and at least D / 4096 thick on every axis (it grows upwards, so that a flat scene does not lie in
+  /// a mid-plane). Empty without triangles.
   [[nodiscard]] const scenes::Bounds& bounds() const { return frame_.box; }
   /// By how much cells are enlarged when triangles are sorted into them; see above.
   [[nodiscard]] double delta() const { return frame_.delta; }
+  [[nodiscard]] const RootFrame& frame() const { return frame_; }
+  /// Whether max_entries, or 2^28 nodes, kept a node from being split.
+  [[nodiscard]] bool cut() const { return cut_; }
   /// levels()[i] is level i + 1; as many as the tree has.
   [[nodiscard]] const std::vector<LevelStatistics>& levels() const { return levels_; }
 
@@ -94,7 +83,6 @@ class Octree {
   }
 
  private:
-  Octree() = default;
   [[nodiscard]] OctreeView view() const {
     return {nodes_.data() + node_offset,
             packed_nodes_.empty() ? nullptr : packed_nodes_.data() + node_offset,
@@ -104,12 +92,14 @@ class Octree {
             &frame_};
   }
   void pack();
+  void pack_leaf(std::size_t n);
 
   std::shared_ptr<const TriangleSet> triangles_;
   OctreeOptions options_;
   Topology topology_;
   RootFrame frame_;
   std::vector<LevelStatistics> levels_;
+  bool cut_ = false;
   CacheAligned<OctreeNode> nodes_;
   CacheAligned<OctreeNode> packed_nodes_;
   CacheAligned<TrianglePack> packs_;

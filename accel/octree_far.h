@@ -15,15 +15,15 @@
 
 namespace marti::accel {
 
-template <bool Any, class Real, class Visitor>
-inline bool test_leaf(const OctreeView& view, const OctreeNode& record, std::uint32_t node,
+template <bool Any, class Real, class View, class Visitor>
+inline bool test_leaf(const View& view, const typename View::Record& record, std::uint32_t node,
                       const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor);
 
 /// One branch of the slow walk. True when an occlusion query found its hit.
-template <bool Any, class Real, class Visitor>
-bool walk_far_node(const OctreeView& view, const FarRay& far, std::uint32_t node, const glm::dvec3& lo,
+template <bool Any, class Real, class View, class Visitor>
+bool walk_far_node(const View& view, const FarRay& far, std::uint32_t node, const glm::dvec3& lo,
                    const glm::dvec3& hi, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) {
-  const OctreeNode record = view.nodes[node];
+  const typename View::Record record = view.node(node);
   if (record.leaf()) {
     return test_leaf<Any>(view, record, node, setup, best, visitor);
   }
@@ -62,8 +62,8 @@ bool walk_far_node(const OctreeView& view, const FarRay& far, std::uint32_t node
   return false;
 }
 
-template <bool Any, class Real, class Visitor>
-bool walk_octree_far(const OctreeView& view, const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best,
+template <bool Any, class Real, class View, class Visitor>
+bool walk_octree_far(const View& view, const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best,
                      Visitor& visitor) {
   const scenes::Bounds& box = view.frame->box;
   if (box.empty()) {

@@ -54,8 +54,17 @@ struct alignas(64) TrianglePack {
   std::array<std::uint32_t, 4> id;
 };
 
-/// What a walk needs, by reference.
+/// What a walk needs, by reference. The walks for any scalar are templates over the view: another kind of
+/// tree has the same members (lazy_octree.h), and no packs.
 struct OctreeView {
+  using Record = OctreeNode;
+  static constexpr bool has_packs = true;
+
+  /// The record of the node a ray has come to.
+  [[nodiscard]] const OctreeNode& node(std::uint32_t n) const { return nodes[n]; }
+  /// The triangles that a leaf lists.
+  [[nodiscard]] const std::uint32_t* list(const OctreeNode& record) const { return entries + record.first; }
+
   const OctreeNode* nodes;   ///< nodes[0] is the root
   const OctreeNode* packed;  ///< the same, with a leaf's first pack as its `first`; null without packs
   const TrianglePack* packs;

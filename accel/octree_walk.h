@@ -27,12 +27,13 @@
 namespace marti::accel {
 
 /// Tests a leaf's triangles in list order. True when an occlusion query (`Any`) found its hit.
-template <bool Any, class Real, class Visitor>
-inline bool test_leaf(const OctreeView& view, const OctreeNode& record, std::uint32_t node,
+template <bool Any, class Real, class View, class Visitor>
+inline bool test_leaf(const View& view, const typename View::Record& record, std::uint32_t node,
                       const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) {
   const std::uint32_t entries = record.entries();
+  const std::uint32_t* list = view.list(record);
   for (std::uint32_t k = 0; k < entries; ++k) {
-    const std::uint32_t id = view.entries[record.first + k];
+    const std::uint32_t id = list[k];
     const bool hit = intersect(setup, (*view.triangles)[id], id, best);
     if constexpr (Any) {
       if (hit) {
@@ -46,8 +47,8 @@ inline bool test_leaf(const OctreeView& view, const OctreeNode& record, std::uin
 }
 
 /// The walk itself. True when an occlusion query found its hit.
-template <bool Any, class Real, class Visitor>
-bool walk_octree(const OctreeView& view, const WalkStart<Real>& start, const RaySetup<Real>& setup,
+template <bool Any, class Real, class View, class Visitor>
+bool walk_octree(const View& view, const WalkStart<Real>& start, const RaySetup<Real>& setup,
                  Best<Real>& best, Visitor& visitor) {
   using Integer = IntegerOf<Real>;
   const Real half(0.5);
@@ -55,7 +56,7 @@ bool walk_octree(const OctreeView& view, const WalkStart<Real>& start, const Ray
   std::size_t waiting = 0;
   NodeSpan<Real> now = start.root;
   for (;;) {
-    const OctreeNode record = view.nodes[now.node];
+    const typename View::Record record = view.node(now.node);
     if (record.leaf()) {
       if (test_leaf<Any>(view, record, now.node, setup, best, visitor)) {
         return true;
@@ -118,9 +119,9 @@ bool walk_octree(const OctreeView& view, const WalkStart<Real>& start, const Ray
 }
 
 /// Chooses the walk for one ray. True when an occlusion query found its hit.
-template <bool Any, class Real, class Visitor>
-inline bool query_octree(const OctreeView& view, const Ray& ray, const RaySetup<Real>& setup,
-                         Best<Real>& best, Visitor& visitor) {
+template <bool Any, class Real, class View, class Visitor>
+inline bool query_octree(const View& view, const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best,
+                         Visitor& visitor) {
   const WalkStart<Real> start = start_walk(*view.frame, ray, setup);
   if (start.far) [[unlikely]] {
     return walk_octree_far<Any>(view, ray, setup, best, visitor);
@@ -129,7 +130,7 @@ inline bool query_octree(const OctreeView& view, const Ray& ray, const RaySetup<
     return false;
   }
 #ifdef MARTI_ACCEL_AVX2
-  if constexpr (std::is_same_v<Real, double>) {
+  if constexpr (std::is_same_v<Real, double> && View::has_packs) {
     if (view.packed != nullptr) {
       return walk_octree_avx2<Any>(view, start, setup, best, visitor);
     }
@@ -138,16 +139,16 @@ inline bool query_octree(const OctreeView& view, const Ray& ray, const RaySetup<
   return walk_octree<Any>(view, start, setup, best, visitor);
 }
 
-template <class Real, class Visitor>
-[[nodiscard]] Hit octree_closest(const OctreeView& view, const Ray& ray, Visitor& visitor) {
+template <class Real, class View, class Visitor>
+[[nodiscard]] Hit octree_closest(const View& view, const Ray& ray, Visitor& visitor) {
   const RaySetup<Real> setup(ray);
   Best<Real> best(setup);
   query_octree<false>(view, ray, setup, best, visitor);
   return best.hit();
 }
 
-template <class Real, class Visitor>
-[[nodiscard]] bool octree_occluded(const OctreeView& view, const Ray& ray, Visitor& visitor) {
+template <class Real, class View, class Visitor>
+[[nodiscard]] bool octree_occluded(const View& view, const Ray& ray, Visitor& visitor) {
   const RaySetup<Real> setup(ray);
   Best<Real> best(setup);
   return query_octree<true>(view, ray, setup, best, visitor);

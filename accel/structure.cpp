@@ -32,4 +32,9 @@ std::unique_ptr<Structure> make_structure(std::string_view kind, std::shared_ptr
   throw sim::UserError(message);
 }
 
+std::unique_ptr<Structure> make_lazy_octree(std::shared_ptr<const TriangleSet> triangles,
+                                            const LazyOctreeOptions& options) {
+  return std::make_unique<StructureOf<LazyOctree>>(LazyOctree::build(std::move(triangles), options));
+}
+
 }  // namespace marti::accel

@@ -9,6 +9,7 @@
 #include "accel/brute_force.h"
 #include "accel/bsp.h"
 #include "accel/grid.h"
+#include "accel/lazy_octree.h"
 #include "accel/octree.h"
 #include "accel/ray.h"
 #include "accel/topology.h"
@@ -17,8 +18,8 @@
 
 namespace marti::accel {
 
-/// A built structure over one triangle set. Immutable, so any number of threads may use it. All kinds give
-/// the same hits, bit for bit.
+/// A built structure over one triangle set. Immutable (or, the lazy octree, as good as), so any number of
+/// threads may use it. All kinds give the same hits, bit for bit.
 class Structure {
  public:
   Structure() = default;
@@ -76,6 +77,11 @@ struct StructureOptions {
                                                         std::shared_ptr<const TriangleSet> triangles,
                                                         const StructureOptions& options = {});
 
+/// A lazy octree behind the seam: no kind of make_structure, because it cannot be recorded and two of them
+/// that traced other rays are not the same. Throws UserError for an option out of range.
+[[nodiscard]] std::unique_ptr<Structure> make_lazy_octree(std::shared_ptr<const TriangleSet> triangles,
+                                                          const LazyOctreeOptions& options = {});
+
 /// Calls `f` with the concrete structure (const Octree&, and so on), so that code inside is
 /// compiled for each and the traversal is inlined.
 template <class F>
@@ -91,6 +97,9 @@ decltype(auto) visit_structure(const Structure& structure, F&& f) {
   }
   if (const auto* brute = dynamic_cast<const StructureOf<BruteForce>*>(&structure)) {
     return std::forward<F>(f)(brute->concrete());
+  }
+  if (const auto* lazy = dynamic_cast<const StructureOf<LazyOctree>*>(&structure)) {
+    return std::forward<F>(f)(lazy->concrete());
   }
   throw sim::InternalError("a structure of a kind visit_structure does not know");
 }

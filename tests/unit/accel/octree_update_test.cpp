@@ -1,0 +1,219 @@
+#include "accel/octree_update.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "accel/lazy_octree.h"
+#include "accel/octree.h"
+#include "scenes/procedural.h"
+#include "tests/contract/hostile.h"
+#include "tests/support/user_error.h"
+#include "tests/unit/accel/tree_check.h"
+#include "tests/unit/accel/walk_check.h"
+
+namespace marti::tests {
+namespace {
+
+using accel::NodeUpdate;
+using accel::Octree;
+using accel::OctreeOptions;
+using accel::OctreeUpdate;
+using accel::TriangleCorners;
+using accel::TriangleSet;
+
+OctreeOptions enclosing(double reach) {
+  OctreeOptions options;
+  options.enclose.include(glm::dvec3(-reach));
+  options.enclose.include(glm::dvec3(reach));
+  return options;
+}
+
+/// Moves a share of the triangles: a little, across the box, onto a point, or into one that crosses many
+/// cells.
+std::vector<TriangleCorners> some_moved(std::vector<TriangleCorners> soup, std::uint64_t seed, double share) {
+  Random random(seed);
+  for (TriangleCorners& triangle : soup) {
+    if (random.unit() >= share) {
+      continue;
+    }
+    const glm::dvec3 lo(-1.9);
+    const glm::dvec3 hi(1.9);
+    switch (random.below(4)) {
+      case 0: {
+        const glm::dvec3 by = random.in_box(glm::dvec3(-0.05), glm::dvec3(0.05));
+        for (std::size_t c = 0; c < 9; ++c) {
+          triangle[c] += by[static_cast<int>(c % 3)];
+        }
+        break;
+      }
+      case 1:
+        triangle = soup[random.below(static_cast<std::uint32_t>(soup.size()))];
+        break;
+      case 2: {
+        const glm::dvec3 p = random.in_box(lo, hi);
+        triangle = corners(p, p, p);
+        break;
+      }
+      default:
+        triangle = corners(random.in_box(lo, hi), random.in_box(lo, hi), random.in_box(lo, hi));
+    }
+  }
+  return soup;
+}
+
+/// What every update owes, beside the tree.
+void check_report(const Octree& before, const Octree& fresh, const OctreeUpdate& update) {
+  const accel::Topology& topology = fresh.topology();
+  RC_ASSERT(update.nodes.size() == topology.nodes.size());
+  RC_ASSERT(update.work.size() == topology.nodes.size());
+  for (std::uint32_t n = 0; n < topology.nodes.size(); ++n) {
+    const accel::TopologyNode& node = topology.nodes[n];
+    const accel::SplitWork& done = update.work[n];
+    const accel::SplitWork& fresh_work = topology.work[n];
+    switch (update.nodes[n]) {
+      case NodeUpdate::kept:
+        RC_ASSERT(done.listed == 0U);
+        RC_ASSERT(done.overlaps == 0U);
+        for (std::uint32_t child = 0; !node.leaf && child < 8; ++child) {
+          RC_ASSERT(update.nodes[node.first + child] == NodeUpdate::kept);
+        }
+        break;
+      case NodeUpdate::resorted:
+        RC_ASSERT(!node.leaf);
+        RC_ASSERT(done.listed >= 1U);
+        RC_ASSERT(done.listed <= 2 * update.moved);
+        break;
+      case NodeUpdate::split:
+        RC_ASSERT(!node.leaf);
+        RC_ASSERT(done.listed == fresh_work.listed);
+        RC_ASSERT(done.overlaps == fresh_work.overlaps);
+        break;
+      case NodeUpdate::listed:
+      case NodeUpdate::collapsed:
+      case NodeUpdate::made:
+        RC_ASSERT(node.leaf);
+        break;
+    }
+  }
+  if (update.moved == 0 && !before.cut()) {
+    RC_ASSERT(std::all_of(update.nodes.begin(), update.nodes.end(),
+                          [](NodeUpdate u) { return u == NodeUpdate::kept; }));
+  }
+}
+
+RC_GTEST_PROP(OctreeUpdating, GivesTheTreeOfAFreshBuild, ()) {
+  OctreeOptions options = enclosing(2.0);
+  options.max_objects = *rc::gen::inRange(1U, 20U);
+  options.max_level = *rc::gen::inRange(1U, 8U);
+  options.max_entries =
+      *rc::gen::element<std::uint64_t>(400, 2000, std::uint64_t{1} << 25, std::uint64_t{1} << 25);
+  const std::vector<TriangleCorners> soup = hostile_soup(0.0, *rc::gen::arbitrary<std::uint64_t>());
+  Octree tree = Octree::build(set_of(soup), options);
+  // Several frames, each from the one before.
+  std::vector<TriangleCorners> now = soup;
+  for (int frame = 0; frame < 3; ++frame) {
+    const double share = *rc::gen::element(0.0, 0.003, 0.02, 0.3, 1.0);
+    now = some_moved(now, *rc::gen::arbitrary<std::uint64_t>(), share);
+    const auto after = set_of(now);
+    OctreeUpdate update = accel::update_octree(tree, *after);
+    const Octree fresh = Octree::build(after, options);
+    RC_ASSERT(same_nodes(update.build.topology, fresh.topology()));
+    RC_ASSERT(same_work(update.build.topology.work, fresh.topology().work));
+    RC_ASSERT(same_levels(update.build.levels, fresh.levels()));
+    RC_ASSERT(update.build.unsplit.empty());
+    RC_ASSERT(fresh.cut() == update.build.cut);
+    check_report(tree, fresh, update);
+    tree = Octree(after, options, tree.frame(), std::move(update.build));
+  }
+}
+
+// One gear of eight moves: what is far from it is kept, and little is sorted.
+TEST(OctreeUpdating, KeepsWhatIsFarFromTheMovedTriangles) {
+  const scenes::Scene scene = scenes::make_procedural("gears:2");
+  const auto before = std::make_shared<const TriangleSet>(scene);
+  OctreeOptions options;
+  options.enclose.include(before->bounds().lo - 0.1);
+  options.enclose.include(before->bounds().hi + 0.1);
+  std::vector<TriangleCorners> corners;
+  for (std::uint32_t id = 0; id < before->size(); ++id) {
+    corners.push_back((*before)[id]);
+    if (id < before->size() / 8) {
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        corners.back()[3 * corner] += 0.01;
+      }
+    }
+  }
+  const Octree tree = Octree::build(before, options);
+  const auto after = set_of(corners);
+  const OctreeUpdate update = accel::update_octree(tree, *after);
+  EXPECT_TRUE(same_nodes(update.build.topology, Octree::build(after, options).topology()));
+  std::uint64_t kept = 0;
+  std::uint64_t done = 0;
+  std::uint64_t fresh = 0;
+  for (std::size_t n = 0; n < update.nodes.size(); ++n) {
+    kept += update.altered(static_cast<std::uint32_t>(n)) ? 0U : 1U;
+    done += update.work[n].overlaps;
+    fresh += update.build.topology.work[n].overlaps;
+  }
+  EXPECT_GT(kept, update.nodes.size() / 2);
+  EXPECT_LT(done, fresh / 2);
+  EXPECT_EQ(update.moved, before->size() / 8);
+}
+
+TEST(OctreeUpdating, AltersExactlyWhatListsMovedTriangles) {
+  const OctreeOptions options = enclosing(2.0);
+  const std::vector<TriangleCorners> soup = hostile_soup(0.0, 9);
+  const std::vector<TriangleCorners> moved = some_moved(soup, 4, 0.02);
+  const Octree tree = Octree::build(set_of(soup), options);
+  const auto after = set_of(moved);
+  const std::vector<std::uint32_t> ids = accel::moved_triangles(tree.triangles(), *after);
+  ASSERT_FALSE(ids.empty());
+  const OctreeUpdate update = accel::update_octree(tree, *after);
+  const accel::Topology& topology = update.build.topology;
+  const std::set<std::uint32_t> set(ids.begin(), ids.end());
+  for (std::size_t n = 0; n < topology.nodes.size(); ++n) {
+    const accel::TopologyNode& node = topology.nodes[n];
+    if (node.leaf && update.nodes[n] == NodeUpdate::kept) {
+      for (std::uint32_t k = 0; k < node.count; ++k) {
+        ASSERT_FALSE(set.contains(topology.entries[node.first + k]));
+      }
+    }
+  }
+}
+
+// A lazy tree goes on from an update.
+TEST(OctreeUpdating, ALazyTreeGoesOnFromIt) {
+  const OctreeOptions options = enclosing(2.0);
+  const std::vector<TriangleCorners> soup = hostile_soup(0.0, 9);
+  const Octree tree = Octree::build(set_of(soup), options);
+  const auto after = set_of(some_moved(soup, 4, 0.1));
+  const OctreeUpdate update = accel::update_octree(tree, *after);
+  const accel::LazyOctree lazy(after, options, tree.frame(), update.build);
+  EXPECT_TRUE(same_nodes(lazy.snapshot().topology, update.build.topology));
+  EXPECT_EQ(lazy.state().all.pending, 0U);
+}
+
+TEST(OctreeUpdating, RefusesAnotherRootOrOtherTriangles) {
+  std::vector<TriangleCorners> soup = hostile_soup(0.0, 2);
+  const Octree tight = Octree::build(set_of(soup), {});
+  std::vector<TriangleCorners> fewer(soup.begin(), soup.end() - 1);
+  EXPECT_NE(test::user_error_of([&] {
+              (void)accel::update_octree(tight, TriangleSet(fewer));
+            }).find("octree update"),
+            std::string::npos);
+  soup[0][0] = 7.0;
+  EXPECT_NE(
+      test::user_error_of([&] { (void)accel::update_octree(tight, TriangleSet(soup)); }).find("encloses"),
+      std::string::npos);
+  const Octree nothing = Octree::build(set_of({}), {});
+  EXPECT_EQ(accel::update_octree(nothing, TriangleSet{}).nodes.size(), 1U);
+}
+
+}  // namespace
+}  // namespace marti::tests
