@@ -18,6 +18,7 @@
 #include "studies/paper/building_table.h"
 #include "studies/paper/claims.h"
 #include "studies/paper/figures.h"
+#include "studies/paper/host_builds.h"
 #include "studies/paper/paper_keys.h"
 #include "studies/paper/traced_run.h"
 #include "studies/paper/tree_table.h"
@@ -134,6 +135,9 @@ StudyOutput run_paper(sim::Config& config) {
   output.tables.push_back(std::move(scenes));
   output.tables.push_back(provenance_table(config.effective_values()));
   output.host_tables = {host_tree_table(trees), host_table()};
+  for (std::size_t i = 0; i < runs.size() && paper.host_repetitions != 0; ++i) {
+    output.host_tables.push_back(host_building_table(i, runs[i].run, measure_host(paper, runs[i])));
+  }
   for (const Table& table : output.host_tables) {
     output.host_report += (output.host_report.empty() ? "" : "\n") + text_of(table);
   }

@@ -58,6 +58,10 @@ void declare_paper_keys(sim::Schema& schema) {
   schema.reals(
       "paper.rules", {3.0, 10.0}, {0.0, 1e6}, "",
       "k of the rules \"stop at the first level with more than k times as many leaves as other nodes\"");
+  schema.integer(
+      "paper.host_repetitions", 3, {0, 1000}, "",
+      "how often each initial level is built and rendered on the host, the least time being kept; 0: "
+      "not at all");
 }
 
 sim::Schema paper_schema() {
@@ -91,6 +95,7 @@ PaperConfig read_paper(sim::Config& config) {
   std::sort(paper.levels.begin(), paper.levels.end());
   paper.levels.erase(std::unique(paper.levels.begin(), paper.levels.end()), paper.levels.end());
   paper.rules = config.reals("paper.rules");
+  paper.host_repetitions = static_cast<std::uint32_t>(config.integer("paper.host_repetitions"));
   config.refuse_unused();
   return paper;
 }

@@ -26,10 +26,11 @@ struct PaperRun {
 struct PaperConfig {
   FrameConfig frame;  ///< what all runs share; scene and depth are a run's own
   processors::MachineConfig machine;
-  std::vector<std::string> scenes;    ///< of table 1
-  std::vector<PaperRun> runs;         ///< of tables 2 onwards, one each
-  std::vector<std::uint32_t> levels;  ///< initial levels to try, ascending, each once; none beyond max_level
-  std::vector<double> rules;          ///< k of the rules to try
+  std::vector<std::string> scenes;     ///< of table 1
+  std::vector<PaperRun> runs;          ///< of tables 2 onwards, one each
+  std::vector<std::uint32_t> levels;   ///< initial levels to try, ascending, each once; none beyond max_level
+  std::vector<double> rules;           ///< k of the rules to try
+  std::uint32_t host_repetitions = 0;  ///< of each measurement on the host; 0: none is made
 
   /// The frame of one run.
   [[nodiscard]] FrameConfig frame_of(const PaperRun& run) const;

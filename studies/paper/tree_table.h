@@ -18,7 +18,7 @@ namespace marti::studies {
 struct TreeSize {
   std::vector<LevelCount> levels;
   std::uint64_t empty_leaves = 0;
-  double build_seconds = 0.0;  ///< on the host, one thread
+  double build_seconds = 0.0;  ///< on the host
 
   [[nodiscard]] LevelCount total() const;
 };

@@ -15,11 +15,12 @@ namespace fs = std::filesystem;
 const fs::path shipped = fs::path(MARTI_SOURCE) / "configs" / "paper.toml";
 
 // The shipped study with scenes that take no time.
-const std::string small = quoted(shipped) +
-                          " --set image.width=24 --set image.height=16"
-                          " --set 'paper.scenes=[\"tetra:2\"]'"
-                          " --set 'paper.run_scenes=[\"teapot:2:pot\",\"teapot:2:pot\"]'"
-                          " --set 'paper.run_depths=[2,4]' --set 'paper.levels=[1,3]'";
+const std::string small =
+    quoted(shipped) +
+    " --set image.width=24 --set image.height=16"
+    " --set 'paper.scenes=[\"tetra:2\"]'"
+    " --set 'paper.run_scenes=[\"teapot:2:pot\",\"teapot:2:pot\"]'"
+    " --set 'paper.run_depths=[2,4]' --set 'paper.levels=[1,3]' --set paper.host_repetitions=1";
 
 TEST(Study, ThePaperWritesTablesChartsAndADatabase) {
   const TemporaryDirectory directory;

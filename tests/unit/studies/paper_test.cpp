@@ -11,8 +11,10 @@
 #include "sim/error.h"
 #include "studies/paper/claims.h"
 #include "studies/paper/figures.h"
+#include "studies/paper/host_builds.h"
 #include "studies/paper/paper.h"
 #include "studies/paper/paper_keys.h"
+#include "studies/paper/traced_run.h"
 #include "studies/results/csv.h"
 #include "tests/support/user_error.h"
 
@@ -25,7 +27,7 @@ using studies::Table;
 constexpr const char* small =
     "[image]\nwidth = 32\nheight = 24\n[machine]\nnodes = 2\n[structure]\nmax_objects = 9\n[paper]\n"
     "scenes = [\"tetra:2\", \"teapot:4:pot\"]\nrun_scenes = [\"gears:1\", \"teapot:3:pot\"]\n"
-    "run_depths = [2, 3]\nlevels = [1, 3, 5]\n";
+    "run_depths = [2, 3]\nlevels = [1, 3, 5]\nhost_repetitions = 0\n";
 
 StudyOutput run(const std::string& text, int threads = 2) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
@@ -81,6 +83,35 @@ TEST(Paper, SharesAddUpToOne) {
       sum += std::get<double>(table.at(row, "share"));
     }
     EXPECT_NEAR(sum, 2.0, 1e-9) << name << ": one for each of two runs";
+  }
+}
+
+// The tree that the host builds while rays are traced is the one that the log says they need.
+TEST(HostBuilds, LeaveTheTreeThatTheLogPredicts) {
+  sim::Config config =
+      sim::Config::from_text(studies::paper_schema(), std::string(small) + "rules = [3.0]\n", "paper.toml",
+                             std::vector<std::string>{"paper.host_repetitions=1"});
+  const studies::PaperConfig paper = studies::read_paper(config);
+  for (const studies::PaperRun& run : paper.runs) {
+    const studies::TracedRun traced = studies::trace_run(paper, run);
+    const auto outcomes = studies::measure_host(paper, traced);
+    ASSERT_GE(outcomes.size(), 4U);
+    for (const studies::HostOutcome& outcome : outcomes) {
+      const auto levels =
+          count_lazy_levels(traced.log->topology, traced.visits.touched, outcome.initial.level);
+      std::uint64_t nodes = 0;
+      std::uint64_t partial = 0;
+      for (const studies::LevelCount& level : levels) {
+        nodes += level.nodes();
+        partial += level.partial;
+      }
+      EXPECT_EQ(outcome.nodes, nodes) << name_of(run) << " level " << outcome.initial.level;
+      EXPECT_EQ(outcome.partial, partial) << name_of(run) << " level " << outcome.initial.level;
+      EXPECT_GE(outcome.build_seconds, 0.0);
+      EXPECT_GT(outcome.render_seconds, 0.0);
+    }
+    EXPECT_EQ(outcomes.back().partial, 0U);
+    EXPECT_GT(outcomes.front().partial, 0U);
   }
 }
 
