@@ -21,6 +21,7 @@
 namespace marti::tests {
 namespace {
 
+using studies::count_lazy_levels;
 using studies::StudyOutput;
 using studies::Table;
 
