@@ -46,6 +46,10 @@ class Cache {
   /// Addresses reach up to 2^32 - 1 lines; beyond that it throws UserError.
   std::int64_t read(Address address, std::uint64_t bytes);
 
+  /// Takes the lines that hold any of these bytes out of the cache, as when somebody else has written them;
+  /// returns how many were there. Counts nothing. Throws as read() does.
+  std::int64_t invalidate(Address address, std::uint64_t bytes);
+
   [[nodiscard]] const CacheCounters& counters() const { return counters_; }
   [[nodiscard]] const CacheShape& shape() const { return shape_; }
 
@@ -53,6 +57,12 @@ class Cache {
   struct TagStore;
 
  private:
+  struct Lines {
+    Address first;
+    Address last;
+  };
+  [[nodiscard]] Lines lines_of(Address address, std::uint64_t bytes) const;
+
   CacheShape shape_;
   CacheCounters counters_;
   std::unique_ptr<TagStore> tags_;

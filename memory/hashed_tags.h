@@ -35,6 +35,8 @@ class HashedTags {
    public:
     View(HashedTags& tags, std::uint32_t cache) : tags_(&tags), cache_(cache) {}
     bool access(std::uint32_t line) const { return tags_->access(cache_, line); }
+    bool touch(std::uint32_t line) const { return tags_->touch(cache_, line); }
+    bool remove(std::uint32_t line) const { return tags_->remove(cache_, line); }
 
    private:
     HashedTags* tags_;
@@ -48,15 +50,11 @@ class HashedTags {
     Set& state = state_[set];
     Way* ways = ways_of_sets_.data() + set * ways_;
     std::uint32_t* table = table_.data() + set * slots_;
-    std::uint32_t slot = home(line);
-    while (table[slot] != empty) {
-      if (ways[table[slot]].line == line) {
-        if constexpr (Policy == Replacement::lru) {
-          move_to_front(state, ways, table[slot]);
-        }
-        return true;
+    if (const std::uint32_t held = find(table, ways, line); held != empty) {
+      if constexpr (Policy == Replacement::lru) {
+        move_to_front(state, ways, held);
       }
-      slot = next(slot);
+      return true;
     }
     const std::uint32_t way = free_way(state, ways, table, set);
     ways[way].line = line;
@@ -67,6 +65,36 @@ class HashedTags {
     return false;
   }
 
+  bool touch(std::uint32_t cache, std::uint32_t line) {
+    const std::size_t set = std::size_t{cache} * sets_ + index_(line);
+    return find(table_.data() + set * slots_, ways_of_sets_.data() + set * ways_, line) != empty &&
+           access(cache, line);
+  }
+
+  bool remove(std::uint32_t cache, std::uint32_t line) {
+    const std::size_t set = std::size_t{cache} * sets_ + index_(line);
+    Way* ways = ways_of_sets_.data() + set * ways_;
+    std::uint32_t* table = table_.data() + set * slots_;
+    const std::uint32_t way = find(table, ways, line);
+    if (way == empty) {
+      return false;
+    }
+    Set& state = state_[set];
+    erase(table, ways, line);
+    if constexpr (Policy != Replacement::random) {
+      unlink(state, ways, way);
+    }
+    ways[way].line = no_line;
+    // Emptied ways form a chain in ascending order.
+    std::uint32_t* link = &state.emptied;
+    while (*link < way) {
+      link = &ways[*link].older;
+    }
+    ways[way].older = *link;
+    *link = way;
+    return true;
+  }
+
   static constexpr std::uint32_t empty = 0xffffffffU;
   struct Way {
     std::uint32_t line = no_line;
@@ -74,7 +102,8 @@ class HashedTags {
     std::uint32_t older = empty;
   };
   struct Set {
-    std::uint32_t used = 0;
+    std::uint32_t used = 0;           // ways ever used
+    std::uint32_t emptied = empty;    // the first of them that is empty again
     std::uint32_t newest = empty;
     std::uint32_t oldest = empty;
   };
@@ -91,6 +120,15 @@ class HashedTags {
     return ((line * 0x9e3779b1U) ^ (line >> 15U)) & (slots_ - 1);
   }
   [[nodiscard]] std::uint32_t next(std::uint32_t slot) const { return (slot + 1) & (slots_ - 1); }
+
+  // The way that holds `line`, or `empty`.
+  [[nodiscard]] std::uint32_t find(const std::uint32_t* table, const Way* ways, std::uint32_t line) const {
+    std::uint32_t slot = home(line);
+    while (table[slot] != empty && ways[table[slot]].line != line) {
+      slot = next(slot);
+    }
+    return table[slot];
+  }
 
   void insert(std::uint32_t* table, const Way* ways, std::uint32_t way) const {
     std::uint32_t slot = home(ways[way].line);
@@ -117,6 +155,11 @@ class HashedTags {
   }
 
   std::uint32_t free_way(Set& state, Way* ways, std::uint32_t* table, std::size_t set) {
+    if (state.emptied != empty) {
+      const std::uint32_t way = state.emptied;
+      state.emptied = ways[way].older;
+      return way;
+    }
     if (state.used < ways_) {
       return state.used++;
     }

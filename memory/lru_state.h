@@ -20,6 +20,8 @@ struct LruStates {
   std::array<std::uint16_t, orders * matches> next{};
   /// [state / 16]: the least recent way.
   std::array<std::uint8_t, orders> victim{};
+  /// [state / 16 * ways + way]: the state after `way` was emptied: it is the next victim.
+  std::array<std::uint16_t, orders * ways> emptied{};
 
   constexpr LruStates() {
     using Order = std::array<std::uint8_t, ways>;  // most recent first
@@ -49,6 +51,16 @@ struct LruStates {
       for (std::uint32_t match = 0; match < matches; ++match) {
         const auto way = match == 0 ? victim[order] : static_cast<std::uint8_t>(std::countr_zero(match));
         next[order * matches + match] = after(current, way);
+      }
+      for (std::uint8_t way = 0; way < ways; ++way) {
+        // Moving the three others to the front, the least recent first, leaves `way` last.
+        auto state = static_cast<std::uint16_t>(order * matches);
+        for (std::size_t at = ways; at-- > 0;) {
+          if (current[at] != way) {
+            state = after(known[state / matches], current[at]);
+          }
+        }
+        emptied[order * ways + way] = state;
       }
     }
   }

@@ -2,6 +2,7 @@
 // The commonest cache of the field gets the one look-up without a loop or an unpredictable branch.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #ifdef __SSE2__
@@ -44,6 +45,27 @@ class QuadTags {
         sets_[at].tags[lru_states.victim[state / LruStates::matches]] = line;
       }
       return hit;
+    }
+    /// As SetTags::View::touch.
+    [[gnu::always_inline]] bool touch(std::uint32_t line) const {
+      const std::size_t at = index_(line);
+      const std::uint32_t match = ways_that_hold(sets_[at], line);
+      if (match != 0) [[likely]] {
+        states_[at] = lru_states.next[states_[at] + match];
+      }
+      return match != 0;
+    }
+    /// As SetTags::View::remove.
+    bool remove(std::uint32_t line) const {
+      const std::size_t at = index_(line);
+      const std::uint32_t match = ways_that_hold(sets_[at], line);
+      if (match == 0) {
+        return false;
+      }
+      const auto way = static_cast<std::uint32_t>(std::countr_zero(match));
+      sets_[at].tags[way] = no_line;
+      states_[at] = lru_states.emptied[states_[at] / LruStates::matches * LruStates::ways + way];
+      return true;
     }
 
    private:

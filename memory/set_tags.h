@@ -4,6 +4,7 @@
 // small caches are one allocation and a look-up touches only its own set.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -53,6 +54,10 @@ class SetTags {
     View(SetTags& tags, std::uint32_t cache) : tags_(&tags), cache_(cache) {}
     /// Looks `line` up; true when it is there. Brings it in when it is not.
     bool access(std::uint32_t line) const { return tags_->access(cache_, line); }
+    /// The same, but a line that is not there is not brought in.
+    bool touch(std::uint32_t line) const { return tags_->touch(cache_, line); }
+    /// Takes `line` out; true when it was there. Its way is empty, and empty ways are filled first.
+    bool remove(std::uint32_t line) const { return tags_->remove(cache_, line); }
 
    private:
     SetTags* tags_;
@@ -89,6 +94,34 @@ class SetTags {
       tags[0] = line;
       return hit;
     }
+  }
+
+  std::uint32_t* set_of(std::uint32_t cache, std::uint32_t line) {
+    return tags_.data() + (std::size_t{cache} * sets_ + index_(line)) * (Ways == 0 ? ways_ : Ways);
+  }
+
+  bool touch(std::uint32_t cache, std::uint32_t line) {
+    const std::uint32_t* const tags = set_of(cache, line);
+    const std::uint32_t ways = Ways == 0 ? ways_ : Ways;
+    // A line that is there is looked up without bringing anything in.
+    return std::find(tags, tags + ways, line) != tags + ways && access(cache, line);
+  }
+
+  bool remove(std::uint32_t cache, std::uint32_t line) {
+    std::uint32_t* const tags = set_of(cache, line);
+    std::uint32_t* const end = tags + (Ways == 0 ? ways_ : Ways);
+    std::uint32_t* const at = std::find(tags, end, line);
+    if (at == end) {
+      return false;
+    }
+    if constexpr (Policy == Replacement::random) {
+      *at = no_line;
+    } else {
+      // Empty ways are the oldest, so they go first.
+      std::copy(at + 1, end, at);
+      *(end - 1) = no_line;
+    }
+    return true;
   }
 
   // Empty ways are filled from the first on before a victim is drawn.

@@ -1,5 +1,6 @@
 #include <string>
 
+#include "processors/build_report.h"
 #include "processors/replay.h"
 #include "sim/error.h"
 
@@ -55,14 +56,20 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
     }
   }
   const ReferenceCounts references = result.references();
-  const std::int64_t misses = config.placement == Placement::shared ? references.all_misses() : 0;
-  require(reads == misses, "every miss is one read of the interconnect");
-  require(writes == steps.pixels, "every pixel is one write of the interconnect");
+  const BuildCounts built = result.build.counts();
+  const std::int64_t misses =
+      config.placement == Placement::shared ? references.all_misses() - built.local_misses : 0;
+  require(reads == misses + built.locks, "every miss and every lock is one read of the interconnect");
+  require(writes == steps.pixels + built.writes,
+          "every pixel and every part of the tree is one write of the interconnect");
   // Posted writes wait too, but no node waits with them.
   const TimeDivision time = result.time();
   require(part(time, Activity::interconnect_wait) <= interconnect_waits,
           "nodes wait for the interconnect no longer than its transactions do");
   require(part(time, Activity::bank_wait) <= bank_waits, "nodes wait for banks no longer than accesses do");
+  if (result.build.sharing != Sharing::given) {
+    check_build(log, config, result.build);
+  }
 }
 
 }  // namespace marti::processors

@@ -63,15 +63,14 @@ std::int64_t read_record(const OperationCycles& cycles, std::int64_t words) {
   return cycles.integer + words * cycles.load;
 }
 
-/// `fixed` whole cycles beside the mix.
+}  // namespace
+
 std::int64_t price(const OperationMix& mix, const OperationCycles& cycles, std::int64_t fixed) {
   const std::int64_t thousandths = mix.add * cycles.add + mix.multiply * cycles.multiply +
                                    mix.divide * cycles.divide + mix.square_root * cycles.square_root +
                                    mix.compare * cycles.compare + mix.integer * cycles.integer;
   return (thousandths + 500) / 1000 + fixed;
 }
-
-}  // namespace
 
 std::span<const std::string_view> cost_presets() { return names; }
 

@@ -12,6 +12,8 @@
 
 namespace marti::processors {
 
+struct OperationMix;
+
 /// Cycles of one primitive operation. `load` and `store` are the issue of one word; waiting for memory is
 /// simulated, not priced here.
 struct OperationCycles {
@@ -53,6 +55,9 @@ struct StepCycles {
 /// The costs of a named preset. Throws UserError for an unknown name. Each preset's source is in
 /// cost_model.cpp.
 [[nodiscard]] OperationCycles cost_preset(std::string_view name);
+
+/// The cycles of a mix, rounded to the nearest, halves up, and `fixed` whole ones beside it.
+[[nodiscard]] std::int64_t price(const OperationMix& mix, const OperationCycles& cycles, std::int64_t fixed);
 
 /// Prices the measured operation mixes (operation_mix.h). Rounds each step to whole cycles, halves up.
 [[nodiscard]] StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words);

@@ -45,7 +45,13 @@ void check(const MachineConfig& config) {
   if (config.write_buffer == 0 || config.word_bytes == 0) {
     throw sim::UserError("the write buffer and the word must not be empty");
   }
-  if (config.placement == Placement::replicated && config.local.width == 0) {
+  if (config.placement == Placement::replicated && config.build.sharing == Sharing::shared) {
+    throw sim::UserError(
+        "build.sharing: nodes with a database each (database.placement = \"replicated\") have no tree to "
+        "share; use \"private\" or \"none\"");
+  }
+  if ((config.placement == Placement::replicated || config.build.sharing == Sharing::private_trees) &&
+      config.local.width == 0) {
     throw sim::UserError("local memory must be at least one byte wide");
   }
   if (config.cache.organisation == CacheOrganisation::unified) {

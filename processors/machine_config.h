@@ -10,6 +10,7 @@
 #include "memory/cache_config.h"
 #include "memory/interconnect.h"
 #include "memory/layout.h"
+#include "processors/build_config.h"
 #include "processors/cost_model.h"
 #include "processors/host.h"
 #include "processors/packets.h"
@@ -39,7 +40,7 @@ struct NodeCacheConfig {
   std::int64_t hit_cycles = 1;
 };
 
-/// A replicated database's memory: no contention, one line after `access_cycles` plus its beats.
+/// The memory of a replicated database or of private trees: no contention, one line after `access_cycles` plus its beats.
 struct LocalMemoryConfig {
   sim::Clock clock = sim::Clock::from_hertz(33e6);
   std::uint32_t width = 8;  ///< bytes a beat
@@ -62,6 +63,7 @@ struct MachineConfig {
   memory::BankConfig banks;
   PacketConfig packets;
   HostConfig host;
+  BuildConfig build;
 
   [[nodiscard]] std::uint32_t all_nodes() const { return clusters * nodes; }
 };

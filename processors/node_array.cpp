@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "processors/dynamic_nodes.h"
 #include "processors/image_nodes.h"
 
 namespace marti::processors {
@@ -10,6 +11,9 @@ namespace {
 
 template <class Caches>
 std::unique_ptr<NodeArray> make(const ReplayInput& input, sim::Engine& engine, Host& host, Caches caches) {
+  if (input.tree != nullptr) {
+    return std::make_unique<DynamicNodes<Caches>>(input, engine, host, std::move(caches));
+  }
   return std::make_unique<ImageNodes<Caches>>(input, engine, host, std::move(caches));
 }
 

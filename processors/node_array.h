@@ -11,6 +11,7 @@
 
 #include "memory/interconnect.h"
 #include "processors/accounting.h"
+#include "processors/build_result.h"
 #include "processors/host.h"
 #include "processors/replay_input.h"
 #include "sim/engine.h"
@@ -36,6 +37,8 @@ class NodeArray : public sim::EventHandler {
   /// After the run: fills in idle time and the times that follow from counts.
   virtual void finish() = 0;
   [[nodiscard]] virtual std::vector<NodeStatistics> statistics() const = 0;
+  /// After the run: what building the tree took; nothing when it is given.
+  [[nodiscard]] virtual BuildResult build_result() const { return {}; }
   /// Host bytes per simulated node beside its cache tags.
   [[nodiscard]] virtual std::size_t bytes_per_node() const = 0;
 };

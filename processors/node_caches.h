@@ -28,6 +28,12 @@ class UnifiedCaches {
     [[gnu::always_inline]] bool access(memory::RecordKind /*kind*/, std::uint32_t line) const {
       return tags_.access(line);
     }
+    /// The same, but a line that is not there is not brought in.
+    [[gnu::always_inline]] bool touch(memory::RecordKind /*kind*/, std::uint32_t line) const {
+      return tags_.touch(line);
+    }
+    /// Takes a line out, whatever kinds of record it holds; how many copies there were.
+    [[nodiscard]] std::int64_t remove(std::uint32_t line) const { return tags_.remove(line) ? 1 : 0; }
 
    private:
     typename Tags::View tags_;
@@ -56,6 +62,16 @@ class SplitCaches {
     bool access(memory::RecordKind kind, std::uint32_t line) const {
       return tags_[split_cache_of[static_cast<std::size_t>(kind)]].view(node_).access(line);
     }
+    bool touch(memory::RecordKind kind, std::uint32_t line) const {
+      return tags_[split_cache_of[static_cast<std::size_t>(kind)]].view(node_).touch(line);
+    }
+    [[nodiscard]] std::int64_t remove(std::uint32_t line) const {
+      std::int64_t removed = 0;
+      for (Tags& tags : tags_) {
+        removed += tags.view(node_).remove(line) ? 1 : 0;
+      }
+      return removed;
+    }
 
    private:
     std::vector<Tags>& tags_;
@@ -73,6 +89,8 @@ struct NoCaches {
   static constexpr bool by_kind = false;
   struct View {
     static bool access(memory::RecordKind /*kind*/, std::uint32_t /*line*/) { return false; }
+    static bool touch(memory::RecordKind /*kind*/, std::uint32_t /*line*/) { return false; }
+    static std::int64_t remove(std::uint32_t /*line*/) { return 0; }
   };
   [[nodiscard]] static View view(std::uint32_t /*node*/) { return {}; }
 };

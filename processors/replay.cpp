@@ -1,7 +1,9 @@
 #include "processors/replay.h"
 
+#include <algorithm>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "memory/layout.h"
 #include "memory/set_tags.h"
@@ -15,9 +17,28 @@ namespace marti::processors {
 
 namespace {
 
-memory::Layout layout_of(const WorkLog& log, const MachineConfig& config) {
-  const memory::RecordCounts counts = {log.topology.nodes.size(),
-                                       log.topology.entries.size(),
+// How the tree is built; nothing when it is given.
+std::optional<TreePlan> plan_of(const WorkLog& log, const MachineConfig& config,
+                                const ReplayOptions& options) {
+  if (config.build.sharing == Sharing::given) {
+    if (!options.starts.empty()) {
+      throw sim::UserError("build.sharing: start states of branches need another than \"given\"");
+    }
+    return std::nullopt;
+  }
+  std::vector<BranchStart> starts =
+      options.starts.empty() ? branch_starts(log.topology, config.build) : options.starts;
+  check_starts(log.topology, starts);
+  TreePlan plan(log.topology, std::move(starts), config);
+  if (config.build.sharing == Sharing::none && !plan.lazy().empty()) {
+    throw sim::UserError("build.sharing: \"none\" leaves no branch to be split during the frame");
+  }
+  return plan;
+}
+
+memory::Layout layout_of(const WorkLog& log, const MachineConfig& config, std::optional<TreePlan>& plan) {
+  const memory::RecordCounts counts = {plan ? plan->initial_nodes() : log.topology.nodes.size(),
+                                       plan ? plan->initial_entries() : log.topology.entries.size(),
                                        log.primitives,
                                        log.materials,
                                        log.texture_begin.empty() ? 0 : log.texture_begin.back(),
@@ -25,7 +46,10 @@ memory::Layout layout_of(const WorkLog& log, const MachineConfig& config) {
   const memory::Layout layout(config.layout, counts);
   const std::uint32_t unit = config.cache.organisation == CacheOrganisation::none ? config.banks.interleave
                                                                                   : config.cache.cache.line;
-  if (layout.end() / unit >= memory::no_line) {
+  if (plan) {
+    plan->place_behind(layout, unit);
+  }
+  if (std::max(layout.end(), plan ? plan->end() : 0) / unit >= memory::no_line) {
     throw sim::UserError("the database has 2^32 or more lines; use longer cache lines");
   }
   return layout;
@@ -61,7 +85,8 @@ TimeDivision MachineResult::time() const {
 
 MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
   check(config);
-  const memory::Layout layout = layout_of(log, config);
+  std::optional<TreePlan> plan = plan_of(log, config, options);
+  const memory::Layout layout = layout_of(log, config, plan);
   const PacketList packets(log.width, log.height, config.packets);
   const std::vector<std::uint32_t> rank = config.layout.node_order == memory::NodeOrder::depth_first
                                               ? depth_first_rank(log.topology)
@@ -70,7 +95,7 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   engine.reserve(std::size_t{config.all_nodes()} + 1);
   Host host(config.host, packets.size(), config.all_nodes());
   const std::unique_ptr<NodeArray> nodes =
-      make_node_array({log, config, layout, packets, rank, options.step_by_step}, engine, host);
+      make_node_array({log, config, layout, packets, rank, options.step_by_step, plan ? &*plan : nullptr}, engine, host);
 
   std::vector<std::unique_ptr<memory::Interconnect>> interconnects;
   std::vector<memory::Interconnect*> links;
@@ -98,6 +123,7 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
     result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
   }
   result.host = host.statistics();
+  result.build = nodes->build_result();
   result.packets = packets.size();
   result.database_bytes = layout.database_bytes();
   result.copies = config.placement == Placement::replicated ? config.all_nodes() : config.clusters;

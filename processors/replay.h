@@ -6,6 +6,8 @@
 
 #include "memory/interconnect.h"
 #include "processors/accounting.h"
+#include "processors/build_result.h"
+#include "processors/build_start.h"
 #include "processors/host.h"
 #include "processors/machine_config.h"
 #include "processors/program/work_log.h"
@@ -24,6 +26,7 @@ struct MachineResult {
   std::vector<NodeStatistics> nodes;
   std::vector<ClusterResult> clusters;
   HostStatistics host;
+  BuildResult build;  ///< empty when the tree is given
   std::uint64_t packets = 0;
   std::uint64_t database_bytes = 0;  ///< of one copy
   std::uint64_t copies = 0;          ///< one for each cluster, or for each node when replicated
@@ -39,6 +42,9 @@ struct MachineResult {
 struct ReplayOptions {
   bool step_by_step = false;     ///< an event for every reference instead of running ahead; same result
   std::uint64_t start_seed = 0;  ///< order in which the nodes' first events are posted; same result
+  /// What of the tree is there when the frame begins, one entry a node, instead of what MachineConfig::build
+  /// says; its `sharing` must not be `given`, and with `none` no branch may be lazy. Empty: what it says.
+  std::vector<BranchStart> starts{};
 };
 
 /// Times `config` on `log`. Deterministic, single-threaded; many replays may share one log. Before it
@@ -48,7 +54,8 @@ struct ReplayOptions {
                                    const ReplayOptions& options = {});
 
 /// The conservation laws that every result must obey: each node's time adds up to the end; every pixel is
-/// written once; what the nodes waited is what the interconnect and the banks made them wait.
+/// written once; what the nodes waited is what the interconnect and the banks made them wait; what was built is
+/// what is there.
 void check_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result);
 
 }  // namespace marti::processors

@@ -8,6 +8,7 @@
 #include "processors/machine_config.h"
 #include "processors/packets.h"
 #include "processors/program/work_log.h"
+#include "processors/tree_plan.h"
 
 namespace marti::processors {
 
@@ -19,6 +20,7 @@ struct ReplayInput {
   const PacketList& packets;
   std::span<const std::uint32_t> node_rank;  ///< record number of each tree node; empty: its own number
   bool step_by_step = false;                 ///< an event for every reference
+  const TreePlan* tree = nullptr;            ///< how the tree is built; null when it is given
 };
 
 }  // namespace marti::processors

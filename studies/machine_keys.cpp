@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/error.h"
+#include "studies/build_keys.h"
 
 namespace marti::studies {
 
@@ -113,7 +114,8 @@ void declare_memory(Schema& schema) {
   schema.section("database", "where the scene database is");
   schema.choice("database.placement", "shared", names(processors::placement_names),
                 "shared: one copy in each cluster's memory; replicated: a copy in every node's own memory");
-  schema.section("local", "a node's own memory, for a replicated database; it serves nobody else");
+  schema.section("local",
+                 "a node's own memory, for a replicated database or private trees; it serves nobody else");
   clock(schema, "local.clock", "clock of the local memory");
   schema.size("local.width", "8 B", {"1 B", "64 KiB"}, "bytes of a beat");
   cycles(schema, "local.access_cycles", 4, "cycles until the first beat");
@@ -242,14 +244,16 @@ void read_cache(sim::Config& config, processors::NodeCacheConfig& cache) {
 
 void read_local(sim::Config& config, processors::MachineConfig& machine) {
   machine.placement = config.choice_as<processors::Placement>("database.placement");
-  if (machine.placement == processors::Placement::replicated) {
+  if (machine.placement == processors::Placement::replicated ||
+      machine.build.sharing == processors::Sharing::private_trees) {
     machine.local.clock = clock(config, "local.clock");
     machine.local.width = static_cast<std::uint32_t>(config.size("local.width"));
     machine.local.access_cycles = config.integer("local.access_cycles");
     machine.local.cycles_per_beat = config.integer("local.cycles_per_beat");
   }
-  config.mark_unused_reason("local", "it has no effect without database.placement = \"replicated\"",
-                            "database.placement");
+  config.mark_unused_reason(
+      "local", "it has no effect without database.placement = \"replicated\" or build.sharing = \"private\"",
+      "database.placement");
 }
 
 void read_interconnect(sim::Config& config, processors::MachineConfig& machine) {
@@ -291,6 +295,7 @@ void declare_machine_keys(sim::Schema& schema) {
   declare_memory(schema);
   declare_interconnect(schema);
   declare_host(schema);
+  declare_build_keys(schema);
 }
 
 processors::MachineConfig read_machine(sim::Config& config) {
@@ -307,6 +312,7 @@ processors::MachineConfig read_machine(sim::Config& config) {
   read_costs(config, machine);
   read_layout(config, machine.layout);
   read_cache(config, machine.cache);
+  machine.build = read_build(config);
   read_local(config, machine);
   read_interconnect(config, machine);
   machine.packets = {count(config, "packets.width"), count(config, "packets.height"),

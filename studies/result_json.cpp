@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "studies/build_output.h"
 #include "studies/run_result.h"
 #include "studies/version.h"
 
@@ -178,6 +179,9 @@ std::string json_of(const RunResult& r) {
       {"references", reference_json(timed)},
       {"per_cluster", clusters_json(timed)},
       {"per_node", nodes_json(timed)}};
+  if (timed.build.sharing != processors::Sharing::given) {
+    machine["build"] = build_json(timed.build, timed.nodes.size() <= most_listed);
+  }
   const Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
                        {"config", config_json(r)},
                        {"scene", scene_json(r)},

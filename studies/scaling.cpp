@@ -41,6 +41,16 @@ std::string describe(Limit limit, double part, const Utilisation& used,
       return fmt::format(
           "the host: nodes spend {:.1f} % of their time waiting for packets; larger packets would help",
           percent);
+    case Limit::start_up:
+      return fmt::format(
+          "building before the frame: nodes wait {:.1f} % of their time for the initial tree; a lower "
+          "build.initial_level would help",
+          percent);
+    case Limit::lock:
+      return fmt::format(
+          "locks: nodes spend {:.1f} % of their time waiting for branches that others split; a higher "
+          "build.initial_level would help",
+          percent);
     case Limit::imbalance:
       return fmt::format(
           "imbalance: nodes are idle {:.1f} % of the time, {} packet(s) for {} nodes; smaller packets would "
@@ -107,11 +117,13 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
       return sum + static_cast<double>(time[static_cast<std::size_t>(activity)]);
     });
   };
-  const std::array<std::pair<Limit, double>, 7> candidates = {{
+  const std::array<std::pair<Limit, double>, 9> candidates = {{
       {Limit::interconnect, part({Activity::interconnect_wait})},
       {Limit::bank, part({Activity::bank_wait})},
       {Limit::memory_latency, part({Activity::transfer, Activity::bank_access})},
-      {Limit::dispatch, part({Activity::dispatch_wait})},
+      {Limit::dispatch, part({Activity::dispatch_wait}) - static_cast<double>(result.build.start_up_wait)},
+      {Limit::start_up, static_cast<double>(result.build.start_up_wait)},
+      {Limit::lock, part({Activity::lock_wait})},
       {Limit::imbalance, part({Activity::idle})},
       {Limit::write_buffer, part({Activity::queue_full_wait})},
       {Limit::compute, part({Activity::traversal, Activity::intersection, Activity::shading,
@@ -139,6 +151,10 @@ std::string_view name_of(Limit limit) {
       return "memory_latency";
     case Limit::dispatch:
       return "dispatch";
+    case Limit::start_up:
+      return "start_up";
+    case Limit::lock:
+      return "lock";
     case Limit::imbalance:
       return "imbalance";
     case Limit::write_buffer:

@@ -33,7 +33,18 @@ struct Utilisation {
 [[nodiscard]] Utilisation utilisation_of(const processors::MachineConfig& machine,
                                          const processors::MachineResult& result);
 
-enum class Limit { nothing, interconnect, bank, memory_latency, dispatch, imbalance, write_buffer, compute };
+enum class Limit {
+  nothing,
+  interconnect,
+  bank,
+  memory_latency,
+  dispatch,
+  start_up,
+  lock,
+  imbalance,
+  write_buffer,
+  compute
+};
 
 /// What limits a machine: the part of the nodes' time that would have to shrink first.
 struct Finding {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "sim/units.h"
+#include "studies/build_output.h"
 #include "studies/run_result.h"
 
 namespace marti::studies {
@@ -171,6 +172,7 @@ std::string summary_of(const RunResult& r) {
   machine_lines(out, r);
   time_lines(out, r);
   memory_lines(out, r);
+  text += build_lines(r.timed);
   fmt::format_to(out, "\nlimited by    {}\n", r.finding.sentence);
   return text;
 }

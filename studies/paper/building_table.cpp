@@ -82,9 +82,9 @@ Table building_table(std::size_t index, const RunOutcomes& outcomes) {
   const LevelOutcome& whole = outcomes.whole();
   for (const LevelOutcome& outcome : outcomes.levels) {
     table.add_row({count_cell(outcome.initial.level), outcome.initial.note(), outcome.build, outcome.render,
-                   outcome.total(), outcome.computing, count_cell(outcome.splits), count_cell(outcome.nodes),
+                   outcome.total(), outcome.building(), count_cell(outcome.splits), count_cell(outcome.nodes),
                    count_cell(outcome.partial), count_cell(outcome.bytes), saved(outcome.bytes, whole.bytes),
-                   saved(ticks(outcome.computing), ticks(whole.computing)),
+                   saved(ticks(outcome.building()), ticks(whole.building())),
                    change(outcome.total(), whole.total())});
   }
   return table;
@@ -104,7 +104,7 @@ Table initial_level_table(std::span<const RunOutcomes> runs) {
     for (const LevelOutcome& outcome : run.levels) {
       table.add_row({name_of(run.run), count_cell(outcome.initial.level), outcome.build,
                      change(outcome.total(), whole.total()), 1.0 - saved(outcome.bytes, whole.bytes),
-                     1.0 - saved(ticks(outcome.computing), ticks(whole.computing))});
+                     1.0 - saved(ticks(outcome.building()), ticks(whole.building()))});
     }
   }
   return table;
@@ -127,7 +127,7 @@ Table savings_table(std::span<const RunOutcomes> runs, std::span<const double> r
       sim::ensure(outcome != nullptr, "a rule was not tried");
       table.add_row({name_of(run.run), k, count_cell(outcome->initial.level),
                      saved(outcome->bytes, whole.bytes),
-                     saved(ticks(outcome->computing), ticks(whole.computing)),
+                     saved(ticks(outcome->building()), ticks(whole.building())),
                      change(outcome->render, whole.render), change(outcome->total(), whole.total())});
     }
   }

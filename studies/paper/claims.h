@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "studies/paper/building_table.h"
 #include "studies/paper/traced_run.h"
 #include "studies/paper/tree_table.h"
 #include "studies/results/table.h"
@@ -28,6 +29,9 @@ struct Claim {
 /// not_measured.
 [[nodiscard]] std::vector<Claim> check_tree_claims(std::span<const SceneTrees> scenes);
 [[nodiscard]] std::vector<Claim> check_access_claims(std::span<const TracedRun> runs);
+
+/// The claims about trees that are built while they are used.
+[[nodiscard]] std::vector<Claim> check_build_claims(std::span<const RunOutcomes> runs);
 
 /// "claims": one row each.
 [[nodiscard]] Table claim_table(std::span<const Claim> claims);

@@ -1,8 +1,6 @@
 #include "studies/paper/paper.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-
 #include <array>
 #include <set>
 #include <span>
@@ -11,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "processors/replay.h"
 #include "sim/error.h"
 #include "sim/units.h"
 #include "studies/image_file.h"
+#include "studies/paper/build_times.h"
 #include "studies/paper/building_table.h"
 #include "studies/paper/claims.h"
 #include "studies/paper/figures.h"
@@ -73,12 +71,12 @@ std::string head_of(const sim::Config& config, const PaperConfig& paper) {
 }
 
 /// The tables for people: those with a row for each level get a column for each instead. The claims have a
-/// text of their own.
+/// text of their own, and the table behind a chart repeats what stands in others.
 std::string text_of_tables(std::span<const Table> tables) {
   std::string text;
   for (const Table& table : tables) {
     const std::string& name = table.name();
-    if (name == "claims") {
+    if (name == "claims" || name == "initial_levels") {
       continue;
     }
     text += "\n";
@@ -116,21 +114,29 @@ StudyOutput run_paper(sim::Config& config) {
   for (const PaperRun& run : paper.runs) {
     runs.push_back(trace_run(paper, run));
   }
-  std::vector<TaskTimes> times(runs.size());
-  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
-    times[i] = tasks_of(processors::replay(*runs[i].log, paper.machine).time());
-  });
+  const std::vector<RunOutcomes> outcomes = time_initial_levels(paper, runs);
+  std::vector<TaskTimes> times;
+  for (const RunOutcomes& run : outcomes) {
+    times.push_back(tasks_of(run.whole().time));
+  }
 
   std::vector<Claim> claims = check_tree_claims(trees);
-  for (Claim& claim : check_access_claims(runs)) {
-    claims.push_back(std::move(claim));
+  for (const std::vector<Claim>& more : {check_access_claims(runs), check_build_claims(outcomes)}) {
+    claims.insert(claims.end(), more.begin(), more.end());
   }
 
   StudyOutput output;
-  output.tables = {
-      tree_table(trees, layout), rule_table(trees),          rule_level_table(trees, paper.rules),
-      task_table(runs, times),   memory_table(runs, layout), access_table(runs),
-      claim_table(claims)};
+  std::vector<Table>& tables = output.tables;
+  tables = {tree_table(trees, layout), rule_table(trees), rule_level_table(trees, paper.rules)};
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    tables.push_back(building_table(i, outcomes[i]));
+  }
+  tables.push_back(savings_table(outcomes, paper.rules));
+  tables.push_back(initial_level_table(outcomes));
+  tables.push_back(task_table(runs, times));
+  tables.push_back(memory_table(runs, layout));
+  tables.push_back(access_table(runs));
+  tables.push_back(claim_table(claims));
   output.report = head_of(config, paper) + text_of_tables(output.tables) + "\n" + text_of(claims);
   output.tables.push_back(std::move(scenes));
   output.tables.push_back(provenance_table(config.effective_values()));

@@ -9,9 +9,22 @@ namespace marti::studies {
 
 namespace {
 
-// Keys of a run that the study sets itself.
-constexpr std::string_view own_keys[] = {"scene.source", "scene.scene", "scene.camera", "scene.frame",
-                                         "image.max_depth"};
+struct OwnKey {
+  std::string_view key;
+  std::string_view from;
+};
+
+// Keys of a run that the study sets itself, and from what.
+constexpr OwnKey own_keys[] = {
+    {"scene.source", "paper.scenes and paper.run_scenes"},
+    {"scene.scene", "paper.scenes and paper.run_scenes"},
+    {"scene.camera", "paper.scenes and paper.run_scenes"},
+    {"scene.frame", "paper.scenes and paper.run_scenes"},
+    {"image.max_depth", "paper.run_depths"},
+    {"build.sharing", "paper.levels and paper.rules"},
+    {"build.initial_level", "paper.levels and paper.rules"},
+    {"build.rule_k", "paper.rules"},
+};
 
 std::vector<PaperRun> read_runs(const sim::Config& config) {
   const std::vector<std::string> scenes = config.texts("paper.run_scenes");
@@ -43,9 +56,9 @@ FrameConfig PaperConfig::frame_of(const PaperRun& run) const {
 }
 
 void declare_paper_keys(sim::Schema& schema) {
-  schema.section(
-      "paper",
-      "only for `marti study paper`, which sets scene.* and image.max_depth itself and wants an octree");
+  schema.section("paper",
+                 "only for `marti study paper`, which sets scene.*, image.max_depth and build.* itself and "
+                 "wants an octree");
   schema.texts("paper.scenes", {"gears:2", "tetra:6", "teapot:4:pot", "teapot:12:pot"},
                "scenes whose octree and BSP tree are compared (table 1)");
   schema.texts("paper.run_scenes", {"gears:2", "teapot:12:pot", "teapot:12:pot"},
@@ -72,9 +85,9 @@ sim::Schema paper_schema() {
 
 PaperConfig read_paper(sim::Config& config) {
   PaperConfig paper;
-  for (const std::string_view key : own_keys) {
-    if (config.given(key)) {
-      config.fail(key, "the study sets it itself, from paper.run_scenes and paper.run_depths");
+  for (const OwnKey& own : own_keys) {
+    if (config.given(own.key)) {
+      config.fail(own.key, "the study sets it itself, from " + std::string(own.from));
     }
   }
   paper.frame = read_frame(config);

@@ -2,9 +2,13 @@
 // kind of component.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
+#include <set>
+#include <vector>
 
+#include "processors/build_start.h"
 #include "processors/machine_config.h"
 #include "processors/program/work_log.h"
 
@@ -103,6 +107,104 @@ inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::
     row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
   }
   return log;
+}
+
+/// Random figures for what splitting each branch takes; it lists at least what its leaves do.
+inline void add_random_work(Random& random, accel::Topology& topology) {
+  topology.work.resize(topology.nodes.size());
+  std::vector<std::set<std::uint32_t>> below(topology.nodes.size());
+  for (std::size_t at = topology.nodes.size(); at-- > 0;) {
+    const accel::TopologyNode& node = topology.nodes[at];
+    if (node.leaf) {
+      const auto first = topology.entries.begin() + node.first;
+      below[at].insert(first, first + node.count);
+      topology.work[at] = {node.count, 0};
+      continue;
+    }
+    for (std::uint32_t child = 0; child < node.count; ++child) {
+      below[at].insert(below[node.first + child].begin(), below[node.first + child].end());
+    }
+    topology.work[at].listed = static_cast<std::uint32_t>(below[at].size()) +
+                               static_cast<std::uint32_t>(std::max<std::int64_t>(0, pick(random, -4, 2)));
+    topology.work[at].overlaps = static_cast<std::uint32_t>(pick(random, 0, 30));
+  }
+}
+
+/// Appends a ray's walk from a node down: random children, each after its parent.
+inline void append_walk(Random& random, const accel::Topology& topology, std::uint32_t number,
+                        std::vector<std::uint32_t>& words) {
+  using processors::make_word;
+  using processors::Step;
+  const accel::TopologyNode& node = topology.nodes[number];
+  if (!node.leaf) {
+    words.push_back(make_word(Step::branch, number));
+    for (std::int64_t left = pick(random, 0, 3); left > 0; --left) {
+      append_walk(random, topology, node.first + static_cast<std::uint32_t>(random() % node.count), words);
+    }
+  } else if (node.count > 1 && random() % 4 == 0) {
+    words.push_back(make_word(Step::partial_leaf, number));
+    words.push_back(static_cast<std::uint32_t>(pick(random, 0, node.count - 1)));
+  } else {
+    words.push_back(make_word(Step::leaf, number));
+  }
+}
+
+/// A log whose rays walk down from the root, with what splitting takes: one a machine can build its tree for.
+inline processors::WorkLog random_tree_log(Random& random, std::uint32_t width, std::uint32_t height) {
+  using processors::make_word;
+  using processors::Step;
+  processors::WorkLog log;
+  log.width = width;
+  log.height = height;
+  log.primitives = 50;
+  log.materials = 3;
+  log.texture_begin = {0};
+  log.topology = random_topology(random, static_cast<std::uint32_t>(pick(random, 0, 14)), log.primitives, 6);
+  add_random_work(random, log.topology);
+  log.rows.resize(height);
+  for (processors::LogRow& row : log.rows) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+      row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+      for (std::int64_t rays = pick(random, 0, 3); rays > 0; --rays) {
+        row.words.push_back(make_word(Step::ray, static_cast<std::uint32_t>(pick(random, 0, 3))));
+        append_walk(random, log.topology, 0, row.words);
+        if (random() % 2 == 0) {
+          row.words.push_back(make_word(Step::shade, static_cast<std::uint32_t>(pick(random, 0, 2))));
+        }
+      }
+    }
+    row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+  }
+  return log;
+}
+
+/// Any way of coming by a tree but having it given.
+inline processors::BuildConfig random_build(Random& random) {
+  processors::BuildConfig build;
+  build.sharing = static_cast<processors::Sharing>(pick(random, 1, 3));
+  build.initial = static_cast<processors::InitialTree>(pick(random, 0, 2));
+  build.level = static_cast<std::uint32_t>(pick(random, 1, 5));
+  build.rule_k = static_cast<double>(pick(random, 0, 40)) / 4.0;
+  return build;
+}
+
+/// Start states that fit the tree, with branches kept from before among them.
+inline std::vector<processors::BranchStart> random_starts(Random& random, const accel::Topology& topology,
+                                                          bool may_be_lazy) {
+  using processors::BranchStart;
+  std::vector<BranchStart> starts(topology.nodes.size(), BranchStart::kept);
+  std::vector<bool> below_lazy(topology.nodes.size());
+  for (std::size_t number = 0; number < starts.size(); ++number) {
+    const accel::TopologyNode& node = topology.nodes[number];
+    if (!node.leaf) {
+      starts[number] = below_lazy[number] ? BranchStart::lazy
+                                          : static_cast<BranchStart>(pick(random, 0, may_be_lazy ? 2 : 1));
+      for (std::uint32_t child = 0; child < node.count; ++child) {
+        below_lazy[node.first + child] = starts[number] == BranchStart::lazy;
+      }
+    }
+  }
+  return starts;
 }
 
 /// Any machine the configuration allows, with at most `most_nodes` nodes.

@@ -36,7 +36,10 @@ class ListModel {
       return true;
     }
     if (config_.replacement == Replacement::random) {
-      if (set.size() < ways_) {
+      const auto free = std::find(set.begin(), set.end(), nothing);
+      if (free != set.end()) {
+        *free = line;
+      } else if (set.size() < ways_) {
         set.push_back(line);
       } else {
         VictimStream& stream = streams_.try_emplace(line % sets_, config_.seed, line % sets_).first->second;
@@ -51,7 +54,28 @@ class ListModel {
     return false;
   }
 
+  bool holds(Address line) {
+    const std::vector<Address>& set = contents_[line % sets_];
+    return std::find(set.begin(), set.end(), line) != set.end();
+  }
+
+  bool remove(Address line) {
+    std::vector<Address>& set = contents_[line % sets_];
+    const auto at = std::find(set.begin(), set.end(), line);
+    if (at == set.end()) {
+      return false;
+    }
+    if (config_.replacement == Replacement::random) {
+      *at = nothing;  // the others stay in their slots
+    } else {
+      set.erase(at);
+    }
+    return true;
+  }
+
  private:
+  static constexpr Address nothing = ~Address{0};
+
   CacheConfig config_;
   std::uint64_t ways_;
   std::uint64_t sets_;
@@ -92,6 +116,59 @@ TEST(Cache, AgreesWithAListModelForEveryPolicyAndShape) {
           << "line " << config.line << " ways " << config.ways << " size " << config.size << " policy "
           << replacement_names[static_cast<std::size_t>(config.replacement)];
     }
+  }
+}
+
+TEST(Cache, AgreesWithAListModelWhileLinesAreTakenOut) {
+  std::mt19937_64 random(2);
+  for (int round = 0; round < 300; ++round) {
+    CacheConfig config;
+    config.line = 16;
+    config.ways = static_cast<std::uint32_t>(std::array{0, 1, 2, 3, 4, 4, 8, 16, 17, 40}[random() % 10]);
+    config.size = std::uint64_t{config.line} * std::max(1U, config.ways) * (1 + random() % 20);
+    config.replacement = static_cast<Replacement>(random() % 3);
+    config.seed = random();
+    Cache cache(config);
+    ListModel model(config);
+    for (const Address address : trace(random(), 1500, config.size * 2)) {
+      const Address line = address / config.line;
+      if (random() % 4 == 0) {
+        ASSERT_EQ(cache.invalidate(address, 1), model.remove(line) ? 1 : 0);
+      } else {
+        ASSERT_EQ(cache.read(address, 1), model.read(line) ? 0 : 1)
+            << "ways " << config.ways << " size " << config.size << " policy "
+            << replacement_names[static_cast<std::size_t>(config.replacement)];
+      }
+    }
+  }
+}
+
+TEST(Cache, TouchingBringsNothingInAndIsAUseOfWhatIsThere) {
+  std::mt19937_64 random(3);
+  for (int round = 0; round < 200; ++round) {
+    CacheConfig config;
+    config.line = 1;
+    config.ways = static_cast<std::uint32_t>(std::array{1, 2, 3, 4, 8, 17}[random() % 6]);
+    config.size = std::uint64_t{config.ways} * (1 + random() % 4);
+    config.replacement = static_cast<Replacement>(random() % 3);
+    const CacheShape shape = shape_of(config);
+    with_tag_store(config.replacement, shape, [&]<class Tags>() {
+      Tags tags(shape, 1, config.seed);
+      ListModel model(config);
+      for (int i = 0; i < 600; ++i) {
+        const auto line = static_cast<std::uint32_t>(random() % (2 * config.size));
+        switch (random() % 4) {
+          case 0:
+            ASSERT_EQ(tags.view(0).remove(line), model.remove(line));
+            break;
+          case 1:
+            ASSERT_EQ(tags.view(0).touch(line), model.holds(line) && model.read(line));
+            break;
+          default:
+            ASSERT_EQ(tags.view(0).access(line), model.read(line));
+        }
+      }
+    });
   }
 }
 

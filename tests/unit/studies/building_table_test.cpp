@@ -50,8 +50,13 @@ TEST(Saved, IsAFractionOfTheWhole) {
 RunOutcomes two_levels() {
   RunOutcomes run;
   run.run = {"gears:2", 2};
-  run.levels.push_back({{3, false, {10.0}}, 20, 1000, 80, 4, 33, 2, 55});
-  run.levels.push_back({{9, true, {3.0}}, 100, 900, 100, 8, 65, 0, 100});
+  const auto building = [](sim::Ticks ticks) {
+    processors::TimeDivision time{};
+    time[static_cast<std::size_t>(processors::Activity::building)] = ticks;
+    return time;
+  };
+  run.levels.push_back({{3, false, {10.0}}, 20, 1000, building(80), 4, 33, 2, 55});
+  run.levels.push_back({{9, true, {3.0}}, 100, 900, building(100), 8, 65, 0, 100});
   return run;
 }
 

@@ -1,0 +1,27 @@
+// The primitives that a branch listed before it was split: those of the leaves below it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "accel/topology.h"
+
+namespace marti::processors {
+
+/// Each list is put together when it is first asked for, and kept. Not shared between threads.
+class BranchLists {
+ public:
+  explicit BranchLists(const accel::Topology& topology) : topology_(topology) {}
+
+  /// Ascending, without repetition. A primitive that the branch listed and none of its leaves does is not in
+  /// it: only the rounding of an overlap test can make one.
+  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t branch);
+
+ private:
+  const accel::Topology& topology_;
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> lists_;
+};
+
+}  // namespace marti::processors

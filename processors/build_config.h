@@ -1,0 +1,29 @@
+// How a machine comes by its tree.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace marti::processors {
+
+/// given: the whole tree is there when the frame begins and costs nothing. none: the whole tree is built
+/// before the frame, and paid. shared: the initial tree is built before the frame, and each node below it
+/// once by whoever needs it first, in the memory of the cluster. private_trees: the same, but each processor
+/// node builds what it needs in its own memory.
+enum class Sharing : std::uint8_t { given, none, shared, private_trees };
+inline constexpr std::array<std::string_view, 4> sharing_names = {"given", "none", "shared", "private"};
+
+/// Where the initial tree ends. level: nodes of `BuildConfig::level` are not split. full: nowhere.
+/// rule: nodes of the first level n are not split for which L_n > k (B_n + P_n), L_n being the leaves of the
+/// level and B_n + P_n the nodes that are none; the whole tree is built when there is no such level.
+enum class InitialTree : std::uint8_t { level, full, rule };
+
+struct BuildConfig {
+  Sharing sharing = Sharing::given;
+  InitialTree initial = InitialTree::rule;
+  std::uint32_t level = 1;  ///< the root is level 1; at level 1 nothing is built beforehand
+  double rule_k = 10.0;     ///< 3 is the worst case of the paper's theory, 10 what it recommends
+};
+
+}  // namespace marti::processors
