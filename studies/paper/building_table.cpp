@@ -12,8 +12,10 @@ namespace {
 
 std::uint64_t ticks(sim::Ticks time) { return static_cast<std::uint64_t>(time); }
 
-/// By how much a time is longer than the whole tree's.
-double change(sim::Ticks time, sim::Ticks whole) { return -saved(ticks(time), ticks(whole)); }
+/// By how much a time is longer than the whole tree's, as a fraction of that.
+double change(sim::Ticks time, sim::Ticks whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(time - whole) / static_cast<double>(whole);
+}
 
 }  // namespace
 

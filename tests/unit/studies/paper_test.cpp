@@ -9,6 +9,7 @@
 
 #include "sim/config.h"
 #include "sim/error.h"
+#include "studies/paper/build_times.h"
 #include "studies/paper/claims.h"
 #include "studies/paper/figures.h"
 #include "studies/paper/host_builds.h"
@@ -21,6 +22,7 @@
 namespace marti::tests {
 namespace {
 
+using studies::bytes_of;
 using studies::count_lazy_levels;
 using studies::StudyOutput;
 using studies::Table;
@@ -116,6 +118,41 @@ TEST(HostBuilds, LeaveTheTreeThatTheLogPredicts) {
   }
 }
 
+// The simulated machine, node by node and line by line, leaves the tree that a count over the log predicts;
+// and building the whole tree before the frame takes the splits and the memory of all branches.
+TEST(BuildTimes, LeaveTheTreeThatTheLogPredicts) {
+  sim::Config config = sim::Config::from_text(studies::paper_schema(), small, "paper.toml");
+  const studies::PaperConfig paper = studies::read_paper(config);
+  std::vector<studies::TracedRun> traced;
+  for (const studies::PaperRun& run : paper.runs) {
+    traced.push_back(studies::trace_run(paper, run));
+  }
+  const std::vector<studies::RunOutcomes> runs = time_initial_levels(paper, traced);
+  ASSERT_EQ(runs.size(), traced.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    for (const studies::LevelOutcome& outcome : runs[i].levels) {
+      const auto levels =
+          count_lazy_levels(traced[i].log->topology, traced[i].visits.touched, outcome.initial.level);
+      std::uint64_t nodes = 0;
+      std::uint64_t partial = 0;
+      std::uint64_t branches = 0;
+      for (const studies::LevelCount& level : levels) {
+        nodes += level.nodes();
+        partial += level.partial;
+        branches += level.branches;
+      }
+      EXPECT_EQ(outcome.nodes, nodes) << outcome.initial.level;
+      EXPECT_EQ(outcome.partial, partial) << outcome.initial.level;
+      EXPECT_EQ(outcome.splits, branches) << outcome.initial.level;
+      EXPECT_EQ(outcome.bytes, bytes_of(levels, paper.machine.layout)) << outcome.initial.level;
+      EXPECT_EQ(processors::sum_of(outcome.time), paper.machine.all_nodes() * outcome.total());
+    }
+    EXPECT_TRUE(runs[i].whole().initial.whole);
+    EXPECT_EQ(runs[i].levels.front().build, 0) << "nothing is built beforehand at level 1";
+    EXPECT_GT(runs[i].whole().build, 0);
+  }
+}
+
 TEST(Tasks, TakeEveryTickOfANode) {
   processors::TimeDivision time{};
   std::iota(time.begin(), time.end(), sim::Ticks{1});
@@ -134,6 +171,9 @@ TEST(Claims, SayWhatWasNotMeasured) {
   for (const studies::Claim& claim : studies::check_access_claims({})) {
     EXPECT_EQ(claim.verdict, studies::Verdict::not_measured) << claim.subject;
   }
+  for (const studies::Claim& claim : studies::check_build_claims({})) {
+    EXPECT_EQ(claim.verdict, studies::Verdict::not_measured) << claim.subject;
+  }
 }
 
 struct Wrong {
@@ -145,6 +185,7 @@ TEST(Paper, WrongConfigurationsAreRefused) {
   const std::vector<Wrong> cases = {
       {"[scene]\nsource = \"tetra:2\"\n", {"paper.toml:2", "scene.source", "paper.run_scenes"}},
       {"[image]\nmax_depth = 3\n", {"paper.toml:2", "image.max_depth"}},
+      {"[build]\nsharing = \"shared\"\n", {"paper.toml:2", "build.sharing", "paper.levels"}},
       {"[structure]\nkind = \"bsp\"\n", {"paper.toml:2", "structure.kind", "octree"}},
       {"[paper]\nscenes = []\n", {"paper.toml:2", "paper.scenes"}},
       {"[paper]\nscenes = [\"teapott:4\"]\n", {"paper.toml:2", "paper.scenes", "teapot"}},
