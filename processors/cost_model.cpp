@@ -26,11 +26,14 @@ constexpr std::array<Preset, 3> presets{{
       .load = 1,
       .store = 1}},
     // A workstation node of 1990: MC68030 with MC68882 on one clock (33 MHz class). Floating point: the
-    // register-to-register totals as commonly quoted from the timing tables of Motorola's MC68881/MC68882
+    // register-to-register totals as commonly quoted from section 8 of Motorola's MC68881/MC68882
     // Floating-Point Coprocessor User's Manual (2nd ed., 1989): FADD 56, FMUL 76, FDIV 108, FSQRT 110,
-    // FCMP 38. They include the coprocessor dialogue of a 68030 on the same clock, and no overlap of one
-    // instruction's end with the next one's start. The other three are conventions, not figures: 4 cycles
-    // for an integer instruction, 6 to issue the load of a long word and 4 for a store.
+    // FCMP 38. By that section's assumptions they include the coprocessor dialogue of a processor on the same
+    // clock, without wait states and with the coprocessor idle before: no overlap of one instruction's end
+    // with the next one's start, which the MC68882 has (its manual gives heads and tails for it). The
+    // tables themselves were not at hand; other models quote the same totals, but for FCMP, which one
+    // of them has with FADD at 56. The other three are conventions, not figures: 4 cycles for an integer
+    // instruction, 6 to issue the load of a long word and 4 for a store.
     {"mc68882",
      {.add = 56,
       .multiply = 76,

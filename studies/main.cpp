@@ -17,6 +17,8 @@
 #include "sim/schema.h"
 #include "studies/image_file.h"
 #include "studies/output.h"
+#include "studies/paper/paper.h"
+#include "studies/paper/paper_keys.h"
 #include "studies/run_result.h"
 #include "studies/study_operations.h"
 #include "studies/version.h"
@@ -97,19 +99,39 @@ void study_operations(const StudyArguments& arguments) {
   print(text);
 }
 
+void write_and_print(const studies::StudyOutput& output, const std::string& directory) {
+  std::string text = output.report + "\n" + output.host_report + "\n";
+  for (const std::filesystem::path& file : studies::write_study(output, directory)) {
+    text += "wrote " + file.string() + "\n";
+  }
+  print(text);
+}
+
+void study_paper(const StudyArguments& arguments) {
+  sim::Config config =
+      sim::Config::from_file(studies::paper_schema(), arguments.config, arguments.assignments);
+  studies::prepare_output(arguments.directory);
+  write_and_print(studies::run_paper(config), arguments.directory);
+}
+
 void add_study_commands(CLI::App& app, StudyArguments& arguments) {
-  CLI::App* study = app.add_subcommand("study", "Runs a study: tables instead of one result");
+  CLI::App* study = app.add_subcommand("study", "Runs a study: many machines, tables and charts");
   study->require_subcommand(1);
   CLI::App* operations =
       study->add_subcommand("operations", "Counts the operations of every walk, a step and a ray");
-  for (CLI::App* command : {operations}) {
-    command->add_option("CONFIG", arguments.config, "configuration file (TOML); without it, the defaults");
+  CLI::App* paper = study->add_subcommand("paper", "The tables and figures of the paper of 1992");
+  for (CLI::App* command : {operations, paper}) {
+    CLI::Option* config = command->add_option("CONFIG", arguments.config, "configuration file (TOML)");
+    CLI::Option* directory =
+        command->add_option("-o,--output", arguments.directory, "directory for tables, charts and report")
+            ->check(no_empty_directory);
+    config->required(command != operations);
+    directory->required(command != operations);
     command->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
         ->allow_extra_args(false);
-    command->add_option("-o,--output", arguments.directory, "directory for tables")
-        ->check(no_empty_directory);
   }
   operations->callback([&] { study_operations(arguments); });
+  paper->callback([&] { study_paper(arguments); });
 }
 
 void list_scenes() {
@@ -185,22 +207,22 @@ int parse_and_run(int argc, char** argv) {
       ->allow_extra_args(false);
   run->add_option("-o,--output", run_arguments.directory,
                   "directory for image.exr, image.png and result.json")
-      ->check([](const std::string& name) {
-        return std::string(name.empty() ? "the name of a directory must not be empty" : "");
-      });
+      ->check(no_empty_directory);
   run->add_flag("--json", run_arguments.json, "print the result as JSON instead of the summary");
   run->callback([&] { run_command(run_arguments); });
+
+  StudyArguments study_arguments;
+  add_study_commands(app, study_arguments);
 
   bool markdown = false;
   CLI::App* config = app.add_subcommand("config", "Prints every configuration key");
   config->add_flag("--markdown", markdown, "as Markdown, as in docs/configuration.md");
   config->callback([&] {
-    const sim::Schema schema = studies::run_schema();
+    sim::Schema schema = studies::run_schema();
+    studies::declare_paper_keys(schema);
     print(markdown ? sim::list_keys_as_markdown(schema) : sim::list_keys_as_text(schema));
   });
 
-  StudyArguments study_arguments;
-  add_study_commands(app, study_arguments);
 
   SceneArguments scene_arguments;
   add_scene_commands(app, scene_arguments);

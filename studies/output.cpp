@@ -1,34 +1,12 @@
 #include "studies/output.h"
 
-#include <csignal>
 #include <optional>
 
 #include "sim/files.h"
 #include "studies/image_file.h"
+#include "studies/signals_held.h"
 
 namespace marti::studies {
-
-namespace {
-
-// While it lives, SIGINT and SIGTERM wait.
-class SignalsHeld {
- public:
-  SignalsHeld() {
-    sigset_t held;
-    sigemptyset(&held);
-    sigaddset(&held, SIGINT);
-    sigaddset(&held, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &held, &before_);
-  }
-  ~SignalsHeld() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  SignalsHeld(const SignalsHeld&) = delete;
-  SignalsHeld& operator=(const SignalsHeld&) = delete;
-
- private:
-  sigset_t before_{};
-};
-
-}  // namespace
 
 void prepare_output(const std::filesystem::path& directory) {
   sim::make_directory(directory);

@@ -1,0 +1,39 @@
+# cmake -DDIRECTORY=dir -DOUTPUT=file.cpp -P embed_charts.cmake: the chart specifications of a directory as
+# C++ source (studies/results/chart.h).
+cmake_minimum_required(VERSION 3.25)
+
+file(GLOB charts "${DIRECTORY}/*.vl.json")
+list(SORT charts)
+set(entries "")
+foreach(chart IN LISTS charts)
+  get_filename_component(file "${chart}" NAME)
+  string(REPLACE ".vl.json" "" name "${file}")
+  file(READ "${chart}" text)
+  if(text MATCHES "[)]chart\"")
+    message(FATAL_ERROR "${chart}: cannot be put between R\"chart( and )chart\"")
+  endif()
+  # A quarter of the 65,536 characters that every compiler takes in one literal.
+  string(LENGTH "${text}" length)
+  if(length GREATER 16384)
+    message(FATAL_ERROR "${chart}: ${length} characters are too many for a specification")
+  endif()
+  string(APPEND entries "    {\"${name}\", R\"chart(${text})chart\"},\n")
+endforeach()
+list(LENGTH charts count)
+file(WRITE "${OUTPUT}.new" "// Made by cmake/embed_charts.cmake from studies/charts.
+#include <array>
+
+#include \"studies/results/chart.h\"
+
+namespace marti::studies {
+
+namespace {
+constexpr std::array<ChartSpecification, ${count}> charts{{
+${entries}}};
+}  // namespace
+
+std::span<const ChartSpecification> chart_specifications() { return charts; }
+
+}  // namespace marti::studies
+")
+file(COPY_FILE "${OUTPUT}.new" "${OUTPUT}")

@@ -1,0 +1,269 @@
+#include "studies/paper/claims.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "sim/error.h"
+
+namespace marti::studies {
+
+namespace {
+
+// The paper's second teapot, on which most of its statements rest.
+constexpr std::string_view pot = "teapot:12:pot";
+
+const SceneTrees* find(std::span<const SceneTrees> scenes, std::string_view name) {
+  const auto at =
+      std::find_if(scenes.begin(), scenes.end(), [name](const auto& s) { return s.scene == name; });
+  return at == scenes.end() ? nullptr : &*at;
+}
+
+Verdict verdict(bool agrees) { return agrees ? Verdict::agrees : Verdict::differs; }
+
+Claim polygons(std::span<const SceneTrees> scenes, std::string_view name, std::uint64_t published) {
+  Claim claim{fmt::format("size of {}", name), fmt::format("{} polygons", published), "", {}};
+  claim.verdict = Verdict::not_measured;
+  if (const SceneTrees* scene = find(scenes, name)) {
+    // The pot's polygons are its triangles; other scenes keep the count of their source.
+    const std::uint64_t here = name.starts_with("teapot") ? scene->triangles : scene->polygons;
+    claim.here = fmt::format("{}", here);
+    claim.verdict = verdict(here == published);
+  }
+  return claim;
+}
+
+/// Share of what lies on levels 8 and deeper.
+template <class Count>
+double deep_share(std::size_t levels, const Count& count) {
+  std::uint64_t deep = 0;
+  std::uint64_t all = 0;
+  for (std::size_t level = 1; level <= levels; ++level) {
+    all += count(level);
+    deep += level >= 8 ? count(level) : 0;
+  }
+  return all == 0 ? 0.0 : static_cast<double>(deep) / static_cast<double>(all);
+}
+
+std::string level_text(const std::optional<std::uint32_t>& level) {
+  return level ? fmt::format("level {}", *level) : "no level";
+}
+
+Claim deep_nodes(std::span<const SceneTrees> scenes) {
+  Claim claim{"nodes of the teapot's octree", "42 % lie in levels 8 to 12", "", Verdict::not_measured};
+  if (const SceneTrees* scene = find(scenes, pot)) {
+    const std::vector<LevelCount>& levels = scene->octree.levels;
+    const double share = deep_share(levels.size(), [&](std::size_t l) { return levels[l - 1].nodes(); });
+    claim.here = fmt::format("{:.2f} %", 100.0 * share);
+    claim.verdict = verdict(std::abs(share - 0.42) <= 0.005);
+  }
+  return claim;
+}
+
+Claim first_level(std::span<const SceneTrees> scenes, double k, std::uint32_t published) {
+  Claim claim{"leaves against other nodes, teapot",
+              fmt::format("more than {:g} times as many first on level {}", k, published), "",
+              Verdict::not_measured};
+  if (const SceneTrees* scene = find(scenes, pot)) {
+    const std::optional<std::uint32_t> level = rule_level(scene->octree.levels, k);
+    claim.here = level_text(level);
+    claim.verdict = verdict(level == published);
+  }
+  return claim;
+}
+
+Claim bsp_leaves(std::span<const SceneTrees> scenes) {
+  Claim claim{"BSP tree against octree", "the BSP tree has fewer leaves", "", Verdict::not_measured};
+  bool always = true;
+  for (const SceneTrees& scene : scenes) {
+    const std::uint64_t bsp = scene.bsp.total().leaves;
+    const std::uint64_t octree = scene.octree.total().leaves;
+    always = always && bsp < octree;
+    claim.here +=
+        (claim.here.empty() ? "" : "; ") + fmt::format("{} {} against {}", scene.scene, bsp, octree);
+  }
+  if (!scenes.empty()) {
+    claim.verdict = verdict(always);
+  }
+  return claim;
+}
+
+const TracedRun* find_pot(std::span<const TracedRun> runs) {
+  const auto at = std::find_if(runs.begin(), runs.end(), [](const auto& r) { return r.run.scene == pot; });
+  return at == runs.end() ? nullptr : &*at;
+}
+
+std::uint64_t accesses(const TracedRun& run, std::size_t level) {
+  return level <= run.visits.per_level.size() ? run.visits.per_level[level - 1] : 0;
+}
+
+Claim deep_accesses(const TracedRun* run) {
+  Claim claim{"accesses to deep levels, teapot", "less than 1 % go to levels 8 to 12", "",
+              Verdict::not_measured};
+  if (run != nullptr) {
+    const std::size_t levels = run->visits.per_level.size();
+    const double share = deep_share(levels, [&](std::size_t l) { return accesses(*run, l); });
+    const double deeper =
+        deep_share(levels, [&](std::size_t l) { return l == 8 ? std::uint64_t{0} : accesses(*run, l); });
+    claim.here = fmt::format("{:.2f} %; levels 9 to 12 {:.2f} %", 100.0 * share, 100.0 * deeper);
+    claim.verdict = verdict(share < 0.01);
+  }
+  return claim;
+}
+
+Claim access_fall(const TracedRun* run) {
+  Claim claim{"accesses by level, teapot", "they fall steeply beyond level 8", "", Verdict::not_measured};
+  if (run != nullptr && accesses(*run, 8) != 0) {
+    const auto peak = std::max_element(run->visits.per_level.begin(), run->visits.per_level.end());
+    const double left = static_cast<double>(accesses(*run, 9)) / static_cast<double>(accesses(*run, 8));
+    claim.here = fmt::format("most on level {}; level 9 has {:.1f} % of the accesses of level 8",
+                             peak - run->visits.per_level.begin() + 1, 100.0 * left);
+    claim.verdict = verdict(left < 0.5);
+  }
+  return claim;
+}
+
+/// First level that has more accesses than the next.
+std::uint32_t last_rise(const TracedRun& run) {
+  std::size_t level = 1;
+  while (accesses(run, level + 1) >= accesses(run, level) && level < run.visits.per_level.size()) {
+    ++level;
+  }
+  return static_cast<std::uint32_t>(level);
+}
+
+Claim worst_case(std::span<const TracedRun> runs) {
+  Claim claim{"where accesses begin to fall",
+              "at the latest below the level on which L > 3 (B + P), if a ray enters at most four children",
+              "", Verdict::not_measured};
+  bool always = true;
+  for (const TracedRun& run : runs) {
+    const std::uint32_t fall = last_rise(run);
+    const std::uint32_t bound =
+        rule_level(run.levels, 3.0).value_or(static_cast<std::uint32_t>(run.levels.size()));
+    always = always && fall <= bound;
+    claim.here += (claim.here.empty() ? "" : "; ") +
+                  fmt::format("{}: below level {}, rule at {}", name_of(run.run), fall, bound);
+  }
+  if (!runs.empty()) {
+    claim.verdict = verdict(always);
+  }
+  return claim;
+}
+
+// The rule that the paper recommends.
+constexpr double recommended = 10.0;
+
+/// A saving of `what` by the recommended rule and the largest of any initial level, run by run. It agrees
+/// when some run saves as much as the paper says.
+template <class Value>
+Claim saving(std::span<const RunOutcomes> runs, std::string_view what, double published, const Value& value) {
+  Claim claim{fmt::format("{} saved by building on demand", what), fmt::format("{:.0f} %", 100.0 * published),
+              "", Verdict::not_measured};
+  double largest = -1.0;
+  for (const RunOutcomes& run : runs) {
+    double most = -1.0;
+    for (const LevelOutcome& level : run.levels) {
+      most = std::max(most, saved(value(level), value(run.whole())));
+    }
+    const LevelOutcome* rule = run.by_rule(recommended);
+    claim.here += (claim.here.empty() ? "" : "; ") + name_of(run.run) + ": ";
+    if (rule != nullptr) {
+      claim.here += fmt::format("{:.1f} % with k = 10, ", 100.0 * saved(value(*rule), value(run.whole())));
+    }
+    claim.here += fmt::format("at most {:.1f} %", 100.0 * most);
+    largest = std::max(largest, most);
+  }
+  if (!runs.empty()) {
+    claim.verdict = verdict(largest >= published);
+  }
+  return claim;
+}
+
+double longer(sim::Ticks time, sim::Ticks whole) {
+  return -saved(static_cast<std::uint64_t>(time), static_cast<std::uint64_t>(whole));
+}
+
+/// No frame takes more than 1 % longer, the building included.
+Claim penalty(std::span<const RunOutcomes> runs) {
+  Claim claim{"time with k = 10 against the whole tree", "no significant penalty", "", Verdict::not_measured};
+  bool always = true;
+  for (const RunOutcomes& run : runs) {
+    if (const LevelOutcome* rule = run.by_rule(recommended)) {
+      const double frame = longer(rule->render, run.whole().render);
+      const double total = longer(rule->total(), run.whole().total());
+      always = always && total <= 0.01;
+      claim.here +=
+          (claim.here.empty() ? "" : "; ") + fmt::format("{}: frame {:+.2f} %, with the build {:+.2f} %",
+                                                         name_of(run.run), 100.0 * frame, 100.0 * total);
+    }
+  }
+  if (!claim.here.empty()) {
+    claim.verdict = verdict(always);
+  }
+  return claim;
+}
+
+}  // namespace
+
+std::string_view name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::agrees:
+      return "agrees";
+    case Verdict::differs:
+      return "differs";
+    case Verdict::not_measured:
+      return "not measured";
+  }
+  throw sim::InternalError("an unknown verdict");
+}
+
+std::vector<Claim> check_tree_claims(std::span<const SceneTrees> scenes) {
+  return {polygons(scenes, "gears:2", 1169),
+          polygons(scenes, "teapot:4:pot", 980),
+          polygons(scenes, pot, 9120),
+          bsp_leaves(scenes),
+          deep_nodes(scenes),
+          first_level(scenes, 3.0, 6),
+          first_level(scenes, 10.0, 8)};
+}
+
+std::vector<Claim> check_access_claims(std::span<const TracedRun> runs) {
+  const TracedRun* run = find_pot(runs);
+  return {deep_accesses(run), access_fall(run), worst_case(runs)};
+}
+
+std::vector<Claim> check_build_claims(std::span<const RunOutcomes> runs) {
+  return {saving(runs, "memory", 0.45, [](const LevelOutcome& level) { return level.bytes; }),
+          saving(runs, "time for building", 0.2,
+                 [](const LevelOutcome& level) { return static_cast<std::uint64_t>(level.building()); }),
+          penalty(runs)};
+}
+
+Table claim_table(std::span<const Claim> claims) {
+  Table table("claims", "The paper's statements",
+              {{"subject", ColumnType::text, "", "what it is about"},
+               {"paper", ColumnType::text, "", "what the paper says"},
+               {"here", ColumnType::text, "", "what was measured"},
+               {"verdict", ColumnType::text, "", "agrees, differs, or not measured"}});
+  for (const Claim& claim : claims) {
+    table.add_row({claim.subject, claim.paper, claim.here.empty() ? Cell() : Cell(claim.here),
+                   std::string(name_of(claim.verdict))});
+  }
+  return table;
+}
+
+std::string text_of(std::span<const Claim> claims) {
+  std::string text = "The paper's statements\n";
+  for (const Claim& claim : claims) {
+    text += fmt::format("  {:12}  {}\n                paper: {}\n                here:  {}\n",
+                        name_of(claim.verdict), claim.subject, claim.paper,
+                        claim.here.empty() ? "-" : claim.here);
+  }
+  return text;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,127 @@
+#include "studies/paper/figures.h"
+
+#include <numeric>
+
+#include "sim/error.h"
+
+namespace marti::studies {
+
+namespace {
+
+Task task_of(processors::Activity activity) {
+  using processors::Activity;
+  switch (activity) {
+    case Activity::building:
+      return Task::build;
+    case Activity::traversal:
+      return Task::traversal;
+    case Activity::intersection:
+      return Task::intersection;
+    case Activity::shading:
+      return Task::shading;
+    case Activity::cache_access:
+    case Activity::interconnect_wait:
+    case Activity::transfer:
+    case Activity::bank_wait:
+    case Activity::bank_access:
+    case Activity::queue_full_wait:
+      return Task::memory;
+    case Activity::lock_wait:
+    case Activity::message_wait:
+    case Activity::dispatch_wait:
+    case Activity::idle:
+      return Task::other;
+  }
+  throw sim::InternalError("an activity that belongs to no task");
+}
+
+/// Zero where there is nothing to share.
+double share(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+TaskTimes tasks_of(const processors::TimeDivision& time) {
+  TaskTimes sums{};
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    sim::Ticks& sum = sums[static_cast<std::size_t>(task_of(static_cast<processors::Activity>(i)))];
+    sum = sim::add_ticks(sum, time[i]);
+  }
+  return sums;
+}
+
+Table task_table(std::span<const TracedRun> runs, std::span<const TaskTimes> times) {
+  sim::ensure(runs.size() == times.size(), "figure 1 needs the times of every run");
+  Table table("figure1", "Figure 1: time by task, the whole tree being built before the frame",
+              {{"run", ColumnType::text, "", "scene and depth of rays"},
+               {"task", ColumnType::text, "", "what the time goes to"},
+               {"rank", ColumnType::integer, "1", "order of the tasks"},
+               {"time", ColumnType::integer, "ps", "time of all nodes together"},
+               {"share", ColumnType::real, "fraction", "share of the time of all nodes together"}});
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto all =
+        static_cast<std::uint64_t>(std::accumulate(times[i].begin(), times[i].end(), sim::Ticks{0}));
+    for (std::size_t task = 0; task < tasks; ++task) {
+      const sim::Ticks time = times[i][task];
+      table.add_row({name_of(runs[i].run), std::string(task_names[task]), count_cell(task), time,
+                     share(static_cast<std::uint64_t>(time), all)});
+    }
+  }
+  return table;
+}
+
+Table memory_table(std::span<const TracedRun> runs, const memory::LayoutConfig& layout) {
+  Table table("figure2", "Figure 2: memory by level",
+              {{"run", ColumnType::text, "", "scene and depth of rays"},
+               {"tree", ColumnType::text, "",
+                "whole: built before the frame; on demand: only what the frame's rays needed"},
+               {"level", ColumnType::integer, "1", "level, the root's being 1"},
+               {"branches", ColumnType::integer, "1", "B"},
+               {"leaves", ColumnType::integer, "1", "L"},
+               {"partial", ColumnType::integer, "1", "P: nodes left undivided"},
+               {"entries", ColumnType::integer, "1", "triangles in the lists of leaves and partial nodes"},
+               {"bytes", ColumnType::integer, "byte", "records and lists of the level"},
+               {"share", ColumnType::real, "fraction", "share of the whole tree's bytes"}});
+  for (const TracedRun& run : runs) {
+    const std::uint64_t whole = bytes_of(run.levels, layout);
+    const std::vector<LevelCount> lazy = count_lazy_levels(run.log->topology, run.visits.touched, 1);
+    for (const bool on_demand : {false, true}) {
+      const std::vector<LevelCount>& levels = on_demand ? lazy : run.levels;
+      for (std::size_t i = 0; i < levels.size(); ++i) {
+        const std::uint64_t bytes = bytes_of(levels[i], layout);
+        table.add_row({name_of(run.run), on_demand ? "on demand" : "whole", count_cell(i + 1),
+                       count_cell(levels[i].branches), count_cell(levels[i].leaves),
+                       count_cell(levels[i].partial),
+                       count_cell(levels[i].leaf_entries + levels[i].partial_entries), count_cell(bytes),
+                       share(bytes, whole)});
+      }
+    }
+  }
+  return table;
+}
+
+Table access_table(std::span<const TracedRun> runs) {
+  Table table("figure3", "Figure 3: accesses by level",
+              {{"run", ColumnType::text, "", "scene and depth of rays"},
+               {"level", ColumnType::integer, "1", "level, the root's being 1"},
+               {"accesses", ColumnType::integer, "1", "visits of nodes of the level, by all rays"},
+               {"share", ColumnType::real, "fraction", "share of all visits"},
+               {"tests", ColumnType::integer, "1", "triangles tested in the level's leaves"},
+               {"nodes", ColumnType::integer, "1", "nodes of the level in the whole tree"},
+               {"untouched", ColumnType::integer, "1", "of these, nodes that no ray visited"}});
+  for (const TracedRun& run : runs) {
+    const NodeVisits& visits = run.visits;
+    const std::uint64_t all =
+        std::accumulate(visits.per_level.begin(), visits.per_level.end(), std::uint64_t{0});
+    for (std::size_t i = 0; i < visits.per_level.size(); ++i) {
+      const std::uint64_t nodes = run.levels[i].nodes();
+      table.add_row({name_of(run.run), count_cell(i + 1), count_cell(visits.per_level[i]),
+                     share(visits.per_level[i], all), count_cell(visits.tests[i]), count_cell(nodes),
+                     count_cell(nodes - visits.distinct[i])});
+    }
+  }
+  return table;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,86 @@
+#include "studies/paper/host_builds.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <memory>
+
+#include "accel/structure.h"
+#include "sim/error.h"
+#include "studies/image_file.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+const accel::LazyOctree& lazy(const accel::Structure& structure) {
+  const auto* concrete = dynamic_cast<const accel::StructureOf<accel::LazyOctree>*>(&structure);
+  sim::ensure(concrete != nullptr, "not a lazy octree");
+  return concrete->concrete();
+}
+
+void measure_once(const scenes::Scene& scene, const std::shared_ptr<const accel::TriangleSet>& triangles,
+                  const FrameConfig& frame, HostOutcome& outcome) {
+  accel::LazyOctreeOptions options;
+  options.tree = frame.structure_options.octree;
+  options.initial.level = outcome.initial.whole ? 0 : outcome.initial.level;
+  const Clock::time_point begin = Clock::now();
+  const std::unique_ptr<accel::Structure> structure = accel::make_lazy_octree(triangles, options);
+  outcome.build_seconds = std::min(outcome.build_seconds, seconds_since(begin));
+  const Clock::time_point built = Clock::now();
+  static_cast<void>(processors::render(scene, *triangles, *structure, frame.render));
+  outcome.render_seconds = std::min(outcome.render_seconds, seconds_since(built));
+  const accel::LazyOctreeState state = lazy(*structure).state();
+  outcome.nodes = state.all.nodes();
+  outcome.partial = state.all.pending;
+  outcome.bytes = state.node_bytes + state.list_bytes;
+}
+
+}  // namespace
+
+std::vector<HostOutcome> measure_host(const PaperConfig& config, const TracedRun& run) {
+  const FrameConfig frame = config.frame_of(run.run);
+  const scenes::Scene scene = scenes::open_scene(frame.scene, frame.open, decode_image);
+  const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
+  std::vector<HostOutcome> outcomes;
+  for (InitialLevel& initial : initial_levels(config, run.levels)) {
+    HostOutcome& outcome = outcomes.emplace_back();
+    outcome.initial = std::move(initial);
+    outcome.build_seconds = std::numeric_limits<double>::infinity();
+    outcome.render_seconds = std::numeric_limits<double>::infinity();
+    for (std::uint32_t repetition = 0; repetition < config.host_repetitions; ++repetition) {
+      measure_once(scene, triangles, frame, outcome);
+    }
+  }
+  return outcomes;
+}
+
+Table host_building_table(std::size_t index, const PaperRun& run, std::span<const HostOutcome> outcomes) {
+  Table table(
+      fmt::format("host_table{}", index + 2),
+      fmt::format("Table {} on the host: {}", index + 2, name_of(run)),
+      {{"level", ColumnType::integer, "1", "initial level: its nodes are not divided before the frame"},
+       {"note", ColumnType::text, "", "rules that choose the level"},
+       {"build", ColumnType::real, "s", "building to the initial level"},
+       {"render", ColumnType::real, "s", "the frame, building on demand included"},
+       {"total", ColumnType::real, "s", "both"},
+       {"nodes", ColumnType::integer, "1", "nodes that the frame leaves"},
+       {"partial", ColumnType::integer, "1", "of these, nodes left partially built"},
+       {"memory", ColumnType::integer, "byte", "host memory of nodes and lists"}});
+  for (const HostOutcome& outcome : outcomes) {
+    table.add_row({count_cell(outcome.initial.level), outcome.initial.note(), outcome.build_seconds,
+                   outcome.render_seconds, outcome.build_seconds + outcome.render_seconds,
+                   count_cell(outcome.nodes), count_cell(outcome.partial), count_cell(outcome.bytes)});
+  }
+  return table;
+}
+
+}  // namespace marti::studies

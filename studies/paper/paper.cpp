@@ -1,0 +1,153 @@
+#include "studies/paper/paper.h"
+
+#include <fmt/format.h>
+#include <array>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sim/error.h"
+#include "sim/units.h"
+#include "studies/image_file.h"
+#include "studies/paper/build_times.h"
+#include "studies/paper/building_table.h"
+#include "studies/paper/claims.h"
+#include "studies/paper/figures.h"
+#include "studies/paper/host_builds.h"
+#include "studies/paper/paper_keys.h"
+#include "studies/paper/traced_run.h"
+#include "studies/paper/tree_table.h"
+#include "studies/results/provenance.h"
+#include "studies/results/text_table.h"
+#include "studies/results/wide_table.h"
+#include "studies/scene_hash.h"
+
+namespace marti::studies {
+
+namespace {
+
+/// Opens a scene and lays a fault at the key that named it.
+scenes::Scene open(const sim::Config& config, const PaperConfig& paper, const std::string& name,
+                   std::string_view key) {
+  try {
+    return scenes::open_scene(name, paper.frame.open, decode_image);
+  } catch (const sim::UserError& error) {
+    config.fail(key, error.what());
+  }
+}
+
+/// "scenes": every scene of the study.
+Table scene_table(const sim::Config& config, const PaperConfig& paper, std::span<const SceneTrees> trees) {
+  Table table("scenes", "The scenes",
+              {{"scene", ColumnType::text, "", "scene"},
+               {"hash", ColumnType::text, "", "hash of vertices, triangles, materials, lights and camera"}});
+  std::set<std::string> known;
+  for (const SceneTrees& scene : trees) {
+    known.insert(scene.scene);
+    table.add_row({scene.scene, fmt::format("{:016x}", scene.hash)});
+  }
+  for (const PaperRun& run : paper.runs) {
+    if (known.insert(run.scene).second) {
+      const std::uint64_t hash = scene_hash(open(config, paper, run.scene, "paper.run_scenes"));
+      table.add_row({run.scene, fmt::format("{:016x}", hash)});
+    }
+  }
+  return table;
+}
+
+std::string head_of(const sim::Config& config, const PaperConfig& paper) {
+  const accel::OctreeOptions& octree = paper.frame.structure_options.octree;
+  return fmt::format(
+      "Space subdivision as the paper of 1992 studied it\n"
+      "trees    at most {} triangles in a leaf, {} levels\n"
+      "images   {} x {}\n"
+      "machine  {} node{} at {}, operations as \"{}\"\n",
+      octree.max_objects, octree.max_level, paper.frame.render.width, paper.frame.render.height,
+      paper.machine.all_nodes(), paper.machine.all_nodes() == 1 ? "" : "s",
+      sim::print_frequency(config.frequency("node.clock")), config.choice_name("costs.preset"));
+}
+
+/// The tables for people: those with a row for each level get a column for each instead. The claims have a
+/// text of their own, and the table behind a chart repeats what stands in others.
+std::string text_of_tables(std::span<const Table> tables) {
+  std::string text;
+  for (const Table& table : tables) {
+    const std::string& name = table.name();
+    if (name == "claims" || name == "initial_levels") {
+      continue;
+    }
+    text += "\n";
+    if (name == "rules") {
+      text += text_of(widen(table, std::array{std::string_view("scene")}, "level", "l", "ratio"));
+    } else if (name == "figure1") {
+      text += text_of(widen(table, std::array{std::string_view("run")}, "task", "", "share"));
+    } else if (name == "figure2") {
+      text += text_of(
+          widen(table, std::array{std::string_view("run"), std::string_view("tree")}, "level", "l", "bytes"));
+    } else if (name == "figure3") {
+      text += text_of(widen(table, std::array{std::string_view("run")}, "level", "l", "share"));
+    } else {
+      text += text_of(table);
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+StudyOutput run_paper(sim::Config& config) {
+  const PaperConfig paper = read_paper(config);
+  const memory::LayoutConfig& layout = paper.machine.layout;
+
+  // One after the other, so that the host's seconds mean something.
+  std::vector<SceneTrees> trees;
+  for (const std::string& name : paper.scenes) {
+    trees.push_back(
+        measure_trees(name, open(config, paper, name, "paper.scenes"), paper.frame.structure_options));
+  }
+  Table scenes = scene_table(config, paper, trees);
+
+  std::vector<TracedRun> runs;
+  for (const PaperRun& run : paper.runs) {
+    runs.push_back(trace_run(paper, run));
+  }
+  const std::vector<RunOutcomes> outcomes = time_initial_levels(paper, runs);
+  std::vector<TaskTimes> times;
+  for (const RunOutcomes& run : outcomes) {
+    times.push_back(tasks_of(run.whole().time));
+  }
+
+  std::vector<Claim> claims = check_tree_claims(trees);
+  for (const std::vector<Claim>& more : {check_access_claims(runs), check_build_claims(outcomes)}) {
+    claims.insert(claims.end(), more.begin(), more.end());
+  }
+
+  StudyOutput output;
+  std::vector<Table>& tables = output.tables;
+  tables = {tree_table(trees, layout), rule_table(trees), rule_level_table(trees, paper.rules)};
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    tables.push_back(building_table(i, outcomes[i]));
+  }
+  tables.push_back(savings_table(outcomes, paper.rules));
+  tables.push_back(initial_level_table(outcomes));
+  tables.push_back(task_table(runs, times));
+  tables.push_back(memory_table(runs, layout));
+  tables.push_back(access_table(runs));
+  tables.push_back(claim_table(claims));
+  output.report = head_of(config, paper) + text_of_tables(output.tables) + "\n" + text_of(claims);
+  output.tables.push_back(std::move(scenes));
+  output.tables.push_back(provenance_table(config.effective_values()));
+  output.host_tables = {host_tree_table(trees), host_table()};
+  for (std::size_t i = 0; i < runs.size() && paper.host_repetitions != 0; ++i) {
+    output.host_tables.push_back(host_building_table(i, runs[i].run, measure_host(paper, runs[i])));
+  }
+  for (const Table& table : output.host_tables) {
+    output.host_report += (output.host_report.empty() ? "" : "\n") + text_of(table);
+  }
+  return output;
+}
+
+}  // namespace marti::studies

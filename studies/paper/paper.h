@@ -1,0 +1,14 @@
+// `marti study paper`: the tables and figures of McNeill, Shah, Hébert, Lister, Grimsdale, "Performance of
+// Space Subdivision Techniques in Ray Tracing", Computer Graphics Forum 11(4), 1992.
+#pragma once
+
+#include "sim/config.h"
+#include "studies/results/study_files.h"
+
+namespace marti::studies {
+
+/// Runs the whole study. Throws UserError for anything wrong with the input. The reproducible tables and the
+/// report do not depend on the number of host threads.
+[[nodiscard]] StudyOutput run_paper(sim::Config& config);
+
+}  // namespace marti::studies

@@ -1,0 +1,116 @@
+#include "studies/paper/paper_keys.h"
+
+#include <algorithm>
+
+#include "studies/machine_keys.h"
+#include "studies/run_result.h"
+
+namespace marti::studies {
+
+namespace {
+
+struct OwnKey {
+  std::string_view key;
+  std::string_view from;
+};
+
+// Keys of a run that the study sets itself, and from what.
+constexpr OwnKey own_keys[] = {
+    {"scene.source", "paper.scenes and paper.run_scenes"},
+    {"scene.scene", "paper.scenes and paper.run_scenes"},
+    {"scene.camera", "paper.scenes and paper.run_scenes"},
+    {"scene.frame", "paper.scenes and paper.run_scenes"},
+    {"image.max_depth", "paper.run_depths"},
+    {"build.sharing", "paper.levels and paper.rules"},
+    {"build.initial_level", "paper.levels and paper.rules"},
+    {"build.rule_k", "paper.rules"},
+};
+
+std::vector<PaperRun> read_runs(const sim::Config& config) {
+  const std::vector<std::string> scenes = config.texts("paper.run_scenes");
+  const std::vector<std::int64_t> depths = config.integers("paper.run_depths");
+  if (scenes.size() != depths.size()) {
+    config.fail("paper.run_depths", "must have one depth for each of the " + std::to_string(scenes.size()) +
+                                        " scenes of paper.run_scenes, not " + std::to_string(depths.size()));
+  }
+  std::vector<PaperRun> runs;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    PaperRun run{scenes[i], static_cast<std::uint32_t>(depths[i])};
+    if (std::find(runs.begin(), runs.end(), run) != runs.end()) {
+      config.fail("paper.run_scenes", "names " + name_of(run) + " twice");
+    }
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+}  // namespace
+
+std::string name_of(const PaperRun& run) { return run.scene + " at depth " + std::to_string(run.depth); }
+
+FrameConfig PaperConfig::frame_of(const PaperRun& run) const {
+  FrameConfig own = frame;
+  own.scene = run.scene;
+  own.render.max_depth = run.depth;
+  return own;
+}
+
+void declare_paper_keys(sim::Schema& schema) {
+  schema.section("paper",
+                 "only for `marti study paper`, which sets scene.*, image.max_depth and build.* itself and "
+                 "wants an octree");
+  schema.texts("paper.scenes", {"gears:2", "tetra:6", "teapot:4:pot", "teapot:12:pot"},
+               "scenes whose octree and BSP tree are compared (table 1)");
+  schema.texts("paper.run_scenes", {"gears:2", "teapot:12:pot", "teapot:12:pot"},
+               "scenes to render with trees built to several initial levels (tables 2 onwards)");
+  schema.integers("paper.run_depths", {2, 2, 4}, {1, processors::max_ray_depth}, "rays",
+                  "longest chain of rays in each of them, the eye ray being 1");
+  schema.integers(
+      "paper.levels", {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, {1, 21}, "",
+      "initial levels to try, beside the whole tree; those beyond structure.max_level are left out");
+  schema.reals(
+      "paper.rules", {3.0, 10.0}, {0.0, 1e6}, "",
+      "k of the rules \"stop at the first level with more than k times as many leaves as other nodes\"");
+  schema.integer(
+      "paper.host_repetitions", 3, {0, 1000}, "",
+      "how often each initial level is built and rendered on the host, the least time being kept; 0: "
+      "not at all");
+}
+
+sim::Schema paper_schema() {
+  sim::Schema schema = run_schema();
+  declare_paper_keys(schema);
+  return schema;
+}
+
+PaperConfig read_paper(sim::Config& config) {
+  PaperConfig paper;
+  for (const OwnKey& own : own_keys) {
+    if (config.given(own.key)) {
+      config.fail(own.key, "the study sets it itself, from " + std::string(own.from));
+    }
+  }
+  paper.frame = read_frame(config);
+  if (paper.frame.structure != "octree") {
+    config.fail("structure.kind", "the study builds octrees, and BSP trees beside them");
+  }
+  paper.machine = read_machine(config);
+  paper.scenes = config.texts("paper.scenes");
+  if (paper.scenes.empty()) {
+    config.fail("paper.scenes", "must name a scene");
+  }
+  paper.runs = read_runs(config);
+  for (const std::int64_t level : config.integers("paper.levels")) {
+    if (level < paper.frame.structure_options.octree.max_level) {
+      paper.levels.push_back(static_cast<std::uint32_t>(level));
+    }
+  }
+  std::sort(paper.levels.begin(), paper.levels.end());
+  paper.levels.erase(std::unique(paper.levels.begin(), paper.levels.end()), paper.levels.end());
+  paper.rules = config.reals("paper.rules");
+  paper.host_repetitions = static_cast<std::uint32_t>(config.integer("paper.host_repetitions"));
+  config.refuse_unused();
+  return paper;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,59 @@
+// A table of results: what a study found, with name, unit and description of every column. It knows no
+// output format; the writers beside this file turn it into CSV, SQLite, aligned text and charts.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace marti::studies {
+
+enum class ColumnType : std::uint8_t { integer, real, text };
+
+struct Column {
+  std::string name;  ///< lower-case letters, digits and '_'; unique in the table
+  ColumnType type = ColumnType::integer;
+  /// "1" for a count, else "ps", "byte", "fraction", "s", ...; empty for a text.
+  std::string unit;
+  std::string description;  ///< for people, without the full stop
+};
+
+/// No value, an integer, a real or a text. A real may be NaN or infinite.
+using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
+
+class Table {
+ public:
+  /// Throws InternalError for a name that is not made of lower-case letters, digits and '_', for two columns
+  /// of one name, and for no column.
+  Table(std::string name, std::string title, std::vector<Column> columns);
+
+  /// Throws InternalError when the number of cells or a cell's type is not that of the columns.
+  void add_row(std::vector<Cell> cells);
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// One line for people.
+  [[nodiscard]] const std::string& title() const { return title_; }
+  [[nodiscard]] std::span<const Column> columns() const { return columns_; }
+  [[nodiscard]] std::span<const std::vector<Cell>> rows() const { return rows_; }
+
+  /// Index of a column. Throws InternalError when there is none of this name.
+  [[nodiscard]] std::size_t column(std::string_view name) const;
+  [[nodiscard]] const Cell& at(std::size_t row, std::string_view column_name) const;
+
+ private:
+  std::string name_;
+  std::string title_;
+  std::vector<Column> columns_;
+  std::vector<std::vector<Cell>> rows_;
+};
+
+/// An unsigned count as a cell. Throws InternalError when it does not fit.
+[[nodiscard]] Cell count_cell(std::uint64_t count);
+
+/// The table "columns": table, name, unit and description of every column of `tables`.
+[[nodiscard]] Table describe_columns(std::span<const Table> tables);
+
+}  // namespace marti::studies

@@ -1,0 +1,14 @@
+// A scene's fingerprint, for the provenance of results.
+#pragma once
+
+#include <cstdint>
+
+#include "scenes/scene.h"
+
+namespace marti::studies {
+
+/// FNV-1a (Fowler, Noll, Vo) over the bits of what a frame depends on: vertices, triangles, materials,
+/// textures, lights, camera, background. Equal scenes have equal hashes, whatever their names.
+[[nodiscard]] std::uint64_t scene_hash(const scenes::Scene& scene);
+
+}  // namespace marti::studies

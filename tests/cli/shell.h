@@ -1,0 +1,48 @@
+// Runs the program as its user does.
+#pragma once
+
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace marti::test {
+
+struct Outcome {
+  int status = -1;
+  std::string output;  // standard output and error
+};
+
+// Through a shell, so that a test can redirect and limit it.
+inline Outcome shell(const std::string& command) {
+  Outcome outcome;
+  FILE* pipe = popen(("( " + command + " ) 2>&1").c_str(), "r");
+  std::array<char, 4096> buffer{};
+  for (std::size_t n = 0; pipe != nullptr && (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+    outcome.output.append(buffer.data(), n);
+  }
+  const int status = pclose(pipe);
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return outcome;
+}
+
+inline std::string quoted(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
+
+inline Outcome marti(const std::string& arguments) { return shell(quoted(MARTI_PROGRAM) + " " + arguments); }
+
+inline std::string read(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+inline void write(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+}  // namespace marti::test

@@ -1,0 +1,209 @@
+// The study of the 1992 paper on small scenes.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cstdint>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "sim/config.h"
+#include "sim/error.h"
+#include "studies/paper/build_times.h"
+#include "studies/paper/claims.h"
+#include "studies/paper/figures.h"
+#include "studies/paper/host_builds.h"
+#include "studies/paper/paper.h"
+#include "studies/paper/paper_keys.h"
+#include "studies/paper/traced_run.h"
+#include "studies/results/csv.h"
+#include "tests/support/user_error.h"
+
+namespace marti::tests {
+namespace {
+
+using studies::bytes_of;
+using studies::count_lazy_levels;
+using studies::StudyOutput;
+using studies::Table;
+
+constexpr const char* small =
+    "[image]\nwidth = 32\nheight = 24\n[machine]\nnodes = 2\n[structure]\nmax_objects = 9\n[paper]\n"
+    "scenes = [\"tetra:2\", \"teapot:4:pot\"]\nrun_scenes = [\"gears:1\", \"teapot:3:pot\"]\n"
+    "run_depths = [2, 3]\nlevels = [1, 3, 5]\nhost_repetitions = 0\n";
+
+StudyOutput run(const std::string& text, int threads = 2) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+  sim::Config config = sim::Config::from_text(studies::paper_schema(), text, "paper.toml");
+  return studies::run_paper(config);
+}
+
+const Table& table_of(const StudyOutput& output, std::string_view name) {
+  for (const Table& table : output.tables) {
+    if (table.name() == name) {
+      return table;
+    }
+  }
+  throw sim::InternalError("there is no table " + std::string(name));
+}
+
+std::int64_t integer(const Table& table, std::size_t row, std::string_view column) {
+  return std::get<std::int64_t>(table.at(row, column));
+}
+
+TEST(Paper, GivesTheSameBytesAtAnyNumberOfThreads) {
+  const StudyOutput one = run(small, 1);
+  const StudyOutput two = run(small, 2);
+  ASSERT_EQ(one.tables.size(), two.tables.size());
+  for (std::size_t i = 0; i < one.tables.size(); ++i) {
+    EXPECT_EQ(csv_of(one.tables[i]), csv_of(two.tables[i])) << one.tables[i].name();
+    EXPECT_FALSE(one.tables[i].rows().empty()) << one.tables[i].name();
+  }
+  EXPECT_EQ(one.report, two.report);
+}
+
+TEST(Paper, EveryNumberOfNodesHasBranchesAndLeaves) {
+  const StudyOutput output = run(small);
+  const Table& table = table_of(output, "table1");
+  ASSERT_EQ(table.rows().size(), 4U);
+  for (std::size_t row = 0; row < table.rows().size(); ++row) {
+    EXPECT_EQ(integer(table, row, "nodes"), integer(table, row, "branches") + integer(table, row, "leaves"));
+    // Every branch has 8 children or 2, and every node but the root is one's child.
+    const bool octree = std::get<std::string>(table.at(row, "structure")) == "octree";
+    EXPECT_EQ(integer(table, row, "nodes"), (octree ? 8 : 2) * integer(table, row, "branches") + 1);
+    EXPECT_EQ(integer(table, row, "bytes"),
+              8 * integer(table, row, "nodes") + 4 * integer(table, row, "entries"));
+  }
+}
+
+TEST(Paper, SharesAddUpToOne) {
+  const StudyOutput output = run(small);
+  for (const char* name : {"figure1", "figure3"}) {
+    const Table& table = table_of(output, name);
+    double sum = 0.0;
+    for (std::size_t row = 0; row < table.rows().size(); ++row) {
+      sum += std::get<double>(table.at(row, "share"));
+    }
+    EXPECT_NEAR(sum, 2.0, 1e-9) << name << ": one for each of two runs";
+  }
+}
+
+// The tree that the host builds while rays are traced is the one that the log says they need.
+TEST(HostBuilds, LeaveTheTreeThatTheLogPredicts) {
+  sim::Config config =
+      sim::Config::from_text(studies::paper_schema(), std::string(small) + "rules = [3.0]\n", "paper.toml",
+                             std::vector<std::string>{"paper.host_repetitions=1"});
+  const studies::PaperConfig paper = studies::read_paper(config);
+  for (const studies::PaperRun& run : paper.runs) {
+    const studies::TracedRun traced = studies::trace_run(paper, run);
+    const auto outcomes = studies::measure_host(paper, traced);
+    ASSERT_GE(outcomes.size(), 4U);
+    for (const studies::HostOutcome& outcome : outcomes) {
+      const auto levels =
+          count_lazy_levels(traced.log->topology, traced.visits.touched, outcome.initial.level);
+      std::uint64_t nodes = 0;
+      std::uint64_t partial = 0;
+      for (const studies::LevelCount& level : levels) {
+        nodes += level.nodes();
+        partial += level.partial;
+      }
+      EXPECT_EQ(outcome.nodes, nodes) << name_of(run) << " level " << outcome.initial.level;
+      EXPECT_EQ(outcome.partial, partial) << name_of(run) << " level " << outcome.initial.level;
+      EXPECT_GE(outcome.build_seconds, 0.0);
+      EXPECT_GT(outcome.render_seconds, 0.0);
+    }
+    EXPECT_EQ(outcomes.back().partial, 0U);
+    EXPECT_GT(outcomes.front().partial, 0U);
+  }
+}
+
+// The simulated machine, node by node and line by line, leaves the tree that a count over the log predicts;
+// and building the whole tree before the frame takes the splits and the memory of all branches.
+TEST(BuildTimes, LeaveTheTreeThatTheLogPredicts) {
+  sim::Config config = sim::Config::from_text(studies::paper_schema(), small, "paper.toml");
+  const studies::PaperConfig paper = studies::read_paper(config);
+  std::vector<studies::TracedRun> traced;
+  for (const studies::PaperRun& run : paper.runs) {
+    traced.push_back(studies::trace_run(paper, run));
+  }
+  const std::vector<studies::RunOutcomes> runs = time_initial_levels(paper, traced);
+  ASSERT_EQ(runs.size(), traced.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    for (const studies::LevelOutcome& outcome : runs[i].levels) {
+      const auto levels =
+          count_lazy_levels(traced[i].log->topology, traced[i].visits.touched, outcome.initial.level);
+      std::uint64_t nodes = 0;
+      std::uint64_t partial = 0;
+      std::uint64_t branches = 0;
+      for (const studies::LevelCount& level : levels) {
+        nodes += level.nodes();
+        partial += level.partial;
+        branches += level.branches;
+      }
+      EXPECT_EQ(outcome.nodes, nodes) << outcome.initial.level;
+      EXPECT_EQ(outcome.partial, partial) << outcome.initial.level;
+      EXPECT_EQ(outcome.splits, branches) << outcome.initial.level;
+      EXPECT_EQ(outcome.bytes, bytes_of(levels, paper.machine.layout)) << outcome.initial.level;
+      EXPECT_EQ(processors::sum_of(outcome.time), paper.machine.all_nodes() * outcome.total());
+    }
+    EXPECT_TRUE(runs[i].whole().initial.whole);
+    EXPECT_EQ(runs[i].levels.front().build, 0) << "nothing is built beforehand at level 1";
+    EXPECT_GT(runs[i].whole().build, 0);
+  }
+}
+
+TEST(Tasks, TakeEveryTickOfANode) {
+  processors::TimeDivision time{};
+  std::iota(time.begin(), time.end(), sim::Ticks{1});
+  const studies::TaskTimes sums = studies::tasks_of(time);
+  EXPECT_EQ(std::accumulate(sums.begin(), sums.end(), sim::Ticks{0}), processors::sum_of(time));
+  for (const sim::Ticks sum : sums) {
+    EXPECT_GT(sum, 0);
+  }
+}
+
+TEST(Claims, SayWhatWasNotMeasured) {
+  for (const studies::Claim& claim : studies::check_tree_claims({})) {
+    EXPECT_EQ(claim.verdict, studies::Verdict::not_measured) << claim.subject;
+    EXPECT_EQ(claim.here, "");
+  }
+  for (const studies::Claim& claim : studies::check_access_claims({})) {
+    EXPECT_EQ(claim.verdict, studies::Verdict::not_measured) << claim.subject;
+  }
+  for (const studies::Claim& claim : studies::check_build_claims({})) {
+    EXPECT_EQ(claim.verdict, studies::Verdict::not_measured) << claim.subject;
+  }
+}
+
+struct Wrong {
+  const char* text;
+  std::vector<std::string> complaint;
+};
+
+TEST(Paper, WrongConfigurationsAreRefused) {
+  const std::vector<Wrong> cases = {
+      {"[scene]\nsource = \"tetra:2\"\n", {"paper.toml:2", "scene.source", "paper.run_scenes"}},
+      {"[image]\nmax_depth = 3\n", {"paper.toml:2", "image.max_depth"}},
+      {"[build]\nsharing = \"shared\"\n", {"paper.toml:2", "build.sharing", "paper.levels"}},
+      {"[structure]\nkind = \"bsp\"\n", {"paper.toml:2", "structure.kind", "octree"}},
+      {"[paper]\nscenes = []\n", {"paper.toml:2", "paper.scenes"}},
+      {"[paper]\nscenes = [\"teapott:4\"]\n", {"paper.toml:2", "paper.scenes", "teapot"}},
+      {"[paper]\nscenes = [\"tetra:1\"]\nrun_scenes = [\"nothing\"]\nrun_depths = [2]\n",
+       {"paper.toml:3", "paper.run_scenes", "nothing"}},
+      {"[paper]\nrun_depths = [2]\n", {"paper.toml:2", "paper.run_depths", "3"}},
+      {"[paper]\nrun_scenes = [\"tetra:1\", \"tetra:1\"]\nrun_depths = [2, 2]\n",
+       {"paper.toml:2", "paper.run_scenes", "twice"}},
+      {"[paper]\nlevels = [0]\n", {"paper.toml:2", "paper.levels"}},
+      {"[paper]\nrules = [-1.0]\n", {"paper.toml:2", "paper.rules"}},
+  };
+  for (const Wrong& wrong : cases) {
+    const std::string message = test::user_error_of([&] { run(wrong.text); });
+    for (const std::string& part : wrong.complaint) {
+      EXPECT_NE(message.find(part), std::string::npos) << wrong.text << "\n" << message;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace marti::tests

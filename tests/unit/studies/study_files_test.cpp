@@ -1,0 +1,81 @@
+// The files of a study: all of them, or the old ones.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "sim/error.h"
+#include "studies/results/study_files.h"
+#include "tests/support/temporary_directory.h"
+
+namespace marti::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using studies::ColumnType;
+using studies::StudyOutput;
+using studies::Table;
+using test::TemporaryDirectory;
+
+StudyOutput make_output(std::int64_t value) {
+  StudyOutput output;
+  output.report = "report " + std::to_string(value) + "\n";
+  Table table("numbers", "", {{"n", ColumnType::integer, "1", "a number"}});
+  table.add_row({value});
+  output.tables.push_back(table);
+  return output;
+}
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::set<std::string> names_in(const fs::path& directory) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(directory)) {
+    names.insert(entry.path().filename().string());
+  }
+  return names;
+}
+
+TEST(StudyFiles, AreWhatTheHeaderSays) {
+  const TemporaryDirectory directory;
+  StudyOutput output = make_output(7);
+  EXPECT_EQ(write_study(output, directory.path()).size(), 4U);
+  EXPECT_EQ(names_in(directory.path()),
+            (std::set<std::string>{"numbers.csv", "columns.csv", "report.txt", "results.sqlite"}));
+  EXPECT_EQ(read(directory.path() / "numbers.csv"), "n\r\n7\r\n");
+  output.host_report = "seconds\n";
+  output.host_tables.emplace_back("host_numbers", "",
+                                  std::vector<studies::Column>{{"s", ColumnType::real, "s", "seconds"}});
+  write_study(output, directory.path());
+  EXPECT_EQ(names_in(directory.path()),
+            (std::set<std::string>{"numbers.csv", "host_numbers.csv", "columns.csv", "report.txt", "host.txt",
+                                   "results.sqlite"}));
+}
+
+TEST(StudyFiles, AFailureLeavesTheOldOnes) {
+  const TemporaryDirectory directory;
+  write_study(make_output(1), directory.path());
+  const auto names = names_in(directory.path());
+  const std::string database = read(directory.path() / "results.sqlite");
+  // Two tables of one name cannot both be written.
+  StudyOutput twice = make_output(2);
+  twice.tables.push_back(twice.tables[0]);
+  EXPECT_THROW(write_study(twice, directory.path()), sim::UserError);
+  EXPECT_EQ(names_in(directory.path()), names);
+  EXPECT_EQ(read(directory.path() / "numbers.csv"), "n\r\n1\r\n");
+  EXPECT_EQ(read(directory.path() / "report.txt"), "report 1\n");
+  EXPECT_EQ(read(directory.path() / "results.sqlite"), database);
+  EXPECT_THROW(write_study(make_output(3), directory.path() / "missing"), sim::UserError);
+}
+
+}  // namespace
+}  // namespace marti::tests
