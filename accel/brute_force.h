@@ -1,9 +1,10 @@
-// No structure at all: every ray tests every triangle. The oracle all structures are compared with.
+// No structure at all: every ray tests every primitive. The oracle all structures are compared with.
 #pragma once
 
 #include <memory>
 #include <string_view>
 
+#include "accel/intersect.h"
 #include "accel/ray.h"
 #include "accel/topology.h"
 #include "accel/triangles.h"
@@ -12,7 +13,7 @@
 
 namespace marti::accel {
 
-/// One leaf, node 0, that lists every triangle.
+/// One leaf, node 0, that lists every primitive.
 class BruteForce {
  public:
   static constexpr std::string_view kind_name = "none";
@@ -30,7 +31,7 @@ class BruteForce {
     Best<Real> best(setup);
     const std::uint32_t n = triangles_->size();
     for (std::uint32_t id = 0; id < n; ++id) {
-      intersect(setup, (*triangles_)[id], id, best);
+      intersect_primitive(setup, *triangles_, id, best);
     }
     visitor.leaf(0, n, n);
     return best.hit();
@@ -43,7 +44,7 @@ class BruteForce {
     Best<Real> best(setup);
     const std::uint32_t n = triangles_->size();
     for (std::uint32_t id = 0; id < n; ++id) {
-      if (intersect(setup, (*triangles_)[id], id, best)) {
+      if (intersect_primitive(setup, *triangles_, id, best)) {
         visitor.leaf(0, id + 1, n);
         return true;
       }

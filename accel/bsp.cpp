@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "accel/box_overlap.h"
+#include "accel/primitive_overlap.h"
 #include "sim/error.h"
 
 namespace marti::accel {
@@ -103,7 +103,7 @@ class Builder {
     for (std::size_t at = level.begin[index]; at < level.begin[index + 1]; ++at) {
       std::uint32_t met = 0;
       for (std::uint32_t o = 0; o < 8; ++o) {
-        met |= overlaps(triangles_[level.lists[at]], octants[o].center, octants[o].half) ? 1U << o : 0U;
+        met |= overlaps(triangles_, level.lists[at], octants[o].center, octants[o].half) ? 1U << o : 0U;
       }
       if (at == level.begin[index]) {
         same = met;
@@ -125,7 +125,7 @@ class Builder {
       const Box box = box_of(child, level.number + 1U);
       for (std::size_t at = level.begin[index]; at < level.begin[index + 1]; ++at) {
         const std::uint32_t id = level.lists[at];
-        if (overlaps(triangles_[id], box.center, box.half)) {
+        if (overlaps(triangles_, id, box.center, box.half)) {
           lists_of_children_[side].push_back(id);
         }
       }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "accel/box_overlap.h"
+#include "accel/primitive_overlap.h"
 
 namespace marti::accel {
 
@@ -97,16 +97,17 @@ std::array<std::vector<double>, 3> planes_of(const RootFrame& frame, const Resol
   return planes;
 }
 
-/// Calls f(cell) for each cell, enlarged by delta, that the triangle meets.
+/// Calls f(cell) for each cell, enlarged by delta, that the primitive meets.
 template <class F>
-void for_cells(const TriangleCorners& t, const std::array<std::vector<double>, 3>& planes, double delta,
-               const F& f) {
+void for_cells(const TriangleSet& set, std::uint32_t id, const std::array<std::vector<double>, 3>& planes,
+               double delta, const F& f) {
   std::array<std::size_t, 3> begin{};
   std::array<std::size_t, 3> end{};
   bool one = true;
   for (std::size_t a = 0; a < 3; ++a) {
-    const double lo = std::min({t[a], t[3 + a], t[6 + a]}) - delta;
-    const double hi = std::max({t[a], t[3 + a], t[6 + a]}) + delta;
+    const Extent<double> extent = extent_of<double>(set, id, a);
+    const double lo = extent.lo - delta;
+    const double hi = extent.hi + delta;
     // The first cell whose upper plane is not below, and the last whose lower plane is not above.
     const auto first = planes[a].begin();
     begin[a] = static_cast<std::size_t>(std::lower_bound(first + 1, planes[a].end() - 1, lo) - first) - 1;
@@ -132,7 +133,7 @@ void for_cells(const TriangleCorners& t, const std::array<std::vector<double>, 3
       place(1, y);
       for (std::size_t x = begin[0]; x < end[0]; ++x) {
         place(0, x);
-        if (overlaps(t, center, half)) {
+        if (overlaps(set, id, center, half)) {
           f(x + nx * (y + ny * z));
         }
       }
@@ -170,7 +171,7 @@ Grid Grid::build(std::shared_ptr<const TriangleSet> triangles, const GridOptions
     std::uint64_t entries = 0;
     const bool coarsest = counts.size() == 1;
     for (std::uint32_t id = 0; id < set.size() && (coarsest || entries <= options.max_entries); ++id) {
-      for_cells(set[id], grid.planes_, grid.frame_.delta, [&](std::size_t cell) {
+      for_cells(set, id, grid.planes_, grid.frame_.delta, [&](std::size_t cell) {
         ++counts[cell];
         ++entries;
       });
@@ -189,7 +190,7 @@ Grid Grid::build(std::shared_ptr<const TriangleSet> triangles, const GridOptions
   }
   grid.topology_.entries.resize(first);
   for (std::uint32_t id = 0; id < set.size(); ++id) {
-    for_cells(set[id], grid.planes_, grid.frame_.delta,
+    for_cells(set, id, grid.planes_, grid.frame_.delta,
               [&](std::size_t cell) { grid.topology_.entries[counts[cell]++] = id; });
   }
   return grid;

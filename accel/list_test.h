@@ -3,13 +3,14 @@
 
 #include <cstdint>
 
+#include "accel/intersect.h"
 #include "accel/topology.h"
 #include "accel/triangles.h"
 #include "accel/watertight.h"
 
 namespace marti::accel {
 
-/// Tests the triangles of leaf `node` in list order and tells the visitor. True when an occlusion query
+/// Tests the primitives of leaf `node` in list order and tells the visitor. True when an occlusion query
 /// (`Any`) found its hit.
 template <bool Any, class Real, class Visitor>
 bool test_list(const Topology& topology, const TriangleSet& triangles, std::uint32_t node,
@@ -17,7 +18,7 @@ bool test_list(const Topology& topology, const TriangleSet& triangles, std::uint
   const TopologyNode& record = topology.nodes[node];
   for (std::uint32_t k = 0; k < record.count; ++k) {
     const std::uint32_t id = topology.entries[record.first + k];
-    const bool hit = intersect(setup, triangles[id], id, best);
+    const bool hit = intersect_primitive(setup, triangles, id, best);
     if constexpr (Any) {
       if (hit) {
         visitor.leaf(node, k + 1, record.count);

@@ -1,6 +1,7 @@
 #include "accel/octree.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "accel/parallel.h"
@@ -10,6 +11,7 @@ namespace marti::accel {
 
 namespace {
 
+constexpr double not_a_triangle = std::numeric_limits<double>::quiet_NaN();
 // With no more entries than this, copies of the leaves' triangles (80 bytes an entry) are worth their memory.
 constexpr std::uint64_t packed_entries_per_triangle = 16;
 constexpr std::uint64_t packed_entries_always = std::uint64_t{1} << 16;
@@ -104,7 +106,7 @@ void Octree::pack_leaf(std::size_t n) {
       const std::uint32_t id = topology_.entries[node.first + std::min(k + lane, node.count - 1)];
       pack->id[lane] = id;
       for (std::size_t c = 0; c < 9; ++c) {
-        pack->coordinate[c][lane] = (*triangles_)[id][c];
+        pack->coordinate[c][lane] = id < triangles_->triangles() ? (*triangles_)[id][c] : not_a_triangle;
       }
     }
   }

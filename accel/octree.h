@@ -83,6 +83,7 @@ class Octree {
   }
 
  private:
+  friend class CutOctree;  // octree_cut.h: one more walk
   [[nodiscard]] OctreeView view() const {
     return {nodes_.data() + node_offset,
             packed_nodes_.empty() ? nullptr : packed_nodes_.data() + node_offset,

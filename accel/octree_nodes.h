@@ -48,7 +48,8 @@ struct OctreeNode {
 inline constexpr std::size_t node_offset = 7;
 
 /// Four triangles side by side: coordinate[3 * corner + axis][lane]. A leaf's last pack repeats its last
-/// triangle in the lanes left over, which changes no result.
+/// primitive in the lanes left over, which changes no result. The coordinates of a sphere, cylinder or cone
+/// are NaN: its lane is then never refused and never computed, but handed to the scalar kernel.
 struct alignas(64) TrianglePack {
   std::array<std::array<double, 4>, 9> coordinate;
   std::array<std::uint32_t, 4> id;

@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
-#include "accel/box_overlap.h"
 #include "accel/counted.h"
 #include "accel/frame.h"
+#include "accel/primitive_overlap.h"
 #include "accel/triangles.h"
 
 namespace marti::accel {
@@ -56,16 +56,13 @@ class ChildSorter {
     }
   }
 
-  /// The children that list the triangle, as a set of bits; adds the overlap tests it took to `tests`. A
-  /// triangle well inside one child needs none.
-  [[nodiscard]] std::uint32_t children(const TriangleSet& triangles, std::uint32_t id,
-                                       std::uint32_t& tests) const {
-    const TriangleCorners& triangle = triangles[id];
+  /// The children that list primitive `id`, as a set of bits; adds the overlap tests it took to `tests`. A
+  /// primitive well inside one child needs none.
+  [[nodiscard]] std::uint32_t children(const TriangleSet& set, std::uint32_t id, std::uint32_t& tests) const {
     IntegerOf<Real> candidates = 0xffU;
     bool inside = true;
     for (std::size_t a = 0; a < 3; ++a) {
-      const Real lo = least(triangle, a);
-      const Real hi = most(triangle, a);
+      const auto [lo, hi] = extent_of<Real>(set, id, a);
       if (lo - delta_ > planes_[1][a]) {
         candidates = candidates & upper_children[a];
       } else if (hi + delta_ < planes_[1][a]) {
@@ -84,7 +81,7 @@ class ChildSorter {
       const std::size_t x = child & 1U;
       const std::size_t y = (child >> 1U) & 1U;
       const std::size_t z = child >> 2U;
-      if (overlaps<Real>(triangle, {center_[x][0], center_[y][1], center_[z][2]},
+      if (overlaps<Real>(set, id, {center_[x][0], center_[y][1], center_[z][2]},
                          {half_[x][0], half_[y][1], half_[z][2]})) {
         met |= 1U << child;
       }
@@ -93,15 +90,6 @@ class ChildSorter {
   }
 
  private:
-  static Real least(const TriangleCorners& t, std::size_t a) {
-    using std::min;
-    return min(min(Real(t[a]), Real(t[3 + a])), Real(t[6 + a]));
-  }
-  static Real most(const TriangleCorners& t, std::size_t a) {
-    using std::max;
-    return max(max(Real(t[a]), Real(t[3 + a])), Real(t[6 + a]));
-  }
-
   std::array<std::array<Real, 3>, 3> planes_{};  ///< [low, middle, high][axis]
   std::array<std::array<Real, 3>, 2> center_{};  ///< of the children, [lower, upper][axis]
   std::array<std::array<Real, 3>, 2> half_{};    ///< half their size and the margin

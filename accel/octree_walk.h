@@ -16,6 +16,7 @@
 #include <type_traits>
 
 #include "accel/counted.h"
+#include "accel/intersect.h"
 #include "accel/octree_far.h"
 #include "accel/octree_nodes.h"
 #include "accel/octree_start.h"
@@ -26,7 +27,7 @@
 
 namespace marti::accel {
 
-/// Tests a leaf's triangles in list order. True when an occlusion query (`Any`) found its hit.
+/// Tests a leaf's primitives in list order. True when an occlusion query (`Any`) found its hit.
 template <bool Any, class Real, class View, class Visitor>
 inline bool test_leaf(const View& view, const typename View::Record& record, std::uint32_t node,
                       const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) {
@@ -34,7 +35,7 @@ inline bool test_leaf(const View& view, const typename View::Record& record, std
   const std::uint32_t* list = view.list(record);
   for (std::uint32_t k = 0; k < entries; ++k) {
     const std::uint32_t id = list[k];
-    const bool hit = intersect(setup, (*view.triangles)[id], id, best);
+    const bool hit = intersect_primitive(setup, *view.triangles, id, best);
     if constexpr (Any) {
       if (hit) {
         visitor.leaf(node, k + 1, entries);

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "accel/intersect.h"
 #include "accel/octree_nodes.h"
 #include "accel/octree_start.h"
 #include "accel/ray.h"
@@ -151,13 +152,13 @@ struct alignas(32) PackEdges {
   return candidates;
 }
 
-/// The rest of the kernel for one lane; whatever is out of the ordinary (slivers, zero areas, NaN) goes
-/// through the scalar kernel.
+/// The rest of the kernel for one lane; whatever is out of the ordinary (slivers, zero areas, NaN, which are
+/// the coordinates of what is no triangle) goes through the scalar kernels.
 inline bool finish_lane(const OctreeView& view, const RaySetup<double>& setup, const PackEdges& edges,
                         std::uint32_t lane, std::uint32_t id, Best<double>& best) {
   const double det = edges.det[lane];
   if (!(std::abs(det) >= sliver_share * edges.products[lane]) || det == 0.0) [[unlikely]] {
-    return intersect(setup, (*view.triangles)[id], id, best);
+    return intersect_primitive(setup, *view.triangles, id, best);
   }
   return accept(setup, {edges.u[lane], edges.v[lane], edges.w[lane]}, det, edges.depth_a[lane],
                 edges.depth_b[lane], edges.depth_c[lane], id, best);

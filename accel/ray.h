@@ -20,7 +20,8 @@ struct Ray {
 };
 
 /// The nearest hit: least t, and the lowest primitive id among equal t. `primitive == no_primitive` when
-/// the ray hits nothing. u, v, w are the barycentric weights of the triangle's three corners.
+/// the ray hits nothing. u, v, w are the barycentric weights of the triangle's three corners; 0 when the
+/// primitive is no triangle.
 struct Hit {
   double t = std::numeric_limits<double>::infinity();
   std::uint32_t primitive = no_primitive;

@@ -28,18 +28,21 @@ TriangleSet::TriangleSet(const scenes::Scene& scene) {
       corners[3 * k + 2] = p.z;
     }
   }
-  check();
+  check_triangles();
+  add_quadrics(scene.quadrics);
 }
 
-TriangleSet::TriangleSet(std::vector<TriangleCorners> triangles) : triangles_(std::move(triangles)) {
-  check();
+TriangleSet::TriangleSet(std::vector<TriangleCorners> triangles, const std::vector<scenes::Quadric>& quadrics)
+    : triangles_(std::move(triangles)) {
+  check_triangles();
+  add_quadrics(quadrics);
 }
 
-void TriangleSet::check() {
+void TriangleSet::check_triangles() {
   if (triangles_.size() >= no_primitive) {
     throw sim::UserError("too many triangles: " + std::to_string(triangles_.size()) + ", at most 4294967294");
   }
-  for (std::uint32_t id = 0; id < size(); ++id) {
+  for (std::uint32_t id = 0; id < triangles(); ++id) {
     for (const double x : triangles_[id]) {
       if (!(std::abs(x) <= largest_coordinate)) {
         std::ostringstream message;
@@ -51,6 +54,20 @@ void TriangleSet::check() {
     for (unsigned k = 0; k < 3; ++k) {
       bounds_.include(corner(id, k));
     }
+  }
+}
+
+void TriangleSet::add_quadrics(const std::vector<scenes::Quadric>& quadrics) {
+  if (quadrics.size() >= no_primitive - triangles_.size()) {
+    throw sim::UserError("too many primitives: " + std::to_string(triangles_.size() + quadrics.size()) +
+                         ", at most 4294967294");
+  }
+  quadrics_.reserve(quadrics.size());
+  for (const scenes::Quadric& quadric : quadrics) {
+    scenes::check_quadric(quadric, "the sphere, cylinder or cone " + std::to_string(quadrics_.size()));
+    const QuadricShape& shape = quadrics_.emplace_back(shape_of(quadric));
+    bounds_.include({shape.lo[0], shape.lo[1], shape.lo[2]});
+    bounds_.include({shape.hi[0], shape.hi[1], shape.hi[2]});
   }
 }
 

@@ -1,4 +1,5 @@
-// The triangles of a scene laid out for intersection: nine doubles each, nothing else.
+// The primitives of a scene laid out for intersection: triangles of nine doubles each, then spheres,
+// cylinders and cones.
 #pragma once
 
 #include <array>
@@ -7,6 +8,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "accel/quadric_shape.h"
 #include "scenes/scene.h"
 
 namespace marti::accel {
@@ -15,28 +17,47 @@ namespace marti::accel {
 /// is what makes their common edges watertight.
 using TriangleCorners = std::array<double, 9>;
 
-/// Primitive ids are the indices: triangle i is Scene::triangles[i].
+/// Primitive ids are indices: of T triangles, triangle i is Scene::triangles[i] and has the id i; the curved
+/// primitive i is Scene::quadrics[i] and has the id T + i.
 class TriangleSet {
  public:
   TriangleSet() = default;
-  /// The scene must be valid (see scene.h): finite positions, indices in range.
+  /// The scene's triangles must be valid (see scene.h): indices in range. Throws UserError for positions and
+  /// quadrics that are not.
   explicit TriangleSet(const scenes::Scene& scene);
-  /// Finite coordinates of magnitude up to 2^300; throws UserError otherwise.
-  explicit TriangleSet(std::vector<TriangleCorners> triangles);
+  /// Finite coordinates of magnitude up to 2^300 and valid quadrics; throws UserError otherwise.
+  explicit TriangleSet(std::vector<TriangleCorners> triangles,
+                       const std::vector<scenes::Quadric>& quadrics = {});
 
-  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(triangles_.size()); }
+  /// All primitives: ids are below it.
+  [[nodiscard]] std::uint32_t size() const {
+    return static_cast<std::uint32_t>(triangles_.size() + quadrics_.size());
+  }
+  /// Triangles: their ids are below it.
+  [[nodiscard]] std::uint32_t triangles() const { return static_cast<std::uint32_t>(triangles_.size()); }
+  [[nodiscard]] PrimitiveKind kind(std::uint32_t id) const {
+    return id < triangles() ? PrimitiveKind::triangle : quadric(id).kind;
+  }
+  /// The triangle `id`, which must be one.
   [[nodiscard]] const TriangleCorners& operator[](std::uint32_t id) const { return triangles_[id]; }
+  /// The sphere, cylinder or cone `id`, which must be one.
+  [[nodiscard]] const QuadricShape& quadric(std::uint32_t id) const {
+    return quadrics_[id - triangles_.size()];
+  }
+  /// A corner of the triangle `id`.
   [[nodiscard]] glm::dvec3 corner(std::uint32_t id, unsigned which) const {
     const double* p = &triangles_[id][std::size_t{3} * which];
     return {p[0], p[1], p[2]};
   }
-  /// The tight box of all corners; empty when there is no triangle.
+  /// The tight box of all primitives; empty when there is none.
   [[nodiscard]] const scenes::Bounds& bounds() const { return bounds_; }
 
  private:
-  void check();
+  void check_triangles();
+  void add_quadrics(const std::vector<scenes::Quadric>& quadrics);
 
   std::vector<TriangleCorners> triangles_;
+  std::vector<QuadricShape> quadrics_;
   scenes::Bounds bounds_;
 };
 

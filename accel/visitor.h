@@ -6,13 +6,18 @@
 
 namespace marti::accel {
 
-/// The visitor that costs nothing. Others have the same two members.
+/// The visitor that costs nothing. Others have the same members.
 struct NullVisitor {
   /// A branch node's record was read and its children are about to be entered.
   void branch(std::uint32_t /*node*/) {}
   /// A leaf's record was read, then the first `tests` of its `entries` objects were tested, in list
   /// order. tests < entries only when an occlusion query ended early.
   void leaf(std::uint32_t /*node*/, std::uint32_t /*tests*/, std::uint32_t /*entries*/) {}
+  /// Only with the voxel cut (octree_cut.h): a node's record was read and the whole node is what the ray sees.
+  void cut(std::uint32_t /*node*/) {}
+  /// Only with the voxel cut: a small node's voxel was read, but too little of it is covered; branch or leaf
+  /// follows.
+  void pass(std::uint32_t /*record*/) {}
 };
 
 }  // namespace marti::accel

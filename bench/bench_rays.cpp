@@ -180,6 +180,9 @@ Options read_options(int argc, char** argv) {
 void run(const Options& options) {
   const marti::scenes::Scene scene = marti::scenes::make_procedural(options.scene);
   const auto triangles = std::make_shared<const TriangleSet>(scene);
+  if (!scene.quadrics.empty()) {
+    throw marti::sim::UserError("bench_rays: " + options.scene + " is not made of triangles alone");
+  }
   const auto build_begin = std::chrono::steady_clock::now();
   const Octree octree = Octree::build(triangles, options.octree);
   const double build_seconds =

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <string>
+#include <string_view>
 
 #include "sim/error.h"
 
@@ -17,31 +18,40 @@ std::uint64_t round_up(std::uint64_t value, std::uint64_t multiple) {
 
 }  // namespace
 
-Layout::Layout(const LayoutConfig& config, const RecordCounts& counts) {
+Layout::Layout(const LayoutConfig& config, const RecordCounts& counts, std::uint64_t quadrics) {
   const std::array<std::uint32_t, record_kinds> bytes = {config.node_bytes,      config.entry_bytes,
                                                          config.primitive_bytes, config.material_bytes,
                                                          config.texel_bytes,     config.pixel_bytes};
   if (!std::has_single_bit(config.record_alignment) || !std::has_single_bit(config.section_alignment)) {
     throw sim::UserError("layout: an alignment must be a power of two");
   }
+  sim::ensure(quadrics <= counts[static_cast<std::size_t>(RecordKind::primitive)],
+              "layout: more quadrics than primitives");
   Address at = 0;
-  for (std::size_t kind = 0; kind < record_kinds; ++kind) {
-    if (bytes[kind] == 0) {
-      throw sim::UserError("layout: a " + std::string(record_kind_names[kind]) + " record of 0 bytes");
+  const auto place = [&](Section& section, std::uint64_t count, std::uint32_t record, std::uint32_t alignment,
+                         std::string_view name) {
+    if (record == 0) {
+      throw sim::UserError("layout: a " + std::string(name) + " record of 0 bytes");
     }
-    const bool packed = kind == static_cast<std::size_t>(RecordKind::list) ||
-                        kind == static_cast<std::size_t>(RecordKind::texel) ||
-                        kind == static_cast<std::size_t>(RecordKind::pixel);
-    Section& section = sections_[kind];
-    section.base = round_up(at, config.section_alignment);
-    section.count = counts[kind];
-    section.bytes = bytes[kind];
-    section.stride =
-        packed ? bytes[kind] : static_cast<std::uint32_t>(round_up(bytes[kind], config.record_alignment));
-    if (section.count > (address_limit - section.base) / section.stride) {
+    section.base = at;
+    section.count = count;
+    section.bytes = record;
+    section.stride = static_cast<std::uint32_t>(round_up(record, alignment));
+    if (count > (address_limit - at) / section.stride) {
       throw sim::UserError("layout: the database does not fit in 2^48 bytes");
     }
-    at = section.base + section.count * section.stride;
+    at += count * section.stride;
+  };
+  for (std::size_t k = 0; k < record_kinds; ++k) {
+    const auto kind = static_cast<RecordKind>(k);
+    const bool packed = kind == RecordKind::list || kind == RecordKind::texel || kind == RecordKind::pixel;
+    at = round_up(at, config.section_alignment);
+    const std::uint64_t count = kind == RecordKind::primitive ? counts[k] - quadrics : counts[k];
+    place(sections_[k], count, bytes[k], packed ? 1U : config.record_alignment, record_kind_names[k]);
+    if (kind == RecordKind::primitive) {
+      quadrics_.first = count;
+      place(quadrics_, quadrics, config.quadric_bytes, config.record_alignment, "quadric");
+    }
   }
   end_ = at;
 }

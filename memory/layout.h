@@ -2,7 +2,9 @@
 //
 // The sections lie one behind the other from address 0: nodes, object lists, primitives, materials,
 // texels, frame buffer. Records of a section are a stride apart: the record's size rounded up to the
-// record alignment (object lists, texels and pixels are packed arrays, so they are not padded).
+// record alignment (object lists, texels and pixels are packed arrays, so they are not padded). The
+// primitives are of two sizes: first all triangles, then the spheres, cylinders and cones (quadrics),
+// numbered on from them.
 #pragma once
 
 #include <array>
@@ -20,6 +22,8 @@ struct LayoutConfig {
   std::uint32_t node_bytes = 8;   ///< kind and count in one word, first child or first entry in the other
   std::uint32_t entry_bytes = 4;  ///< one object reference of a leaf's list
   std::uint32_t primitive_bytes = 48;  ///< three vertices of three 4-byte coordinates, material, padding
+  /// one sphere, cylinder or cone: two points of three 4-byte coordinates, two radii, kind, material
+  std::uint32_t quadric_bytes = 40;
   std::uint32_t material_bytes = 64;
   std::uint32_t texel_bytes = 4;
   std::uint32_t pixel_bytes = 4;
@@ -28,22 +32,28 @@ struct LayoutConfig {
   NodeOrder node_order = NodeOrder::breadth_first;
 };
 
-/// Number of records in each section.
+/// Number of records in each section; of the primitives all, quadrics too.
 using RecordCounts = std::array<std::uint64_t, record_kinds>;
 
 /// The layout of one database. Throws UserError for a size of zero, an alignment that is not a power of
 /// two, or a database beyond 2^48 bytes.
 class Layout {
  public:
-  Layout(const LayoutConfig& config, const RecordCounts& counts);
+  /// The last `quadrics` primitives are quadrics.
+  Layout(const LayoutConfig& config, const RecordCounts& counts, std::uint64_t quadrics = 0);
 
   /// Address of record `index` of a section.
   [[nodiscard]] Address address(RecordKind kind, std::uint64_t index) const {
-    const Section& section = sections_[static_cast<std::size_t>(kind)];
-    return section.base + index * section.stride;
+    const Section& section = section_of(kind, index);
+    return section.base + (index - section.first) * section.stride;
   }
+  /// Bytes of a record; of a primitive one that is a triangle.
   [[nodiscard]] std::uint32_t record_bytes(RecordKind kind) const {
     return sections_[static_cast<std::size_t>(kind)].bytes;
+  }
+  /// Bytes of record `index` of a section.
+  [[nodiscard]] std::uint32_t record_bytes(RecordKind kind, std::uint64_t index) const {
+    return section_of(kind, index).bytes;
   }
   [[nodiscard]] Address base(RecordKind kind) const { return sections_[static_cast<std::size_t>(kind)].base; }
   [[nodiscard]] std::uint32_t stride(RecordKind kind) const {
@@ -52,7 +62,8 @@ class Layout {
   /// Bytes of one section's records, without the gap behind it.
   [[nodiscard]] std::uint64_t section_bytes(RecordKind kind) const {
     const Section& section = sections_[static_cast<std::size_t>(kind)];
-    return section.count * section.stride;
+    const std::uint64_t bytes = section.count * section.stride;
+    return kind == RecordKind::primitive ? bytes + quadrics_.count * quadrics_.stride : bytes;
   }
   /// One past the last address, frame buffer included.
   [[nodiscard]] Address end() const { return end_; }
@@ -62,11 +73,18 @@ class Layout {
  private:
   struct Section {
     Address base = 0;
+    std::uint64_t first = 0;  ///< number of its first record
     std::uint64_t count = 0;
     std::uint32_t stride = 0;
     std::uint32_t bytes = 0;
   };
+  [[nodiscard]] const Section& section_of(RecordKind kind, std::uint64_t index) const {
+    const Section& section = sections_[static_cast<std::size_t>(kind)];
+    return kind == RecordKind::primitive && index >= quadrics_.first ? quadrics_ : section;
+  }
+
   std::array<Section, record_kinds> sections_{};
+  Section quadrics_;  ///< the second part of the primitives
   Address end_ = 0;
 };
 

@@ -21,7 +21,12 @@ ReferenceCounts& ReferenceCounts::operator+=(const ReferenceCounts& other) {
 }
 
 std::array<std::int64_t, memory::record_kinds> records_of(const StepCounts& steps) {
-  return {steps.branches + steps.leaves, steps.lists, steps.tests, steps.shades, steps.texels, steps.pixels};
+  return {steps.branches + steps.leaves + steps.cuts,
+          steps.lists,
+          steps.tests,
+          steps.shades + steps.passes,
+          steps.texels,
+          steps.pixels};
 }
 
 sim::Ticks sum_of(const TimeDivision& time) {

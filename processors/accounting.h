@@ -44,11 +44,15 @@ struct StepCounts {
   std::int64_t refraction_rays = 0;
   std::int64_t branches = 0;
   std::int64_t leaves = 0;
-  std::int64_t lists = 0;  ///< leaves whose object list was read: those with at least one test
-  std::int64_t tests = 0;
+  std::int64_t lists = 0;         ///< leaves whose object list was read: those with at least one test
+  std::int64_t tests = 0;         ///< all of them
+  std::int64_t sphere_tests = 0;  ///< of these, spheres
+  std::int64_t cone_tests = 0;    ///< of these, cylinders and cones
   std::int64_t shades = 0;
   std::int64_t lights = 0;
   std::int64_t texels = 0;
+  std::int64_t cuts = 0;
+  std::int64_t passes = 0;
   std::int64_t pixels = 0;
 
   static constexpr auto counters() {
@@ -61,9 +65,13 @@ struct StepCounts {
                       C{"leaves", "1", "leaf nodes visited, empty ones included", &StepCounts::leaves},
                       C{"lists", "1", "object lists read", &StepCounts::lists},
                       C{"tests", "1", "primitives tested", &StepCounts::tests},
+                      C{"sphere_tests", "1", "of these, spheres", &StepCounts::sphere_tests},
+                      C{"cone_tests", "1", "of these, cylinders and cones", &StepCounts::cone_tests},
                       C{"shades", "1", "surface points shaded", &StepCounts::shades},
                       C{"lights", "1", "light contributions added", &StepCounts::lights},
                       C{"texels", "1", "texels read", &StepCounts::texels},
+                      C{"cuts", "1", "nodes taken as one voxel", &StepCounts::cuts},
+                      C{"passes", "1", "nodes too little covered for that", &StepCounts::passes},
                       C{"pixels", "1", "pixels finished", &StepCounts::pixels}};
   }
 };

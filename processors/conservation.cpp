@@ -23,6 +23,8 @@ void check_node(const NodeStatistics& node, sim::Ticks end, std::size_t number) 
                                         std::to_string(sum_of(node.time)) + " ticks of " +
                                         std::to_string(end));
   require(node.steps.pixels == node.writes, "finished pixels are pixel writes");
+  require(node.steps.sphere_tests + node.steps.cone_tests <= node.steps.tests,
+          "tests of spheres, cylinders and cones are tests");
 }
 
 }  // namespace

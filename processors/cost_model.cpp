@@ -95,10 +95,15 @@ StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words) 
   steps.leaf = price(mixes.leaf, cycles, read_record(cycles, words.node));
   steps.test =
       price(mixes.test, cycles, read_record(cycles, words.entry) + read_record(cycles, words.primitive));
-  // The nearest triangle and the lights are in the node's registers or local store.
+  const std::int64_t quadric = read_record(cycles, words.entry) + read_record(cycles, words.quadric);
+  steps.sphere_test = price(mixes.sphere_test, cycles, quadric);
+  steps.cone_test = price(mixes.cone_test, cycles, quadric);
+  // The nearest primitive and the lights are in the node's registers or local store.
   steps.shade = price(mixes.shade, cycles, read_record(cycles, words.material));
   steps.light = price(mixes.light, cycles, 0);
   steps.texel = price(mixes.texel, cycles, read_record(cycles, words.texel));
+  steps.cut = price(mixes.cut, cycles, read_record(cycles, words.node));
+  steps.pass = price(mixes.cut, cycles, read_record(cycles, words.material));
   steps.pixel = price(mixes.pixel, cycles, cycles.integer + words.pixel * cycles.store);
   return steps;
 }

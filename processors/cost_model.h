@@ -32,6 +32,7 @@ struct RecordWords {
   std::int64_t node = 2;
   std::int64_t entry = 1;
   std::int64_t primitive = 12;
+  std::int64_t quadric = 10;
   std::int64_t material = 16;
   std::int64_t texel = 1;
   std::int64_t pixel = 1;
@@ -42,10 +43,14 @@ struct StepCycles {
   std::array<std::int64_t, ray_kinds> ray{};  ///< setting up a ray of each RayKind and its traversal
   std::int64_t branch = 0;                    ///< reading a branch and ordering its children
   std::int64_t leaf = 0;                      ///< reading a leaf, without its tests
-  std::int64_t test = 0;  ///< one entry of a leaf's list: fetch its id and primitive, test it
+  std::int64_t test = 0;         ///< one entry of a leaf's list: fetch its id and primitive, test it
+  std::int64_t sphere_test = 0;  ///< the same of a sphere
+  std::int64_t cone_test = 0;    ///< the same of a cylinder or cone
   std::int64_t shade = 0;
   std::int64_t light = 0;
   std::int64_t texel = 0;
+  std::int64_t cut = 0;    ///< reading a node and finding that it is small and enough of it covered
+  std::int64_t pass = 0;   ///< reading an averaged material and finding that too little is covered
   std::int64_t pixel = 0;  ///< converting and storing one finished pixel
 };
 

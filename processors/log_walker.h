@@ -29,7 +29,7 @@ struct Cursor {
   const std::uint32_t* entry = nullptr;
   const std::uint32_t* entry_end = nullptr;
   std::uint32_t list_count = 0;   ///< entries of the current leaf's list, while its read is still to come
-  std::uint32_t tests_begun = 0;  ///< of the planned visit
+  std::uint32_t tests_begun = 0;  ///< of the planned visit, by kind as in tests_of_kind
   std::uint32_t writes = 0;       ///< where the next pixel write goes in the write buffer
   std::uint32_t x = 0;
   std::uint32_t y = 0;
@@ -52,7 +52,6 @@ class LogWalker {
         rank_(input.node_rank.empty() ? nullptr : input.node_rank.data()),
         node_bytes_(input.layout.record_bytes(memory::RecordKind::node)),
         entry_bytes_(input.layout.record_bytes(memory::RecordKind::list)),
-        primitive_bytes_(input.layout.record_bytes(memory::RecordKind::primitive)),
         line_bytes_(Caches::present ? input.config.cache.cache.line : input.config.banks.interleave),
         unit_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
         ticks_(step_ticks(input.config)),
@@ -60,7 +59,7 @@ class LogWalker {
         local_beat_(input.config.local.clock.cycles(input.config.local.cycles_per_beat)),
         local_database_(input.config.placement == Placement::replicated) {
     if (Caches::present && !input.step_by_step) {
-      plan_ = plan_visits(input.log.topology, input.layout, input.node_rank, unit_shift_, ticks_);
+      plan_ = plan_visits(input.log, input.layout, input.node_rank, unit_shift_, ticks_);
       plan_limit_ = plan_.empty() ? 0 : 2U << operand_bits;
     }
   }
@@ -114,10 +113,12 @@ class LogWalker {
   static void flush(Tally& tally, NodeStatistics& statistics) {
     const auto of = [&](VisitCount what) { return std::int64_t{tally.counts.of(what)}; };
     StepCounts& steps = statistics.steps;
-    steps.branches += of(VisitCount::branch);
+    steps.branches += tally.visits - of(VisitCount::leaf);
     steps.leaves += of(VisitCount::leaf);
     steps.lists += of(VisitCount::list);
-    steps.tests += of(VisitCount::test);
+    steps.tests += of(VisitCount::test) + of(VisitCount::sphere_test) + of(VisitCount::cone_test);
+    steps.sphere_tests += of(VisitCount::sphere_test);
+    steps.cone_tests += of(VisitCount::cone_test);
     hits_of(statistics, memory::RecordKind::node) += of(VisitCount::node_line);
     hits_of(statistics, memory::RecordKind::list) += of(VisitCount::list_line);
     hits_of(statistics, memory::RecordKind::primitive) += of(VisitCount::primitive_line);
@@ -188,7 +189,7 @@ class LogWalker {
         continue;
       }
       cursor.time =
-          sim::add_ticks(time, visit.counts.of(VisitCount::branch) != 0 ? ticks_.branch : ticks_.leaf);
+          sim::add_ticks(time, visit.counts.of(VisitCount::leaf) != 0 ? ticks_.leaf : ticks_.branch);
       cursor.word = word + 1;
       cursor.tests_begun = 0;
       cursor.line = first;
@@ -232,7 +233,11 @@ class LogWalker {
 
   // Brings the time of a visit up to `line`, before which `tests` tests have begun.
   void settle(Cursor& cursor, const std::uint32_t* line, std::uint32_t tests) const {
-    spend(cursor, ticks_.test, tests - cursor.tests_begun);
+    // No kind has fewer than before, so the kinds' counts do not borrow from each other.
+    const std::uint32_t begun = tests - cursor.tests_begun;
+    spend(cursor, ticks_.test, tests_of_kind(begun, accel::PrimitiveKind::triangle));
+    spend(cursor, ticks_.sphere_test, tests_of_kind(begun, accel::PrimitiveKind::sphere));
+    spend(cursor, ticks_.cone_test, tests_of_kind(begun, accel::PrimitiveKind::cone));
     spend(cursor, ticks_.hit, line - cursor.line);
     cursor.tests_begun = tests;
     cursor.line = line;
@@ -304,14 +309,32 @@ class LogWalker {
       }
     }
     while (cursor.entry != cursor.entry_end) {
-      ++statistics.steps.tests;
-      spend(cursor, ticks_.test, 1);
-      if (!refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::primitive, *cursor.entry++,
-                           primitive_bytes_, stop)) {
+      const std::uint32_t primitive = *cursor.entry++;
+      begin_test(cursor, statistics.steps, primitive);
+      if (!refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::primitive, primitive,
+                           input_.layout.record_bytes(memory::RecordKind::primitive, primitive), stop)) {
         return false;
       }
     }
     return true;
+  }
+
+  // A test's computing, at its price.
+  void begin_test(Cursor& cursor, StepCounts& steps, std::uint32_t primitive) const {
+    ++steps.tests;
+    switch (input_.log.kind_of(primitive)) {
+      case accel::PrimitiveKind::triangle:
+        spend(cursor, ticks_.test, 1);
+        return;
+      case accel::PrimitiveKind::sphere:
+        ++steps.sphere_tests;
+        spend(cursor, ticks_.sphere_test, 1);
+        return;
+      case accel::PrimitiveKind::cone:
+        ++steps.cone_tests;
+        spend(cursor, ticks_.cone_test, 1);
+        return;
+    }
   }
 
   template <bool RunAhead>
@@ -359,6 +382,15 @@ class LogWalker {
         spend(cursor, ticks_.shade, 1);
         return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::material, operand,
                                input_.layout.record_bytes(memory::RecordKind::material), stop);
+      case Step::cut:
+        ++steps.cuts;
+        spend(cursor, ticks_.cut, 1);
+        return refer_node<RunAhead>(cache, cursor, statistics, operand, stop);
+      case Step::pass:
+        ++steps.passes;
+        spend(cursor, ticks_.pass, 1);
+        return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::material, operand,
+                               input_.layout.record_bytes(memory::RecordKind::material), stop);
       case Step::light:
         ++steps.lights;
         spend(cursor, ticks_.light, 1);
@@ -393,7 +425,6 @@ class LogWalker {
   const std::uint32_t* rank_;  // null: records lie in the order of node numbers
   std::uint32_t node_bytes_;
   std::uint32_t entry_bytes_;
-  std::uint32_t primitive_bytes_;
   std::uint32_t line_bytes_;
   unsigned unit_shift_;
   StepTicks ticks_;

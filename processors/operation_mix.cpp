@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "accel/intersect.h"
 #include "accel/structure.h"
 #include "accel/watertight.h"
 #include "processors/program/recorder.h"
@@ -18,7 +19,7 @@ using accel::OperationCounts;
 struct Buckets {
   std::array<OperationCounts, ray_kinds> ray{};
   OperationCounts branch;
-  OperationCounts test;
+  std::array<OperationCounts, 3> test{};  ///< by accel::PrimitiveKind
   OperationCounts shade;
   OperationCounts light;
   OperationCounts texel;
@@ -80,16 +81,19 @@ class CountingRecorder {
     OperationCounts of_tests;
     {
       const Uncounted uncounted;
-      const OperationCounts before = accel::operation_counts();
       const std::uint32_t first = topology_.nodes[node].first;
       for (std::uint32_t i = 0; i < tests; ++i) {
         const std::uint32_t id = topology_.entries[first + i];
-        accel::intersect(*setup_, triangles_[id], id, *best_);
+        const OperationCounts before = accel::operation_counts();
+        accel::intersect_primitive(*setup_, triangles_, id, *best_);
+        const OperationCounts spent = accel::operation_counts() - before;
+        const auto kind = static_cast<std::size_t>(triangles_.kind(id));
+        ++tests_[kind];
+        buckets_.test[kind] += spent;
+        of_tests += spent;
       }
-      of_tests = accel::operation_counts() - before;
     }
     *current_ += (accel::operation_counts() - mark_) - of_tests;
-    buckets_.test += of_tests;
     mark_ = accel::operation_counts();
     if (topology_.nodes.size() > 1) {
       current_ = &buckets_.branch;  // what follows is its parent going on
@@ -105,6 +109,7 @@ class CountingRecorder {
 
   [[nodiscard]] const Buckets& buckets() const { return buckets_; }
   [[nodiscard]] const LogTotals& steps() const { return steps_; }
+  [[nodiscard]] const std::array<std::uint64_t, 3>& tests() const { return tests_; }
 
  private:
   OperationCounts& bucket(Phase phase, RayKind kind) {
@@ -132,6 +137,7 @@ class CountingRecorder {
   const accel::Topology& topology_;
   Buckets buckets_;
   LogTotals steps_;
+  std::array<std::uint64_t, 3> tests_{};
   OperationCounts mark_;
   OperationCounts* current_ = &buckets_.pixel;
   bool nearest_wanted_ = false;
@@ -148,6 +154,11 @@ constexpr OperationMix texel_sampling{2000, 2000, 0, 0, 0, 11000};
 /// A finished pixel, by hand: three channels are scaled, clamped at both ends and rounded, and packed
 /// into one word.
 constexpr OperationMix pixel_conversion{0, 3000, 0, 0, 6000, 5000};
+
+/// A small node, by hand from accel/octree_cut.h: its size (an addition, two products, three comparisons),
+/// the nearest triangle's t compared, the covered share (the form's six products and five sums, the area, a
+/// comparison, a root, over the projection, compared), and the voxel's number looked up.
+constexpr OperationMix voxel_cut{6000, 10000, 0, 1000, 6000, 2000};
 
 OperationMix sum(const OperationMix& a, const OperationMix& b) {
   return {a.add + b.add,         a.multiply + b.multiply, a.divide + b.divide, a.square_root + b.square_root,
@@ -187,7 +198,14 @@ MeasuredMixes measure_operation_mixes(const scenes::Scene& scene, const accel::T
     measured.mixes.ray[kind] = mean(buckets.ray[kind], steps.rays[kind]);
   }
   measured.mixes.branch = mean(buckets.branch, steps.branches);
-  measured.mixes.test = mean(buckets.test, steps.tests);
+  measured.tests = recorder.tests();
+  const auto test = [&](accel::PrimitiveKind kind) {
+    const auto k = static_cast<std::size_t>(kind);
+    return mean(buckets.test[k], measured.tests[k]);
+  };
+  measured.mixes.test = test(accel::PrimitiveKind::triangle);
+  measured.mixes.sphere_test = test(accel::PrimitiveKind::sphere);
+  measured.mixes.cone_test = test(accel::PrimitiveKind::cone);
   measured.mixes.shade = mean(buckets.shade, steps.shades);
   measured.mixes.light = mean(buckets.light, steps.lights);
   if (steps.texels > 0) {
@@ -210,10 +228,13 @@ const OperationMixes& operation_mixes() {
       .branch = {3916, 3004, 0, 0, 8618, 6051},
       .leaf = {},
       .test = {18996, 12774, 111, 0, 5186, 0},
+      .sphere_test = {17208, 11371, 1273, 273, 5258, 0},
+      .cone_test = {32500, 32061, 1843, 204, 6785, 0},
       .shade = {73624, 93477, 7000, 4000, 33812, 0},
       .light = {41000, 68957, 2000, 1000, 6000, 0},
       .texel = {6000, 11000, 0, 0, 0, 11000},
       .pixel = pixel_conversion,
+      .cut = voxel_cut,
   };
   return table;
 }

@@ -34,25 +34,31 @@ struct OperationMix {
 ///           surface), setting up kernel and traversal, and the background where it misses
 ///   branch  everything done between one node visit and the next: ordering children, clipping, popping
 ///   leaf    nothing but reading it; its record's fetch is priced from the layout
-///   test    one run of the intersection kernel
+///   test    one run of the intersection kernel for triangles; sphere_test and cone_test the same for spheres
+///           and for cylinders and cones
 ///   shade   the surface point, its normals, ambient light, and finding that a light cannot matter
 ///   light   one light's contribution
 ///   texel   interpolating the texture's coordinates, finding the texel, applying it
 ///   pixel   converting the finished colour
+///   cut     with the voxel cut: finding that a node is small and which share of it is covered
 /// Fetching a record's words and computing its address is priced from the layout, beside these.
 struct OperationMixes {
   std::array<OperationMix, ray_kinds> ray{};
   OperationMix branch;
   OperationMix leaf;
   OperationMix test;
+  OperationMix sphere_test;
+  OperationMix cone_test;
   OperationMix shade;
   OperationMix light;
   OperationMix texel;
   OperationMix pixel;
+  OperationMix cut;
 };
 
 /// The table that step_cycles prices. Measured on teapot:12 in an octree (max_objects 9, max_level 12),
-/// 128 x 128, depth 2; refraction on gears:2, which has glass; the texel on a textured square. Sampling
+/// 128 x 128, depth 2; refraction on gears:2, which has glass; the tests of spheres, cylinders and cones on
+/// lattice:4; the texel on a textured square. Sampling
 /// the texel and converting the pixel are counted by hand (operation_mix.cpp says how).
 [[nodiscard]] const OperationMixes& operation_mixes();
 
@@ -60,6 +66,7 @@ struct OperationMixes {
 struct MeasuredMixes {
   OperationMixes mixes;  ///< a kind of step that did not occur has a mix of zeros
   LogTotals steps;
+  std::array<std::uint64_t, 3> tests{};  ///< of `steps.tests`, each accel::PrimitiveKind
 };
 
 /// Traces the whole frame on one thread with the counting scalar.

@@ -43,7 +43,7 @@ memory::Layout layout_of(const WorkLog& log, const MachineConfig& config, std::o
                                        log.materials,
                                        log.texture_begin.empty() ? 0 : log.texture_begin.back(),
                                        std::uint64_t{log.width} * log.height};
-  const memory::Layout layout(config.layout, counts);
+  const memory::Layout layout(config.layout, counts, log.quadrics.size());
   const std::uint32_t unit = config.cache.organisation == CacheOrganisation::none ? config.banks.interleave
                                                                                   : config.cache.cache.line;
   if (plan) {

@@ -15,8 +15,9 @@ StepTicks step_ticks(const MachineConfig& config) {
   const std::uint32_t word = config.word_bytes;
   const StepCycles cycles =
       step_cycles(config.operations, {words(layout.node_bytes, word), words(layout.entry_bytes, word),
-                                      words(layout.primitive_bytes, word), words(layout.material_bytes, word),
-                                      words(layout.texel_bytes, word), words(layout.pixel_bytes, word)});
+                                      words(layout.primitive_bytes, word), words(layout.quadric_bytes, word),
+                                      words(layout.material_bytes, word), words(layout.texel_bytes, word),
+                                      words(layout.pixel_bytes, word)});
   StepTicks ticks;
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
     ticks.ray[kind] = config.clock.cycles(cycles.ray[kind]);
@@ -24,8 +25,12 @@ StepTicks step_ticks(const MachineConfig& config) {
   ticks.branch = config.clock.cycles(cycles.branch);
   ticks.leaf = config.clock.cycles(cycles.leaf);
   ticks.test = config.clock.cycles(cycles.test);
+  ticks.sphere_test = config.clock.cycles(cycles.sphere_test);
+  ticks.cone_test = config.clock.cycles(cycles.cone_test);
   ticks.shade = config.clock.cycles(cycles.shade);
   ticks.light = config.clock.cycles(cycles.light);
+  ticks.cut = config.clock.cycles(cycles.cut);
+  ticks.pass = config.clock.cycles(cycles.pass);
   ticks.texel = config.clock.cycles(cycles.texel);
   ticks.pixel = config.clock.cycles(cycles.pixel);
   ticks.hit = config.clock.cycles(config.cache.hit_cycles);
@@ -43,7 +48,11 @@ void add_counted_time(const StepTicks& ticks, const StepCounts& steps, std::int6
   }
   add(Activity::traversal, ticks.branch, steps.branches);
   add(Activity::traversal, ticks.leaf, steps.leaves);
-  add(Activity::intersection, ticks.test, steps.tests);
+  add(Activity::traversal, ticks.cut, steps.cuts);
+  add(Activity::traversal, ticks.pass, steps.passes);
+  add(Activity::intersection, ticks.test, steps.tests - steps.sphere_tests - steps.cone_tests);
+  add(Activity::intersection, ticks.sphere_test, steps.sphere_tests);
+  add(Activity::intersection, ticks.cone_test, steps.cone_tests);
   add(Activity::shading, ticks.shade, steps.shades);
   add(Activity::shading, ticks.light, steps.lights);
   add(Activity::shading, ticks.texel, steps.texels);

@@ -11,9 +11,13 @@ struct StepTicks {
   sim::Ticks branch = 0;
   sim::Ticks leaf = 0;
   sim::Ticks test = 0;
+  sim::Ticks sphere_test = 0;
+  sim::Ticks cone_test = 0;
   sim::Ticks shade = 0;
   sim::Ticks light = 0;
   sim::Ticks texel = 0;
+  sim::Ticks cut = 0;
+  sim::Ticks pass = 0;
   sim::Ticks pixel = 0;
   sim::Ticks hit = 0;
 };

@@ -1,10 +1,24 @@
 #include "processors/visit_plan.h"
 
+#include "sim/error.h"
+
 namespace marti::processors {
 
 namespace {
 
 using memory::RecordKind;
+
+VisitCount test_count(accel::PrimitiveKind kind) {
+  switch (kind) {
+    case accel::PrimitiveKind::triangle:
+      return VisitCount::test;
+    case accel::PrimitiveKind::sphere:
+      return VisitCount::sphere_test;
+    case accel::PrimitiveKind::cone:
+      return VisitCount::cone_test;
+  }
+  throw sim::InternalError("a visit tests a primitive of an unknown kind");
+}
 
 // Collects the lines of one visit after the other.
 class Planner {
@@ -28,9 +42,10 @@ class Planner {
   // Records `first` to `first + records - 1` of a section, read in one go.
   void read(RecordKind kind, std::uint64_t first, std::uint64_t records, VisitCount lines) {
     const memory::Address begin = layout_.address(kind, first);
-    const memory::Address last = begin + records * layout_.record_bytes(kind) - 1;
-    const std::uint32_t label =
-        (static_cast<std::uint32_t>(kind) << label_bits) | counts_.of(VisitCount::test);
+    const memory::Address last = begin + records * layout_.record_bytes(kind, first) - 1;
+    const std::uint32_t label = (static_cast<std::uint32_t>(kind) << label_bits) |
+                                counts_.of(VisitCount::test) | (counts_.of(VisitCount::sphere_test) << 8U) |
+                                (counts_.of(VisitCount::cone_test) << 16U);
     for (memory::Address line = begin >> line_shift_; line <= last >> line_shift_ && fits(); ++line) {
       plan_.lines.push_back(static_cast<std::uint32_t>(line));
       plan_.labels.push_back(label);
@@ -56,9 +71,10 @@ class Planner {
       return !__builtin_mul_overflow(each, count, &time) &&
              !__builtin_add_overflow(visit.time, time, &visit.time);
     };
-    if (!fits(ticks_.branch, counts_.of(VisitCount::branch)) ||
-        !fits(ticks_.leaf, counts_.of(VisitCount::leaf)) ||
-        !fits(ticks_.test, counts_.of(VisitCount::test)) || !fits(ticks_.hit, visit.lines)) {
+    if (!fits(counts_.of(VisitCount::leaf) != 0 ? ticks_.leaf : ticks_.branch, 1) ||
+        !fits(ticks_.test, counts_.of(VisitCount::test)) ||
+        !fits(ticks_.sphere_test, counts_.of(VisitCount::sphere_test)) ||
+        !fits(ticks_.cone_test, counts_.of(VisitCount::cone_test)) || !fits(ticks_.hit, visit.lines)) {
       visit.lines = 0;
     }
   }
@@ -75,23 +91,26 @@ class Planner {
 
 }  // namespace
 
-VisitPlan plan_visits(const accel::Topology& topology, const memory::Layout& layout,
-                      std::span<const std::uint32_t> rank, unsigned line_shift, const StepTicks& ticks) {
+VisitPlan plan_visits(const WorkLog& log, const memory::Layout& layout, std::span<const std::uint32_t> rank,
+                      unsigned line_shift, const StepTicks& ticks) {
+  const accel::Topology& topology = log.topology;
   VisitPlan plan;
   plan.visits.reserve(topology.nodes.size());
   Planner planner(layout, line_shift, ticks, plan);
   for (std::uint32_t number = 0; number < topology.nodes.size(); ++number) {
     const accel::TopologyNode& node = topology.nodes[number];
     planner.begin();
-    planner.count(node.leaf ? VisitCount::leaf : VisitCount::branch);
+    if (node.leaf) {
+      planner.count(VisitCount::leaf);
+    }
     planner.read(RecordKind::node, rank.empty() ? number : rank[number], 1, VisitCount::node_line);
     if (node.leaf && node.count != 0) {
       planner.count(VisitCount::list);
       planner.read(RecordKind::list, node.first, node.count, VisitCount::list_line);
       for (std::uint32_t entry = 0; entry < node.count && planner.fits(); ++entry) {
-        planner.count(VisitCount::test);
-        planner.read(RecordKind::primitive, topology.entries[node.first + entry], 1,
-                     VisitCount::primitive_line);
+        const std::uint32_t primitive = topology.entries[node.first + entry];
+        planner.count(test_count(log.kind_of(primitive)));
+        planner.read(RecordKind::primitive, primitive, 1, VisitCount::primitive_line);
       }
     }
     planner.end();

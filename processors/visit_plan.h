@@ -8,15 +8,26 @@
 #include <span>
 #include <vector>
 
-#include "accel/topology.h"
+#include "accel/quadric_shape.h"
 #include "memory/layout.h"
+#include "processors/program/work_log.h"
 #include "processors/step_time.h"
 
 namespace marti::processors {
 
-/// The counts of one visit. They are summed in 16-bit lanes, four to a word, which most_summed_visits visits
+/// The counts of one visit (that it is a branch follows from its not being a leaf; `test` counts triangles,
+/// cone_test cylinders too). They are summed in 16-bit lanes, four to a word, which most_summed_visits visits
 /// cannot overflow.
-enum class VisitCount : std::uint8_t { branch, leaf, list, test, node_line, list_line, primitive_line };
+enum class VisitCount : std::uint8_t {
+  leaf,
+  list,
+  test,
+  sphere_test,
+  cone_test,
+  node_line,
+  list_line,
+  primitive_line
+};
 inline constexpr std::uint32_t most_of_a_count = 255;
 inline constexpr std::uint32_t most_summed_visits = 65535 / most_of_a_count;
 
@@ -46,7 +57,12 @@ struct alignas(32) Visit {
   VisitCounts counts;
 };
 
-/// A line's label: its record kind above, how many of the visit's tests have begun below.
+/// How many tests of each kind have begun, eight bits each: triangles lowest, then spheres, then cones.
+[[nodiscard]] constexpr std::uint32_t tests_of_kind(std::uint32_t tests, accel::PrimitiveKind kind) {
+  return (tests >> (8U * static_cast<unsigned>(kind))) & 0xffU;
+}
+
+/// A line's label: its record kind above, which of the visit's tests have begun below.
 inline constexpr unsigned label_bits = 29;
 [[nodiscard]] constexpr memory::RecordKind kind_of_label(std::uint32_t label) {
   return static_cast<memory::RecordKind>(label >> label_bits);
@@ -68,7 +84,7 @@ inline constexpr std::uint64_t most_planned_lines = std::uint64_t{1} << 28U;
 
 /// The plan, or an empty one when the tree has more than most_planned_lines lines. `rank` is as in
 /// ReplayInput::node_rank.
-[[nodiscard]] VisitPlan plan_visits(const accel::Topology& topology, const memory::Layout& layout,
+[[nodiscard]] VisitPlan plan_visits(const WorkLog& log, const memory::Layout& layout,
                                     std::span<const std::uint32_t> rank, unsigned line_shift,
                                     const StepTicks& ticks);
 

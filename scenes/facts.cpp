@@ -63,6 +63,11 @@ SceneFacts facts_of(const Scene& scene) {
   facts.name = scene.name;
   facts.polygons = scene.polygons;
   facts.triangles = scene.triangles.size();
+  for (const Quadric& quadric : scene.quadrics) {
+    ++(quadric.kind == QuadricKind::sphere     ? facts.spheres
+       : quadric.kind == QuadricKind::cylinder ? facts.cylinders
+                                               : facts.cones);
+  }
   facts.vertices = scene.positions.size();
   facts.materials = scene.materials.size();
   facts.textures = scene.textures.size();
@@ -97,6 +102,9 @@ std::string describe(const Scene& scene) {
   out << "scene: " << facts.name << "\n"
       << "polygons: " << facts.polygons << "\n"
       << "triangles: " << facts.triangles << "\n"
+      << "spheres: " << facts.spheres << "\n"
+      << "cylinders: " << facts.cylinders << "\n"
+      << "cones: " << facts.cones << "\n"
       << "vertices: " << facts.vertices << " (" << facts.distinct_positions << " distinct positions in use)\n"
       << "degenerate triangles: " << facts.degenerate_triangles << "\n"
       << "duplicate triangles: " << facts.duplicate_triangles << "\n"

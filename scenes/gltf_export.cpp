@@ -16,6 +16,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "scenes/tessellate.h"
 #include "sim/error.h"
 #include "sim/files.h"
 
@@ -321,7 +322,9 @@ class Exporter {
 
 }  // namespace
 
-void export_glb(const Scene& scene, const std::filesystem::path& path, const ImageEncoder& encode) {
+void export_glb(const Scene& source, const std::filesystem::path& path, const ImageEncoder& encode) {
+  Scene scene = source;
+  tessellate(scene);
   Exporter exporter(scene, path, encode);
   std::string content;
   try {

@@ -1,5 +1,6 @@
 // Writing a scene as binary glTF 2.0.
 //
+// Spheres, cylinders and cones, which glTF does not know, become triangles (tessellate.h says how fine).
 // Positions and normals become 32-bit floats; triangles keep their order (unless that would take more than
 // 4,096 primitives: then they are sorted by material). Materials are written twice: approximately as
 // metallic/roughness, transmission and index of refraction for other programs, and exactly in
@@ -17,9 +18,9 @@
 
 namespace marti::scenes {
 
-/// Writes `scene` to `path`, first under a temporary name beside it, then renamed, so that a failure leaves
-/// no half file. Throws UserError when the scene has no triangle, when it has textures and `encode` is
+/// Writes `source` to `path`, first under a temporary name beside it, then renamed, so that a failure leaves
+/// no half file. Throws UserError when the scene has no primitive, when it has textures and `encode` is
 /// empty, when it does not fit the format (4 GiB), or when the file cannot be written.
-void export_glb(const Scene& scene, const std::filesystem::path& path, const ImageEncoder& encode = {});
+void export_glb(const Scene& source, const std::filesystem::path& path, const ImageEncoder& encode = {});
 
 }  // namespace marti::scenes

@@ -27,6 +27,9 @@ struct SceneFacts {
   std::string name;
   std::uint64_t polygons = 0;  ///< of the source
   std::uint64_t triangles = 0;
+  std::uint64_t spheres = 0;
+  std::uint64_t cylinders = 0;
+  std::uint64_t cones = 0;
   std::uint64_t vertices = 0;              ///< as stored
   std::uint64_t distinct_positions = 0;    ///< that triangles refer to, compared bit for bit
   std::uint64_t degenerate_triangles = 0;  ///< of exactly no area

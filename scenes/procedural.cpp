@@ -17,15 +17,76 @@ namespace {
 constexpr std::array<ProceduralVariant, 1> teapot_variants = {
     ProceduralVariant{"pot", "the pot alone, without the chequered board"}};
 
-// The largest sizes give about 16 million triangles.
-constexpr std::array<ProceduralScene, 3> registry = {
+// The largest sizes give about 16 million triangles, or half a million spheres, cylinders and cones.
+constexpr std::array<ProceduralScene, 12> registry = {
+    ProceduralScene{"balls",
+                    0,
+                    6,
+                    4,
+                    "a flake of spheres, n generations of them, on a floor; (9^(n+1) - 1) / 8 spheres",
+                    {}},
     ProceduralScene{
         "gears", 1, 30, 4, "n x n x n meshing gears over a ground, some of glass; 146 n^3 + 1 polygons", {}},
+    ProceduralScene{"jacks",
+                    1,
+                    6,
+                    4,
+                    "a toy jack with eight of half its size in its corners, n generations; "
+                    "3 (8^n - 1) / 7 cylinders and twice as many spheres",
+                    {}},
+    ProceduralScene{"large", 1, 1, 1, "gears:2 and two teapots of 12 without boards; 19,409 polygons", {}},
+    ProceduralScene{"lattice",
+                    1,
+                    50,
+                    12,
+                    "spheres on an n x n x n lattice joined by rods; (n+1)^3 spheres, 3 n (n+1)^2 cylinders",
+                    {}},
+    ProceduralScene{
+        "mount", 1, 7, 6, "a fractal mountain and four glass balls; 2 * 4^n triangles, 4 spheres", {}},
+    ProceduralScene{"rings",
+                    1,
+                    30,
+                    7,
+                    "interlocking rings in a pyramid of n layers before a wall; 5 n (n+1) (2n+1) "
+                    "spheres and as many cylinders",
+                    {}},
+    ProceduralScene{"shells", 0, 10, 1, "a sea shell; 180 * 2^n + 1 spheres", {}},
+    ProceduralScene{"sombrero",
+                    1,
+                    6,
+                    2,
+                    "a ripple as a height field, its side doubled n - 1 times; 2 (16 * 2^n - 1)^2 triangles",
+                    {}},
     ProceduralScene{"teapot", 2, 500, 12,
                     "the Utah teapot on a board of n x n squares, each of its 32 patches cut n x n; "
                     "64 n^2 - 8 n triangles without the board",
                     teapot_variants},
-    ProceduralScene{"tetra", 1, 12, 6, "a Sierpinski tetrahedron; 4^n triangles", {}}};
+    ProceduralScene{"tetra", 1, 12, 6, "a Sierpinski tetrahedron; 4^n triangles", {}},
+    ProceduralScene{"tree",
+                    0,
+                    17,
+                    11,
+                    "a bare tree that forks n times, on a field; 2^(n+1) - 1 cones and as many spheres",
+                    {}}};
+
+Scene make(std::string_view name, std::uint32_t size, bool whole) {
+  struct Recipe {
+    std::string_view name;
+    Scene (*make)(std::uint32_t size);
+  };
+  static constexpr std::array<Recipe, 10> recipes = {
+      Recipe{"balls", spd::make_balls},   Recipe{"gears", spd::make_gears},
+      Recipe{"jacks", spd::make_jacks},   Recipe{"lattice", spd::make_lattice},
+      Recipe{"mount", spd::make_mount},   Recipe{"rings", spd::make_rings},
+      Recipe{"shells", spd::make_shells}, Recipe{"sombrero", spd::make_sombrero},
+      Recipe{"tetra", spd::make_tetra},   Recipe{"tree", spd::make_tree}};
+  for (const Recipe& recipe : recipes) {
+    if (recipe.name == name) {
+      return recipe.make(size);
+    }
+  }
+  return name == "teapot" ? spd::make_teapot(size, whole) : spd::make_large();
+}
 
 /// `text` up to the next colon, which is taken off `rest` as well.
 std::string_view next_part(std::string_view& rest) {
@@ -100,15 +161,11 @@ Scene make_procedural(std::string_view spec) {
                                                 "; known are " + joined(names)));
     }
   }
-  Scene scene;
-  if (kind.name == "gears") {
-    scene = spd::make_gears(size);
-  } else if (kind.name == "teapot") {
-    scene = spd::make_teapot(size, !has_variant);
-  } else {
-    scene = spd::make_tetra(size);
+  Scene scene = make(kind.name, size, !has_variant);
+  scene.name = kind.name;
+  if (kind.minimum_size != kind.maximum_size) {
+    scene.name += ":" + std::to_string(size);
   }
-  scene.name = std::string(kind.name) + ":" + std::to_string(size);
   if (has_variant) {
     scene.name += ':';
     scene.name += rest;

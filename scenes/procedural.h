@@ -1,6 +1,6 @@
 // Scenes made by a recipe: the Standard Procedural Databases of E. Haines (A Proposal for Standard
 // Graphics Environments, IEEE CG&A 7(11), 1987; recipes and colours of SPD 3.14), with their cameras,
-// lights, materials and background.
+// lights, materials and background, and one composed from them. docs/scenes.md describes each.
 #pragma once
 
 #include <cstdint>

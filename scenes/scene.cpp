@@ -21,6 +21,11 @@ Bounds bounds_of(const Scene& scene) {
       bounds.include(scene.positions[vertex]);
     }
   }
+  for (const Quadric& quadric : scene.quadrics) {
+    const Bounds own = bounds_of(quadric);
+    bounds.include(own.lo);
+    bounds.include(own.hi);
+  }
   return bounds;
 }
 

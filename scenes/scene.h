@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "scenes/camera.h"
+#include "scenes/quadric.h"
 
 namespace marti::scenes {
 
@@ -73,6 +74,7 @@ struct Scene {
   std::vector<glm::dvec3> normals;
   std::vector<glm::dvec2> uvs;
   std::vector<Triangle> triangles;
+  std::vector<Quadric> quadrics;  ///< primitive ids from triangles.size() on; each valid as quadric.h says
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Light> lights;
@@ -83,6 +85,12 @@ struct Scene {
   std::vector<std::string> notes;  ///< what the loader chose or left out, one sentence each
 };
 
+/// The material of a primitive id.
+[[nodiscard]] inline std::uint32_t material_of(const Scene& scene, std::uint32_t primitive) {
+  return primitive < scene.triangles.size() ? scene.triangles[primitive].material
+                                            : scene.quadrics[primitive - scene.triangles.size()].material;
+}
+
 /// Axis-aligned bounds. Empty (lo > hi) until the first point.
 struct Bounds {
   glm::dvec3 lo;
@@ -92,7 +100,10 @@ struct Bounds {
   [[nodiscard]] bool empty() const { return lo.x > hi.x; }
 };
 
-/// The bounds of the triangles' vertices (unreferenced vertices do not count).
+/// The tight box of a valid quadric, up to rounding.
+[[nodiscard]] Bounds bounds_of(const Quadric& quadric);
+
+/// The bounds of the triangles' vertices (unreferenced vertices do not count) and of the quadrics.
 [[nodiscard]] Bounds bounds_of(const Scene& scene);
 
 }  // namespace marti::scenes

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -36,6 +37,68 @@ Scene make_scene(const glm::dvec3& eye, const glm::dvec3& at, const glm::dvec3& 
   scene.camera.vertical_fov = std::numbers::pi / 4.0;
   scene.background = {0.078, 0.361, 0.753};
   return scene;
+}
+
+Material make_material(std::string name, const glm::dvec3& color, double diffuse, double reflection,
+                       double highlight, double angle) {
+  Material material;
+  material.name = std::move(name);
+  material.color = color;
+  material.diffuse = diffuse;
+  material.reflection = reflection;
+  material.highlight = highlight;
+  if (highlight > 0.0) {
+    material.shininess = shininess_of_angle(angle);
+  }
+  return material;
+}
+
+std::uint32_t add_material(Scene& scene, Material material) {
+  scene.materials.push_back(std::move(material));
+  return static_cast<std::uint32_t>(scene.materials.size() - 1);
+}
+
+namespace {
+
+void add_quadric(Scene& scene, Quadric quadric) {
+  quadric.source = static_cast<std::uint32_t>(scene.quadrics.size());
+  scene.quadrics.push_back(quadric);
+}
+
+}  // namespace
+
+void add_sphere(Scene& scene, const glm::dvec3& center, double radius, std::uint32_t material) {
+  add_quadric(scene, {.kind = QuadricKind::sphere, .base = center, .radius = radius, .material = material});
+}
+
+void add_cylinder(Scene& scene, const glm::dvec3& base, const glm::dvec3& tip, double radius,
+                  std::uint32_t material) {
+  add_quadric(
+      scene,
+      {.kind = QuadricKind::cylinder, .base = base, .tip = tip, .radius = radius, .material = material});
+}
+
+void add_cone(Scene& scene, const glm::dvec3& base, const glm::dvec3& tip, double radius, double tip_radius,
+              std::uint32_t material) {
+  add_quadric(scene, {.kind = QuadricKind::cone,
+                      .base = base,
+                      .tip = tip,
+                      .radius = radius,
+                      .tip_radius = tip_radius,
+                      .material = material});
+}
+
+void add_square(Scene& scene, const std::array<glm::dvec3, 4>& corners, std::uint32_t material) {
+  const auto first = static_cast<std::uint32_t>(scene.positions.size());
+  scene.positions.insert(scene.positions.end(), corners.begin(), corners.end());
+  const auto polygon = static_cast<std::uint32_t>(scene.polygons++);
+  scene.triangles.push_back({{first, first + 1, first + 2}, material, polygon});
+  scene.triangles.push_back({{first + 2, first + 3, first}, material, polygon});
+}
+
+glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double radians) {
+  const double cosine = std::cos(radians);
+  return v * cosine + glm::cross(axis, v) * std::sin(radians) + axis * (glm::dot(axis, v) * (1.0 - cosine));
 }
 
 std::size_t VertexWelder::Hash::operator()(const glm::dvec3& p) const {

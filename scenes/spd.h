@@ -42,8 +42,36 @@ class VertexWelder {
   std::unordered_map<glm::dvec3, std::vector<std::uint32_t>, Hash> at_;
 };
 
+/// A material of diffuse weight `diffuse` whose mirror and highlight have the weights given, the highlight
+/// the width of shininess_of_angle.
+[[nodiscard]] Material make_material(std::string name, const glm::dvec3& color, double diffuse,
+                                     double reflection = 0.0, double highlight = 0.0, double angle = 0.0);
+
+/// Adds a material and gives its index.
+std::uint32_t add_material(Scene& scene, Material material);
+
+void add_sphere(Scene& scene, const glm::dvec3& center, double radius, std::uint32_t material);
+void add_cylinder(Scene& scene, const glm::dvec3& base, const glm::dvec3& tip, double radius,
+                  std::uint32_t material);
+void add_cone(Scene& scene, const glm::dvec3& base, const glm::dvec3& tip, double radius, double tip_radius,
+              std::uint32_t material);
+/// The quadrilateral a b c d as two triangles and one polygon.
+void add_square(Scene& scene, const std::array<glm::dvec3, 4>& corners, std::uint32_t material);
+
+/// The vector turned about the unit vector `axis`, right-handed (Rodrigues' formula).
+[[nodiscard]] glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double radians);
+
+[[nodiscard]] Scene make_balls(std::uint32_t n);
 [[nodiscard]] Scene make_gears(std::uint32_t n);
+[[nodiscard]] Scene make_jacks(std::uint32_t n);
+[[nodiscard]] Scene make_large();
+[[nodiscard]] Scene make_lattice(std::uint32_t n);
+[[nodiscard]] Scene make_mount(std::uint32_t n);
+[[nodiscard]] Scene make_rings(std::uint32_t n);
+[[nodiscard]] Scene make_shells(std::uint32_t n);
+[[nodiscard]] Scene make_sombrero(std::uint32_t n);
 [[nodiscard]] Scene make_teapot(std::uint32_t n, bool with_board);
 [[nodiscard]] Scene make_tetra(std::uint32_t n);
+[[nodiscard]] Scene make_tree(std::uint32_t n);
 
 }  // namespace marti::scenes::spd

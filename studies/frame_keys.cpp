@@ -22,6 +22,11 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.real("image.min_weight", 0.0, {0.0, 1.0}, "",
               "a ray that contributes less than this share of its pixel is not traced");
   schema.boolean("image.shadows", true, "trace shadow rays");
+  schema.real("image.voxel_cut", 0.0, {0.0, 1'000'000.0}, "pixels",
+              "octree: a cell that covers less than this many pixels on the screen is shaded as one voxel "
+              "with averaged material; 0 is off and exact");
+  schema.boolean("image.voxel_cut_reference", false,
+                 "with the voxel cut: render the exact image too and report the difference");
   schema.section("structure", "the space subdivision");
   std::vector<std::string> kinds;
   for (const std::string_view kind : accel::structure_kinds()) {
@@ -59,6 +64,17 @@ FrameConfig read_frame(sim::Config& config) {
   frame.render.min_weight = config.real("image.min_weight");
   frame.render.shadows = config.boolean("image.shadows");
   frame.structure = config.choice_name("structure.kind");
+  frame.render.voxel_cut = config.real("image.voxel_cut");
+  if (frame.render.voxel_cut > 0.0) {
+    if (frame.structure != "octree") {
+      config.fail("image.voxel_cut",
+                  "only an octree can be cut, not structure.kind = \"" + frame.structure + "\"");
+    }
+    frame.exact_too = config.boolean("image.voxel_cut_reference");
+  } else {
+    config.mark_unused_reason("image.voxel_cut_reference", "it has no effect with image.voxel_cut = 0",
+                              "image.voxel_cut");
+  }
   if (frame.structure == "octree" || frame.structure == "bsp") {
     accel::StructureOptions& options = frame.structure_options;
     options.octree.max_objects = static_cast<std::uint32_t>(config.integer("structure.max_objects"));

@@ -20,6 +20,7 @@ struct FrameConfig {
   std::string structure;
   accel::StructureOptions structure_options;
   processors::RenderOptions render;
+  bool exact_too = false;         ///< with the voxel cut: render the exact image beside it
   std::int64_t memory_limit = 0;  ///< host bytes that image and work log may take
 };
 

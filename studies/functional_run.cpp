@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "accel/structure.h"
 #include "sim/error.h"
@@ -38,11 +39,13 @@ void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
   sample.width = std::max(1U, sample.width * sample_side / longer);
   sample.height = std::max(1U, sample.height * sample_side / longer);
   sample.record = true;
+  sample.voxel_cut = 0.0;  // a coarse sample would cut more than the frame
   const processors::Frame frame = processors::render(scene, triangles, structure, sample);
   const double pixels = static_cast<double>(config.render.width) * config.render.height;
-  const double bytes = static_cast<double>(processors::totals_of(*frame.log).bytes) /
+  const double frames = config.exact_too ? 2.0 : 1.0;
+  const double bytes = frames * static_cast<double>(processors::totals_of(*frame.log).bytes) /
                            (static_cast<double>(sample.width) * sample.height) * pixels * 2.0 +
-                       pixels * sizeof(glm::vec3);
+                       frames * pixels * sizeof(glm::vec3);
   if (bytes > static_cast<double>(config.memory_limit)) {
     throw sim::UserError("the image and its work log may take " +
                          sim::print_size(static_cast<std::int64_t>(std::min(bytes, 9e18)) >> 20U << 20U) +
@@ -71,6 +74,17 @@ FunctionalRun run_functional(const FrameConfig& config) {
   run.frame = processors::render(scene, *triangles, *structure, options);
   run.totals = processors::totals_of(*run.frame.log);
   run.image_hash = hash_of(run.frame.image);
+  if (options.voxel_cut > 0.0) {
+    VoxelReport& report = run.voxel_cut.emplace();
+    report.use = database_use(*run.frame.log);
+    if (config.exact_too) {
+      options.voxel_cut = 0.0;
+      processors::Frame exact = processors::render(scene, *triangles, *structure, options);
+      report.exact = {
+          std::move(exact.image), processors::totals_of(*exact.log), database_use(*exact.log), {}};
+      report.exact->error = image_error(run.frame.image, report.exact->image);
+    }
+  }
   return run;
 }
 

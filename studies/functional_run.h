@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "accel/octree.h"
 #include "processors/program/render.h"
 #include "scenes/open.h"
 #include "studies/frame_keys.h"
+#include "studies/voxel_report.h"
 
 namespace marti::studies {
 
@@ -18,7 +20,8 @@ struct FunctionalRun {
   std::vector<accel::LevelStatistics> levels;  ///< of an octree; empty for other structures
   processors::Frame frame;
   processors::LogTotals totals;
-  std::uint64_t image_hash = 0;  ///< of the pixels' bits
+  std::optional<VoxelReport> voxel_cut;  ///< with the voxel cut
+  std::uint64_t image_hash = 0;          ///< of the pixels' bits
 };
 
 /// Opens the scene, builds the structure, renders and records. Throws UserError when the scene cannot be

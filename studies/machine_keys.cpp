@@ -45,10 +45,11 @@ constexpr std::array<std::pair<std::string_view, std::int64_t processors::Operat
         {"costs.store", &processors::OperationCycles::store},
     }};
 
-constexpr std::array<std::pair<std::string_view, std::uint32_t memory::LayoutConfig::*>, 6> records = {{
+constexpr std::array<std::pair<std::string_view, std::uint32_t memory::LayoutConfig::*>, 7> records = {{
     {"layout.node", &memory::LayoutConfig::node_bytes},
     {"layout.entry", &memory::LayoutConfig::entry_bytes},
     {"layout.primitive", &memory::LayoutConfig::primitive_bytes},
+    {"layout.quadric", &memory::LayoutConfig::quadric_bytes},
     {"layout.material", &memory::LayoutConfig::material_bytes},
     {"layout.texel", &memory::LayoutConfig::texel_bytes},
     {"layout.pixel", &memory::LayoutConfig::pixel_bytes},
@@ -83,10 +84,17 @@ void declare_node(Schema& schema) {
 
 void declare_memory(Schema& schema) {
   schema.section("layout", "sizes of the database's records and where they lie");
-  const std::array<std::string_view, 6> defaults = {"8 B", "4 B", "48 B", "64 B", "4 B", "4 B"};
+  const std::array<std::pair<std::string_view, std::string_view>, records.size()> sizes_of_records = {{
+      {"8 B", "bytes of one node record"},
+      {"4 B", "bytes of one entry record"},
+      {"48 B", "bytes of one primitive record that is a triangle"},
+      {"40 B", "bytes of one sphere, cylinder or cone: two points, two radii, kind and material"},
+      {"64 B", "bytes of one material record"},
+      {"4 B", "bytes of one texel record"},
+      {"4 B", "bytes of one pixel record"},
+  }};
   for (std::size_t i = 0; i < records.size(); ++i) {
-    schema.size(records[i].first, defaults[i], {"1 B", "64 KiB"},
-                "bytes of one " + std::string(records[i].first.substr(7)) + " record");
+    schema.size(records[i].first, sizes_of_records[i].first, {"1 B", "64 KiB"}, sizes_of_records[i].second);
   }
   schema.size("layout.record_alignment", "4 B", {"1 B", "4 KiB"}, "alignment of records; a power of two");
   schema.size("layout.section_alignment", "4 KiB", {"1 B", "1 GiB"},

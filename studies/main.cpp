@@ -10,6 +10,7 @@
 #include "scenes/gltf_export.h"
 #include "scenes/open.h"
 #include "scenes/procedural.h"
+#include "scenes/tessellate.h"
 #include "sim/error.h"
 #include "sim/schema.h"
 #include "studies/image_file.h"
@@ -142,8 +143,14 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
     if (!arguments.target.ends_with(".glb")) {
       throw sim::UserError(arguments.target + ": the name of a binary glTF file must end in .glb");
     }
-    scenes::export_glb(open(arguments), arguments.target, studies::encode_png);
-    print("wrote " + arguments.target + "\n");
+    scenes::Scene source = open(arguments);
+    scenes::tessellate(source);
+    scenes::export_glb(source, arguments.target, studies::encode_png);
+    std::string text = "wrote " + arguments.target + "\n";
+    for (const std::string& note : source.notes) {
+      text += "note: " + note + "\n";
+    }
+    print(text);
   });
 }
 

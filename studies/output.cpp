@@ -1,5 +1,7 @@
 #include "studies/output.h"
 
+#include <optional>
+
 #include "sim/files.h"
 #include "studies/image_file.h"
 #include "studies/signals_held.h"
@@ -21,10 +23,22 @@ std::vector<std::filesystem::path> write_output(const RunResult& result,
   write_exr(result.functional.frame.image, exr.temporary());
   write_png(result.functional.frame.image, png.temporary());
   sim::write_file(json.temporary(), json_of(result));
+  std::vector<std::filesystem::path> files = {directory / "image.exr", directory / "image.png",
+                                              directory / "result.json"};
+  std::optional<sim::PendingFile> exact_exr;
+  std::optional<sim::PendingFile> exact_png;
+  if (result.functional.voxel_cut && result.functional.voxel_cut->exact) {
+    const processors::Image& exact = result.functional.voxel_cut->exact->image;
+    files.insert(files.end(), {directory / "exact.exr", directory / "exact.png"});
+    write_exr(exact, exact_exr.emplace(directory / "exact.exr").temporary());
+    write_png(exact, exact_png.emplace(directory / "exact.png").temporary());
+    exact_exr->commit();
+    exact_png->commit();
+  }
   exr.commit();
   png.commit();
   json.commit();
-  return {directory / "image.exr", directory / "image.png", directory / "result.json"};
+  return files;
 }
 
 }  // namespace marti::studies

@@ -45,9 +45,18 @@ Json scene_json(const RunResult& r) {
     bounds = {{"lo", {s.bounds.lo.x, s.bounds.lo.y, s.bounds.lo.z}},
               {"hi", {s.bounds.hi.x, s.bounds.hi.y, s.bounds.hi.z}}};
   }
-  return {{"source", r.frame_config.scene}, {"name", s.name},         {"polygons", s.polygons},
-          {"triangles", s.triangles},       {"vertices", s.vertices}, {"materials", s.materials},
-          {"textures", s.textures},         {"lights", s.lights},     {"bounds", bounds},
+  return {{"source", r.frame_config.scene},
+          {"name", s.name},
+          {"polygons", s.polygons},
+          {"triangles", s.triangles},
+          {"spheres", s.spheres},
+          {"cylinders", s.cylinders},
+          {"cones", s.cones},
+          {"vertices", s.vertices},
+          {"materials", s.materials},
+          {"textures", s.textures},
+          {"lights", s.lights},
+          {"bounds", bounds},
           {"notes", r.functional.notes}};
 }
 
@@ -80,8 +89,42 @@ Json image_json(const RunResult& r) {
 }
 
 Json log_json(const processors::LogTotals& t) {
-  return {{"bytes", t.bytes},   {"branches", t.branches}, {"leaves", t.leaves}, {"tests", t.tests},
-          {"shades", t.shades}, {"lights", t.lights},     {"texels", t.texels}};
+  return {{"bytes", t.bytes},   {"branches", t.branches}, {"leaves", t.leaves},
+          {"tests", t.tests},   {"shades", t.shades},     {"lights", t.lights},
+          {"texels", t.texels}, {"cuts", t.cuts},         {"passes", t.passes}};
+}
+
+Json use_json(const DatabaseUse& use) {
+  return {{"nodes", use.nodes},
+          {"entries", use.entries},
+          {"primitives", use.primitives},
+          {"voxels", use.voxels},
+          {"level_nodes", use.level_nodes}};
+}
+
+Json voxel_json(const RunResult& r) {
+  if (!r.functional.voxel_cut) {
+    return nullptr;
+  }
+  const VoxelReport& report = *r.functional.voxel_cut;
+  Json exact = nullptr;
+  if (report.exact) {
+    const ImageError& error = report.exact->error;
+    exact = {{"rmse", error.rmse},
+             {"largest", error.largest},
+             {"changed_pixels", error.changed},
+             {"visible_pixels", error.visible},
+             {"work_log", log_json(report.exact->totals)},
+             {"rays", report.exact->totals.rays},
+             {"use", use_json(report.exact->use)}};
+  }
+  const processors::Frame& frame = r.functional.frame;
+  return {{"threshold_pixels", r.frame_config.render.voxel_cut},
+          {"voxels", frame.voxels},
+          {"first_level", frame.first_voxel_level},
+          {"rays", named(std::array{"camera", "shadow", "reflection", "refraction"}, frame.rays.voxels)},
+          {"use", use_json(report.use)},
+          {"exact", exact}};
 }
 
 // Every declared counter under its name; times say so in theirs.
@@ -188,6 +231,7 @@ std::string json_of(const RunResult& r) {
                        {"structure", structure_json(r)},
                        {"image", image_json(r)},
                        {"work_log", log_json(r.functional.totals)},
+                       {"voxel_cut", voxel_json(r)},
                        {"machine", machine}};
   // Text that is not UTF-8 can only come from names in files; it is replaced, not refused.
   return result.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

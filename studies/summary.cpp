@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include "sim/units.h"
 #include "studies/build_output.h"
@@ -60,9 +61,15 @@ std::string percent(double part, double whole) {
 
 void scene_lines(Lines out, const RunResult& r) {
   const scenes::SceneFacts& scene = r.functional.scene;
-  fmt::format_to(out, "scene         {}: {} polygons, {} triangles, {} materials, {} lights\n",
-                 r.frame_config.scene, grouped(scene.polygons), grouped(scene.triangles), scene.materials,
-                 scene.lights);
+  fmt::format_to(out, "scene         {}: {} polygons, {} triangles", r.frame_config.scene,
+                 grouped(scene.polygons), grouped(scene.triangles));
+  for (const auto& [count, name] : {std::pair{scene.spheres, "sphere"},
+                                    std::pair{scene.cylinders, "cylinder"}, std::pair{scene.cones, "cone"}}) {
+    if (count > 0) {
+      fmt::format_to(out, ", {}", counted(count, name));
+    }
+  }
+  fmt::format_to(out, ", {} materials, {} lights\n", scene.materials, scene.lights);
   for (const std::string& note : r.functional.notes) {
     fmt::format_to(out, "  note        {}\n", note);
   }
@@ -81,6 +88,49 @@ void scene_lines(Lines out, const RunResult& r) {
   fmt::format_to(out, "work log      {}, {:.1f} bytes and {:.1f} steps a ray\n",
                  bytes(static_cast<double>(totals.bytes)), static_cast<double>(totals.bytes) / rays,
                  static_cast<double>(totals.all_steps()) / rays);
+}
+
+void voxel_lines(Lines out, const RunResult& r) {
+  if (!r.functional.voxel_cut) {
+    return;
+  }
+  const VoxelReport& report = *r.functional.voxel_cut;
+  const processors::Frame& frame = r.functional.frame;
+  fmt::format_to(out, "voxel cut     below {:g} pixels: ", r.frame_config.render.voxel_cut);
+  if (frame.voxels == 0) {
+    fmt::format_to(out, "no cell of the tree is that small\n");
+  } else {
+    const double rays = static_cast<double>(frame.rays.all() - frame.rays.traced[1]);
+    const std::uint64_t taken = frame.rays.voxels[0] + frame.rays.voxels[2] + frame.rays.voxels[3];
+    fmt::format_to(out, "{} voxels from level {} on; {} rays saw one ({} of all but shadow rays)\n",
+                   grouped(std::uint64_t{frame.voxels}), frame.first_voxel_level, grouped(taken),
+                   percent(static_cast<double>(taken), rays));
+  }
+  const auto use = [&](std::string_view name, const DatabaseUse& u, const processors::LogTotals& totals) {
+    const accel::Topology& topology = frame.log->topology;
+    const memory::LayoutConfig& layout = r.machine.layout;
+    const auto share = [](std::uint64_t part, std::size_t whole) {
+      return percent(static_cast<double>(part), static_cast<double>(whole));
+    };
+    const std::uint64_t needed = u.nodes * layout.node_bytes + u.entries * layout.entry_bytes +
+                                 u.primitives * layout.primitive_bytes + u.voxels * layout.material_bytes;
+    fmt::format_to(out, "  {:<12}reads {} nodes ({}), {} of the lists, {} of the primitives, {} voxels: {}\n",
+                   name, grouped(u.nodes), share(u.nodes, topology.nodes.size()),
+                   share(u.entries, topology.entries.size()), share(u.primitives, frame.log->primitives),
+                   grouped(u.voxels), bytes(static_cast<double>(needed)));
+    fmt::format_to(out, "  {:<12}{} steps, {:.1f} a ray\n", "", grouped(totals.all_steps()),
+                   static_cast<double>(totals.all_steps()) / static_cast<double>(totals.all_rays()));
+  };
+  use("cut", report.use, r.functional.totals);
+  if (report.exact) {
+    const ImageError& error = report.exact->error;
+    const auto pixels = static_cast<double>(frame.image.pixels.size());
+    use("exact", report.exact->use, report.exact->totals);
+    fmt::format_to(out,
+                   "  {:<12}RMSE {:.5f}, largest {:.3f}, {} of the pixels changed, {} by more than 1/255\n",
+                   "error", error.rmse, error.largest, percent(static_cast<double>(error.changed), pixels),
+                   percent(static_cast<double>(error.visible), pixels));
+  }
 }
 
 void machine_lines(Lines out, const RunResult& r) {
@@ -169,6 +219,7 @@ std::string summary_of(const RunResult& r) {
   std::string text;
   const Lines out = std::back_inserter(text);
   scene_lines(out, r);
+  voxel_lines(out, r);
   machine_lines(out, r);
   time_lines(out, r);
   memory_lines(out, r);

@@ -55,6 +55,8 @@ class RowRecorder {
       put(make_word(Step::partial_leaf, node), tests);
     }
   }
+  void cut(std::uint32_t node) { put(make_word(Step::cut, node)); }
+  void pass(std::uint32_t record) { put(make_word(Step::pass, record)); }
   void ray(RayKind kind, std::uint32_t bounce, const accel::Ray& /*ray*/) {
     put(make_word(Step::ray, static_cast<std::uint32_t>(kind) | bounce << 2U));
   }

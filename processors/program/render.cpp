@@ -1,5 +1,6 @@
 #include "processors/program/render.h"
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -16,6 +17,7 @@
 #include "accel/structure.h"
 #include "processors/program/recorder.h"
 #include "processors/program/tracer.h"
+#include "processors/program/voxel_average.h"
 #include "sim/error.h"
 
 namespace marti::processors {
@@ -38,6 +40,22 @@ void check_options(const RenderOptions& options) {
     throw sim::UserError("the render's min_weight is " + std::to_string(options.min_weight) +
                          "; it must be from 0 to 1");
   }
+  if (!(options.voxel_cut >= 0.0 && std::isfinite(options.voxel_cut))) {
+    throw sim::UserError("the render's voxel_cut is " + std::to_string(options.voxel_cut) +
+                         "; it must be finite and not below 0");
+  }
+}
+
+/// The voxels of the frame; none when no cell can be small, and then the exact walk does it.
+std::optional<VoxelAverages> make_voxels(const scenes::Scene& scene, const accel::Octree& octree,
+                                         const RenderOptions& options, unsigned threads) {
+  const unsigned level =
+      first_small_level(octree.bounds(), scene.camera.image_plane(options.width, options.height),
+                        options.voxel_cut, options.max_depth);
+  if (level > octree.levels().size()) {
+    return std::nullopt;
+  }
+  return VoxelAverages::build(scene, octree, level, threads);
 }
 
 /// The log's database side: everything but the rows.
@@ -47,7 +65,11 @@ WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure,
   log.width = options.width;
   log.height = options.height;
   log.topology = structure.topology();
-  log.primitives = static_cast<std::uint32_t>(scene.triangles.size());
+  const accel::TriangleSet& primitives = structure.triangles();
+  log.primitives = primitives.size();
+  for (std::uint32_t id = primitives.triangles(); id < primitives.size(); ++id) {
+    log.quadrics.push_back(primitives.kind(id));
+  }
   log.materials = static_cast<std::uint32_t>(scene.materials.size());
   log.lights = static_cast<std::uint32_t>(scene.lights.size());
   log.texture_begin.push_back(0);
@@ -121,6 +143,7 @@ RayCounts& RayCounts::operator+=(const RayCounts& other) {
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
     traced[kind] += other.traced[kind];
     hit[kind] += other.hit[kind];
+    voxels[kind] += other.voxels[kind];
   }
   return *this;
 }
@@ -128,26 +151,50 @@ RayCounts& RayCounts::operator+=(const RayCounts& other) {
 Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
              const accel::Structure& structure, const RenderOptions& options, unsigned threads) {
   check_options(options);
-  sim::ensure(triangles.size() == scene.triangles.size() && structure.triangles().size() == triangles.size(),
-              "render: the structure was built over other triangles than the scene's");
+  sim::ensure(triangles.triangles() == scene.triangles.size() &&
+                  triangles.size() == scene.triangles.size() + scene.quadrics.size() &&
+                  structure.triangles().size() == triangles.size(),
+              "render: the structure was built over other primitives than the scene's");
   Frame frame;
   frame.image.width = options.width;
   frame.image.height = options.height;
   frame.image.pixels.resize(std::size_t{options.width} * options.height);
 
+  std::optional<VoxelAverages> voxels;
+  if (options.voxel_cut > 0.0) {
+    const auto* octree = dynamic_cast<const accel::StructureOf<accel::Octree>*>(&structure);
+    if (octree == nullptr) {
+      throw sim::UserError("the voxel cut needs an octree, not \"" + std::string(structure.kind()) + "\"");
+    }
+    voxels = make_voxels(scene, octree->concrete(), options, threads);
+  }
+  frame.voxels = voxels ? voxels->size() : 0;
+  frame.first_voxel_level = voxels ? voxels->first_level() : 0;
+
   WorkLog log;
   if (options.record) {
-    check_log_capacity(structure.topology().nodes.size(), scene.materials.size(), scene.lights.size(),
-                       scene.textures.size());
+    check_log_capacity(structure.topology().nodes.size(), scene.materials.size() + frame.voxels,
+                       scene.lights.size(), scene.textures.size());
     log = start_log(scene, structure, options);
+    log.voxels = frame.voxels;
+    log.materials += log.voxels;
   }
-  accel::visit_structure(structure, [&](const auto& concrete) {
+  const auto render_with = [&](const auto& concrete) {
     using Concrete = std::remove_cvref_t<decltype(concrete)>;
     if (options.record) {
       render_rows<Concrete, RowRecorder>(scene, concrete, options, threads, log.rows, frame);
     } else {
       render_rows<Concrete, NullRecorder>(scene, concrete, options, threads, log.rows, frame);
     }
+  };
+  accel::visit_structure(structure, [&](const auto& concrete) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(concrete)>, accel::Octree>) {
+      if (voxels) {
+        render_with(CutStructure(concrete, *voxels, options.voxel_cut));
+        return;
+      }
+    }
+    render_with(concrete);
   });
   if (options.record) {
     frame.log = std::make_shared<const WorkLog>(std::move(log));

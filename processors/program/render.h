@@ -27,13 +27,17 @@ struct RenderOptions {
       5;                    ///< rays in a row, the eye ray being 1; 1 to max_ray_depth. Shadow rays are free.
   double min_weight = 0.0;  ///< 0 to 1: a ray whose largest weight is below this is not traced
   bool shadows = true;      ///< without: every light a surface faces reaches it
-  bool record = false;      ///< also make the work log
+  /// The voxel cut (accel/octree_cut.h), for an octree only: cells that cover less than this many pixels on
+  /// the screen are shaded as one. 0: off, the image is exact. At least 0 and finite.
+  double voxel_cut = 0.0;
+  bool record = false;  ///< also make the work log
 };
 
 /// Rays of each kind, in the order of RayKind.
 struct RayCounts {
   std::array<std::uint64_t, ray_kinds> traced{};
-  std::array<std::uint64_t, ray_kinds> hit{};  ///< of these, hit something (a shadow ray: was blocked)
+  std::array<std::uint64_t, ray_kinds> hit{};     ///< of these, hit something (a shadow ray: was blocked)
+  std::array<std::uint64_t, ray_kinds> voxels{};  ///< of these, saw a voxel; 0 without the voxel cut
 
   RayCounts& operator+=(const RayCounts& other);
   [[nodiscard]] std::uint64_t all() const { return traced[0] + traced[1] + traced[2] + traced[3]; }
@@ -46,11 +50,13 @@ struct Frame {
   /// ray only whether it was blocked). Equal for every structure, machine and number of threads.
   std::uint64_t hit_hash = 0;
   std::shared_ptr<const WorkLog> log;  ///< null unless RenderOptions::record
+  std::uint32_t voxels = 0;            ///< averaged materials made for the voxel cut
+  unsigned first_voxel_level = 0;      ///< the first level that has them; 0 without any
 };
 
-/// Renders `scene`, whose triangles are `triangles` indexed by `structure`, on `threads` host threads (0:
-/// all of them). Throws UserError for options out of range, and when recording a scene whose nodes,
-/// materials, lights or textures do not fit the log's 28-bit operands.
+/// Renders `scene`, whose primitives are `triangles` indexed by `structure`, on `threads` host threads (0:
+/// all of them). Throws UserError for options out of range, for a voxel cut without an octree, and when
+/// recording a scene whose nodes, materials, lights or textures do not fit the log's 28-bit operands.
 [[nodiscard]] Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
                            const accel::Structure& structure, const RenderOptions& options,
                            unsigned threads = 0);

@@ -22,11 +22,12 @@ template <typename Real>
 struct Surface {
   Vec3<Real> point;
   Vec3<Real> error;      ///< bound of each coordinate's error
-  Real margin{0.0};      ///< bound of how far beside the triangle's plane the kernel still sees it hit
-  Vec3<Real> geometric;  ///< the triangle's unit normal, on the viewer's side
+  Real margin{0.0};      ///< bound of how far beside the surface the kernel still sees it hit
+  Vec3<Real> geometric;  ///< the surface's own unit normal, on the viewer's side
   Vec3<Real> normal;     ///< the unit shading normal, on the viewer's side and facing the viewer
   Vec3<Real> color;      ///< the material's colour times the texture's
-  bool outside = true;   ///< the viewer is on the side from which the triangle winds counter-clockwise
+  bool outside = true;   ///< the viewer is on the side from which the triangle winds counter-clockwise,
+                         ///< or outside of the sphere, cylinder or cone
 };
 
 /// Bound of the relative error of n roundings in double: n eps / (1 - n eps), Higham, "Accuracy and

@@ -13,10 +13,14 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
+#include "accel/octree_cut.h"
 #include "accel/ray.h"
+#include "processors/program/quadric_surface.h"
 #include "processors/program/recorder.h"
 #include "processors/program/render.h"
 #include "processors/program/shading.h"
@@ -26,8 +30,14 @@
 
 namespace marti::processors {
 
-/// Structure: a concrete structure of accel with closest<Real>(ray, visitor) and occluded<Real>(ray,
-/// visitor). Recorder: see recorder.h. Real: double, or accel::Counted to count the operations.
+/// A structure whose closest() takes a footprint too and may see a voxel: see voxel_average.h.
+template <typename Structure>
+concept CutsVoxels = requires(const Structure& structure) {
+  structure.averages();
+};
+
+/// Structure: a concrete structure of accel with closest<Real>(ray, visitor), occluded<Real>(ray, visitor)
+/// and triangles(). Recorder: see recorder.h. Real: double, or accel::Counted to count the operations.
 /// A tracer belongs to one host thread.
 template <typename Real, typename Structure, typename Recorder>
 class Tracer {
@@ -46,6 +56,10 @@ class Tracer {
     color_ = Vec();
     pixel_hash_ = 0;
     depth_of_stack_ = 0;
+    if constexpr (CutsVoxels<Structure>) {
+      path_ = 0.0;
+      pixel_ = structure_.threshold() * solid_angle(x, y);
+    }
     push(Vec(plane_.origin), camera_direction(x, y), Vec(Real(1.0), Real(1.0), Real(1.0)), RayKind::camera,
          0);
     while (depth_of_stack_ > 0) {
@@ -68,6 +82,8 @@ class Tracer {
     Vec weight;
     RayKind kind = RayKind::camera;
     std::uint32_t bounce = 0;
+    struct NoPath {};
+    [[no_unique_address]] std::conditional_t<CutsVoxels<Structure>, double, NoPath> path{};  ///< from the eye
   };
 
   Vec camera_direction(std::uint32_t x, std::uint32_t y) const {
@@ -77,7 +93,20 @@ class Tracer {
   }
 
   void push(const Vec& origin, const Vec& direction, const Vec& weight, RayKind kind, std::uint32_t bounce) {
-    stack_[depth_of_stack_++] = {origin, direction, weight, kind, bounce};
+    stack_[depth_of_stack_++] = {origin, direction, weight, kind, bounce, {}};
+    if constexpr (CutsVoxels<Structure>) {
+      stack_[depth_of_stack_ - 1].path = path_;
+    }
+  }
+
+  /// Of pixel (x, y) as the eye sees it: its area over the cube of the distance of its centre, the plane
+  /// being at distance 1.
+  double solid_angle(std::uint32_t x, std::uint32_t y) const {
+    const Vec3<double> across = cross(Vec3<double>(plane_.step_x), Vec3<double>(plane_.step_y));
+    const Vec3<double> center = Vec3<double>(plane_.corner) + Vec3<double>(plane_.step_x) * (x + 0.5) +
+                                Vec3<double>(plane_.step_y) * (y + 0.5);
+    const double squared = dot(center, center);
+    return std::sqrt(dot(across, across)) / (squared * std::sqrt(squared));
   }
 
   /// A ray that leaves a surface never sees t = 0 again. It could, where the offset out of the surface is
@@ -98,7 +127,19 @@ class Tracer {
     const accel::Ray ray = pending.bounce == 0 ? make_ray(pending.origin, pending.direction)
                                                : leaving_ray(pending.origin, pending.direction);
     recorder_.ray(pending.kind, pending.bounce, ray);
-    const accel::Hit hit = structure_.template closest<Real>(ray, recorder_);
+    accel::Hit hit;
+    if constexpr (CutsVoxels<Structure>) {
+      const accel::CutHit cut =
+          structure_.template closest<Real>(ray, {.pixel = pixel_, .path = pending.path}, recorder_);
+      if (cut.voxel != accel::no_voxel) {
+        see_voxel(pending, cut);
+        return;
+      }
+      hit = cut.hit;
+      path_ = pending.path + hit.t;
+    } else {
+      hit = structure_.template closest<Real>(ray, recorder_);
+    }
     ++rays_.traced[kind];
     if (!hit.found()) {
       recorder_.phase(Phase::ray, pending.kind);
@@ -113,13 +154,17 @@ class Tracer {
 
   void shade(const Pending& pending, const accel::Hit& hit) {
     recorder_.phase(Phase::shade, pending.kind);
-    const std::uint32_t material_id = scene_.triangles[hit.primitive].material;
+    const std::uint32_t material_id = scenes::material_of(scene_, hit.primitive);
     const scenes::Material& material = scene_.materials[material_id];
     recorder_.shade(material_id);
     const Real b[3] = {Real(hit.u), Real(hit.v), Real(hit.w)};
-    Surface<Real> surface = surface_at(scene_, hit.primitive, b, pending.direction);
+    const bool triangle = hit.primitive < scene_.triangles.size();
+    Surface<Real> surface =
+        triangle ? surface_at(scene_, hit.primitive, b, pending.direction)
+                 : quadric_surface(structure_.triangles().quadric(hit.primitive),
+                                   pending.origin + pending.direction * Real(hit.t), pending.direction);
     surface.color = Vec(material.color);
-    if (material.texture != scenes::no_texture && !scene_.uvs.empty()) {
+    if (triangle && material.texture != scenes::no_texture && !scene_.uvs.empty()) {
       recorder_.phase(Phase::texel, pending.kind);
       const scenes::TextureSample sample =
           scenes::sample_nearest(scene_.textures[material.texture], uv_at(scene_, hit.primitive, b));
@@ -127,6 +172,25 @@ class Tracer {
       surface.color = surface.color * Vec(sample.color);
       recorder_.phase(Phase::shade, pending.kind);
     }
+    light_up(pending, material, surface);
+  }
+
+  /// The ray ended at a voxel: its averaged material is shaded on a surface that stands for the cell.
+  void see_voxel(const Pending& pending, const accel::CutHit& cut) requires CutsVoxels<Structure> {
+    const auto kind = static_cast<std::size_t>(pending.kind);
+    ++rays_.traced[kind];
+    ++rays_.hit[kind];
+    ++rays_.voxels[kind];
+    path_ = pending.path + cut.t;
+    note(~cut.voxel, std::bit_cast<std::uint64_t>(cut.t));
+    recorder_.phase(Phase::shade, pending.kind);
+    recorder_.shade(structure_.averages().table().first_record + cut.voxel);
+    light_up(pending, structure_.averages()[cut.voxel].material(),
+             structure_.averages().surface(cut.voxel, pending.direction));
+  }
+
+  /// All the light that leaves the surface towards the ray's origin, and the rays that bring it.
+  void light_up(const Pending& pending, const scenes::Material& material, const Surface<Real>& surface) {
     const Vec ambient = surface.color * Vec(scene_.ambient) * Real(material.diffuse);
     add(pending.weight, Vec(material.emission) + ambient);
     if (material.diffuse > 0.0 || material.highlight > 0.0) {
@@ -230,6 +294,8 @@ class Tracer {
   RayCounts rays_;
   std::uint64_t hit_hash_ = 0;
   std::uint64_t pixel_hash_ = 0;
+  double pixel_ = 0.0;  ///< with the voxel cut: solid angle below which a cell is taken whole
+  double path_ = 0.0;   ///< with the voxel cut: from the eye to where new rays start
   /// Each ray taken off puts at most two on, once per level.
   std::array<Pending, max_ray_depth + 1> stack_;
   std::size_t depth_of_stack_ = 0;

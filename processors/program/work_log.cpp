@@ -28,9 +28,15 @@ class RowChecker {
 
  private:
   void check_pixel(std::size_t at, std::size_t end) {
+    auto before = Step::ray;
     while (at < end) {
       const std::uint32_t word = row_.words[at++];
       const Step step = step_of(word);
+      ensure((before == Step::cut) == (step == Step::shade && averaged(operand_of(word))),
+             "work log: a cut without its averaged material, or the reverse");
+      ensure(before != Step::pass || step == Step::branch || step == Step::leaf || step == Step::partial_leaf,
+             "work log: a pass without its node");
+      before = step;
       std::uint32_t second = 0;
       if (has_second_word(step)) {
         ensure(at < end, "work log: a pixel ends between the two words of a step");
@@ -38,6 +44,12 @@ class RowChecker {
       }
       check_step(step, operand_of(word), second);
     }
+    ensure(before != Step::cut && before != Step::pass, "work log: a pixel ends in the middle of a voxel");
+  }
+
+  /// Whether the database has such a material, and it is an averaged one.
+  [[nodiscard]] bool averaged(std::uint32_t material) const {
+    return material < log_.materials && material >= log_.materials - log_.voxels;
   }
 
   void check_step(Step step, std::uint32_t operand, std::uint32_t second) const {
@@ -53,8 +65,15 @@ class RowChecker {
         ensure(step == Step::leaf || second < log_.topology.nodes[operand].count,
                "work log: a partial leaf that tests all its entries or more");
         return;
+      case Step::cut:
+        ensure(operand < log_.topology.nodes.size(), "work log: a cut of a node that the tree does not have");
+        ensure(log_.topology.nodes[operand].count != 0, "work log: a cut of an empty leaf");
+        return;
       case Step::ray:
         return;  // every value of the low two bits is a RayKind
+      case Step::pass:
+        ensure(averaged(operand), "work log: an averaged material that the database does not have");
+        return;
       case Step::shade:
         ensure(operand < log_.materials, "work log: a material that the database does not have");
         return;
@@ -76,6 +95,11 @@ class RowChecker {
 };
 
 void check_topology(const WorkLog& log) {
+  ensure(log.quadrics.size() <= log.primitives, "work log: more curved primitives than primitives");
+  for (const accel::PrimitiveKind kind : log.quadrics) {
+    ensure(kind == accel::PrimitiveKind::sphere || kind == accel::PrimitiveKind::cone,
+           "work log: a triangle among the curved primitives");
+  }
   const std::size_t nodes = log.topology.nodes.size();
   for (std::size_t n = 0; n < nodes; ++n) {
     const accel::TopologyNode& node = log.topology.nodes[n];
@@ -140,6 +164,12 @@ LogTotals totals_of(const WorkLog& log) {
           ++totals.texels;
           ++at;
           break;
+        case Step::cut:
+          ++totals.cuts;
+          break;
+        case Step::pass:
+          ++totals.passes;
+          break;
       }
     }
   }
@@ -147,6 +177,7 @@ LogTotals totals_of(const WorkLog& log) {
 }
 
 void validate(const WorkLog& log) {
+  ensure(log.voxels <= log.materials, "work log: more averaged materials than materials");
   ensure(log.rows.size() == log.height, "work log: the number of rows is not the image's height");
   check_topology(log);
   for (const LogRow& row : log.rows) {

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "accel/quadric_shape.h"
 #include "accel/topology.h"
 
 namespace marti::processors {
@@ -30,6 +31,10 @@ enum class Step : std::uint32_t {
   shade,         ///< operand: material. A hit point, normal and local colour were computed.
   light,         ///< operand: light. One unoccluded light's contribution was added.
   texel,         ///< operand: texture; second word: texel index in the texture. A texel was read.
+  cut,           ///< operand: node. Its record was read and the node taken as one voxel (accel/octree_cut.h);
+                 ///< the shade of its averaged material follows.
+  pass,          ///< operand: material. The averaged material of a node was read, but too little of the node is
+                 ///< covered to take it as a voxel; its branch, leaf or partial_leaf follows.
 };
 
 inline constexpr unsigned operand_bits = 28;
@@ -60,12 +65,14 @@ struct LogTotals {
   std::uint64_t shades = 0;
   std::uint64_t lights = 0;
   std::uint64_t texels = 0;
+  std::uint64_t cuts = 0;
+  std::uint64_t passes = 0;
   std::uint64_t bytes = 0;  ///< words and pixel offsets
 
   [[nodiscard]] std::uint64_t all_rays() const { return rays[0] + rays[1] + rays[2] + rays[3]; }
-  /// Steps the log stands for: every visit, test, ray, shade, light and texel.
+  /// Steps the log stands for: every visit, test, ray, shade, light, texel, cut and pass.
   [[nodiscard]] std::uint64_t all_steps() const {
-    return all_rays() + branches + leaves + tests + shades + lights + texels;
+    return all_rays() + branches + leaves + tests + shades + lights + texels + cuts + passes;
   }
 };
 
@@ -74,12 +81,21 @@ struct WorkLog {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   accel::Topology topology;
-  std::uint32_t primitives = 0;              ///< number of primitive records in the database
-  std::uint32_t materials = 0;               ///< number of material records
+  std::uint32_t primitives = 0;  ///< number of primitive records in the database
+  /// Kinds of the primitives behind the triangles: those with the ids from primitives - quadrics.size() on.
+  std::vector<accel::PrimitiveKind> quadrics;
+  std::uint32_t materials = 0;               ///< number of material records, averaged ones included
+  std::uint32_t voxels = 0;                  ///< of these, averaged for the voxel cut: the last ones
   std::uint32_t lights = 0;                  ///< number of lights
   std::vector<std::uint64_t> texture_begin;  ///< first texel of each texture in the texel array, plus the end
   std::vector<LogRow> rows;                  ///< `height` of them, from the top
 
+  [[nodiscard]] std::uint32_t triangles() const {
+    return primitives - static_cast<std::uint32_t>(quadrics.size());
+  }
+  [[nodiscard]] accel::PrimitiveKind kind_of(std::uint32_t primitive) const {
+    return primitive < triangles() ? accel::PrimitiveKind::triangle : quadrics[primitive - triangles()];
+  }
   [[nodiscard]] std::span<const std::uint32_t> pixel(std::uint32_t x, std::uint32_t y) const {
     const LogRow& row = rows[y];
     return std::span(row.words).subspan(row.begin[x], row.begin[x + 1] - row.begin[x]);

@@ -15,12 +15,10 @@ namespace marti::studies {
 
 struct TracedRun {
   PaperRun run;
-  std::uint64_t triangles = 0;
   processors::LogTotals totals;
   std::shared_ptr<const processors::WorkLog> log;
   std::vector<LevelCount> levels;  ///< of the whole tree
   NodeVisits visits;
-  double trace_seconds = 0.0;  ///< host: scene, tree, image and log, on all cores
 };
 
 /// Traces one run. Throws UserError as run_functional does.

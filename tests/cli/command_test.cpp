@@ -238,6 +238,41 @@ TEST(Command, BrokenGltfFilesAreRefused) {
   }
 }
 
+TEST(Command, TheVoxelCutReportsWhatItSavedAndWhatItCost) {
+  const TemporaryDirectory directory;
+  const fs::path out = directory.path() / "out";
+  const std::string run = "run " + quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") +
+                          " --set image.width=24 --set image.height=24 --set scene.source=teapot:6";
+  const auto json_of = [](const Outcome& outcome) { return nlohmann::json::parse(outcome.output); };
+  const std::string cut = " --set image.voxel_cut=1";
+  const Outcome both = marti(run + cut + " --set image.voxel_cut_reference=true --json -o " + quoted(out));
+  ASSERT_EQ(both.status, 0) << both.output;
+  const nlohmann::json result = json_of(both);
+  const nlohmann::json& report = result["voxel_cut"];
+  EXPECT_GT(report["rays"]["camera"].get<int>(), 0);
+  EXPECT_EQ(report["rays"]["shadow"], 0);
+  EXPECT_GT(report["exact"]["rmse"].get<double>(), 0.0);
+  EXPECT_LE(report["exact"]["visible_pixels"], report["exact"]["changed_pixels"]);
+  EXPECT_LT(report["use"]["nodes"], report["exact"]["use"]["nodes"]);
+  EXPECT_EQ(report["exact"]["use"]["voxels"], 0);
+  EXPECT_EQ(result["machine"]["steps"]["cuts"], result["work_log"]["cuts"]);
+  EXPECT_EQ(result["machine"]["steps"]["passes"], result["work_log"]["passes"]);
+
+  const Outcome exact = marti(run + " --json -o " + quoted(directory.path() / "exact"));
+  EXPECT_TRUE(json_of(exact)["voxel_cut"].is_null());
+  EXPECT_EQ(json_of(exact)["work_log"], report["exact"]["work_log"]);
+  EXPECT_EQ(read(out / "exact.png"), read(directory.path() / "exact" / "image.png"));
+  EXPECT_NE(read(out / "image.png"), read(out / "exact.png"));
+
+  EXPECT_NE(marti(run + cut).output.find("voxel cut"), std::string::npos);
+  const Outcome useless = marti(run + " --set image.voxel_cut_reference=true");
+  EXPECT_EQ(useless.status, 2);
+  EXPECT_NE(useless.output.find("image.voxel_cut_reference"), std::string::npos) << useless.output;
+  const Outcome bsp = marti(run + cut + " --set structure.kind=bsp");
+  EXPECT_EQ(bsp.status, 2);
+  EXPECT_NE(bsp.output.find("image.voxel_cut"), std::string::npos) << bsp.output;
+}
+
 TEST(Command, AnInterruptedRunLeavesNoFile) {
   const TemporaryDirectory directory;
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";

@@ -120,8 +120,8 @@ inline constexpr std::array<Aim, 9> all_aims{Aim::random,   Aim::axis, Aim::cell
                                              Aim::vertex,   Aim::edge, Aim::corner,
                                              Aim::denormal, Aim::far,  Aim::inside};
 
-/// Makes rays at a set of triangles. `box` is the root box of the structure whose planes the rays of
-/// cell_face and corner are to lie in.
+/// Makes rays at a set's triangles, of which it needs one. `box` is the root box of the structure whose
+/// planes the rays of cell_face and corner are to lie in.
 class RayMaker {
  public:
   RayMaker(const accel::TriangleSet& triangles, const scenes::Bounds& box, std::uint64_t seed)
@@ -156,7 +156,7 @@ class RayMaker {
         ray.direction = aim_at(ray.origin, vertex());
         break;
       case Aim::edge: {
-        const std::uint32_t id = random_.below(triangles_.size());
+        const std::uint32_t id = random_.below(triangles_.triangles());
         const unsigned k = random_.below(3);
         const glm::dvec3 a = triangles_.corner(id, k);
         const glm::dvec3 b = triangles_.corner(id, (k + 1) % 3);
@@ -208,7 +208,7 @@ class RayMaker {
     const glm::dvec3 d = at - from;
     return random_.below(2) != 0 ? d : d * (1.0 / std::sqrt(std::max(glm::dot(d, d), 1e-300)));
   }
-  glm::dvec3 vertex() { return triangles_.corner(random_.below(triangles_.size()), random_.below(3)); }
+  glm::dvec3 vertex() { return triangles_.corner(random_.below(triangles_.triangles()), random_.below(3)); }
   glm::dvec3 axis_direction() {
     glm::dvec3 d(random_.below(2) != 0 ? 0.0 : -0.0, random_.below(2) != 0 ? 0.0 : -0.0,
                  random_.below(2) != 0 ? 0.0 : -0.0);

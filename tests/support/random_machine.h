@@ -55,7 +55,13 @@ inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::
   log.width = width;
   log.height = height;
   log.primitives = 50;
-  log.materials = 3;
+  const bool curved = pick(random, 0, 1) == 1;
+  for (std::int64_t left = curved ? pick(random, 1, 40) : 0; left > 0; --left) {
+    log.quadrics.push_back(pick(random, 0, 1) == 0 ? accel::PrimitiveKind::sphere
+                                                   : accel::PrimitiveKind::cone);
+  }
+  log.materials = 5;
+  log.voxels = 2;
   log.texture_begin = {0, 100, 356};
   log.topology = random_topology(random, 12, log.primitives, 6);
   std::vector<std::uint32_t> leaves;
@@ -70,7 +76,7 @@ inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::
       row.words.push_back(make_word(Step::ray, 0));
       for (std::int64_t left = pick(random, 0, most_words_a_pixel); left > 0; --left) {
         const std::uint32_t leaf = leaves[random() % leaves.size()];
-        switch (pick(random, 0, 9)) {
+        switch (pick(random, 0, 10)) {
           case 0:
           case 1:
           case 2:
@@ -96,6 +102,16 @@ inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::
             row.words.push_back(make_word(Step::shade, static_cast<std::uint32_t>(pick(random, 0, 2))));
             row.words.push_back(make_word(Step::light, 0));
             break;
+          case 9: {
+            const auto voxel = static_cast<std::uint32_t>(pick(random, 3, 4));
+            if (random() % 2 == 0) {
+              row.words.insert(row.words.end(),
+                               {make_word(Step::pass, voxel), make_word(Step::branch, branches[0])});
+            } else if (log.topology.nodes[leaf].count > 0) {
+              row.words.insert(row.words.end(), {make_word(Step::cut, leaf), make_word(Step::shade, voxel)});
+            }
+            break;
+          }
           default: {
             const auto texture = static_cast<std::uint32_t>(pick(random, 0, 1));
             row.words.push_back(make_word(Step::texel, texture));
@@ -219,6 +235,7 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
   machine.write_buffer = static_cast<std::uint32_t>(pick(random, 1, 3));
   machine.layout.node_bytes = static_cast<std::uint32_t>(pick(random, 1, 40));
   machine.layout.primitive_bytes = static_cast<std::uint32_t>(pick(random, 1, 100));
+  machine.layout.quadric_bytes = static_cast<std::uint32_t>(pick(random, 1, 100));
   machine.layout.node_order = static_cast<memory::NodeOrder>(pick(random, 0, 1));
   machine.cache.organisation = static_cast<processors::CacheOrganisation>(pick(random, 0, 2));
   machine.cache.hit_cycles = pick(random, 0, 2);

@@ -28,6 +28,27 @@ TEST(Layout, RecordsDoNotOverlapAndSectionsAreAligned) {
   EXPECT_EQ(layout.database_bytes(), 7U * 16 + 11 * 4 + 5 * 48 + 3 * 64 + 2 * 4);
 }
 
+TEST(Layout, QuadricsFollowTheTrianglesWithTheirOwnSize) {
+  LayoutConfig config;
+  config.primitive_bytes = 45;
+  config.quadric_bytes = 21;
+  config.record_alignment = 4;
+  const RecordCounts counts = {1, 1, 5, 1, 0, 1};
+  const Layout layout(config, counts, 2);
+  const Address base = layout.base(RecordKind::primitive);
+  for (std::uint64_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(layout.address(RecordKind::primitive, i), base + (i < 3 ? 48 * i : 144 + 24 * (i - 3)));
+    EXPECT_EQ(layout.record_bytes(RecordKind::primitive, i), i < 3 ? 45U : 21U);
+  }
+  EXPECT_EQ(layout.section_bytes(RecordKind::primitive), 3U * 48 + 2 * 24);
+  EXPECT_GE(layout.base(RecordKind::material), base + 3U * 48 + 2 * 24);
+  EXPECT_EQ(layout.database_bytes(), 8U + 4 + 3 * 48 + 2 * 24 + 64);
+  // All of them, or none.
+  EXPECT_EQ(Layout(config, counts, 5).address(RecordKind::primitive, 4), base + 96);
+  EXPECT_EQ(Layout(config, counts).address(RecordKind::primitive, 4), base + 192);
+  EXPECT_THROW(Layout(config, counts, 6), sim::InternalError);
+}
+
 TEST(Layout, RefusesImpossibleSizes) {
   LayoutConfig config;
   config.node_bytes = 0;

@@ -50,6 +50,13 @@ TEST(OperationMixes, TheTableIsWhatTheProgramDoes) {
   EXPECT_EQ(teapot.mixes.leaf, table.leaf);
   EXPECT_EQ(teapot.mixes.pixel, table.pixel);
 
+  const MeasuredMixes lattice = measure(scenes::make_procedural("lattice:4"));
+  ASSERT_GT(lattice.tests[1], 10000U);
+  ASSERT_GT(lattice.tests[2], 10000U);
+  EXPECT_EQ(lattice.tests[0] + lattice.tests[1] + lattice.tests[2], lattice.steps.tests);
+  expect_close("sphere test", lattice.mixes.sphere_test, table.sphere_test);
+  expect_close("cone test", lattice.mixes.cone_test, table.cone_test);
+
   const MeasuredMixes gears = measure(scenes::make_procedural("gears:2"));
   ASSERT_GT(gears.steps.rays[3], 0U);
   expect_close("refracted ray", gears.mixes.ray[3], table.ray[3]);
@@ -113,6 +120,8 @@ TEST(CostModel, OneKindOfOperationIsPricedByItsColumn) {
   StepCycles steps = step_cycles(only, words);
   EXPECT_EQ(steps.branch, mixes.branch.add);
   EXPECT_EQ(steps.test, mixes.test.add);
+  EXPECT_EQ(steps.sphere_test, mixes.sphere_test.add);
+  EXPECT_EQ(steps.cone_test, mixes.cone_test.add);
   EXPECT_EQ(steps.ray[1], mixes.ray[1].add);
   EXPECT_EQ(steps.leaf, 0);
   only = {0, 0, 0, 0, 0, 0, 0, 0};
@@ -126,11 +135,14 @@ TEST(CostModel, OneKindOfOperationIsPricedByItsColumn) {
 
 TEST(CostModel, RecordsCostTheirWords) {
   OperationCycles cycles{0, 0, 0, 0, 0, 0, 3, 7};
-  RecordWords words{.node = 2, .entry = 1, .primitive = 12, .material = 16, .texel = 1, .pixel = 4};
+  RecordWords words{
+      .node = 2, .entry = 1, .primitive = 12, .quadric = 10, .material = 16, .texel = 1, .pixel = 4};
   const StepCycles steps = step_cycles(cycles, words);
   EXPECT_EQ(steps.branch, 3 * 2);
   EXPECT_EQ(steps.leaf, 3 * 2);
   EXPECT_EQ(steps.test, 3 * (1 + 12));
+  EXPECT_EQ(steps.sphere_test, 3 * (1 + 10));
+  EXPECT_EQ(steps.cone_test, 3 * (1 + 10));
   EXPECT_EQ(steps.shade, 3 * 16);
   EXPECT_EQ(steps.light, 0);
   EXPECT_EQ(steps.texel, 3 * 1);

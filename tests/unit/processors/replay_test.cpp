@@ -79,15 +79,36 @@ RC_GTEST_PROP(Replay, ScalingEveryDurationScalesEveryTimeExactly, (std::uint64_t
   }
 }
 
+/// Tests of each accel::PrimitiveKind, one by one.
+std::array<std::int64_t, 3> tests_by_kind(const WorkLog& log) {
+  std::array<std::int64_t, 3> tests{};
+  for (const LogRow& row : log.rows) {
+    for (std::size_t i = 0; i < row.words.size(); ++i) {
+      const Step step = step_of(row.words[i]);
+      if (step == Step::leaf || step == Step::partial_leaf) {
+        const accel::TopologyNode& node = log.topology.nodes[operand_of(row.words[i])];
+        const std::uint32_t count = step == Step::leaf ? node.count : row.words[i + 1];
+        for (std::uint32_t t = 0; t < count; ++t) {
+          ++tests[static_cast<std::size_t>(log.kind_of(log.topology.entries[node.first + t]))];
+        }
+      }
+      i += has_second_word(step) ? 1 : 0;
+    }
+  }
+  return tests;
+}
+
 // Compute time of the whole log, from the counts of the log itself.
 sim::Ticks compute_of(const WorkLog& log, const MachineConfig& machine) {
   const StepTicks ticks = step_ticks(machine);
   const LogTotals totals = totals_of(log);
+  const std::array<std::int64_t, 3> tests = tests_by_kind(log);
   const auto n = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
-  sim::Ticks sum = ticks.branch * n(totals.branches) + ticks.leaf * n(totals.leaves) +
-                   ticks.test * n(totals.tests) + ticks.shade * n(totals.shades) +
-                   ticks.light * n(totals.lights) + ticks.texel * n(totals.texels) +
-                   ticks.pixel * std::int64_t{log.width} * log.height;
+  sim::Ticks sum = ticks.branch * n(totals.branches) + ticks.leaf * n(totals.leaves) + ticks.test * tests[0] +
+                   ticks.sphere_test * tests[1] + ticks.cone_test * tests[2] +
+                   ticks.shade * n(totals.shades) + ticks.light * n(totals.lights) +
+                   ticks.texel * n(totals.texels) + ticks.cut * n(totals.cuts) +
+                   ticks.pass * n(totals.passes) + ticks.pixel * std::int64_t{log.width} * log.height;
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
     sum += ticks.ray[kind] * n(totals.rays[kind]);
   }
@@ -145,12 +166,16 @@ TEST(Replay, CountsDoNotDependOnTheMachine) {
   test::Random random(13);
   const WorkLog log = test::random_log(random, 20, 13);
   const LogTotals totals = totals_of(log);
+  const std::array<std::int64_t, 3> tests = tests_by_kind(log);
+  ASSERT_GT(tests[1] + tests[2], 0);
   for (int round = 0; round < 100; ++round) {
     const MachineResult result = replay(log, test::random_machine(random, 40));
     const StepCounts steps = result.steps();
     EXPECT_EQ(static_cast<std::uint64_t>(steps.branches), totals.branches);
     EXPECT_EQ(static_cast<std::uint64_t>(steps.leaves), totals.leaves);
     EXPECT_EQ(static_cast<std::uint64_t>(steps.tests), totals.tests);
+    EXPECT_EQ(steps.sphere_tests, tests[1]);
+    EXPECT_EQ(steps.cone_tests, tests[2]);
     EXPECT_EQ(static_cast<std::uint64_t>(steps.texels), totals.texels);
     EXPECT_GE(result.references().references(),
               static_cast<std::int64_t>(totals.branches + totals.leaves + totals.tests));
@@ -166,13 +191,15 @@ TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
   machine.cache.cache.ways = memory::full_ways;
   const MachineResult one = replay(log, machine);
   // The lines of a single node: count them by hand, from the layout.
-  const memory::Layout layout(machine.layout, {log.topology.nodes.size(), log.topology.entries.size(),
-                                               log.primitives, log.materials, 356, 24 * 24});
+  const memory::Layout layout(
+      machine.layout,
+      {log.topology.nodes.size(), log.topology.entries.size(), log.primitives, log.materials, 356, 24 * 24},
+      log.quadrics.size());
   std::set<std::uint64_t> lines;
   const auto touch = [&](memory::RecordKind kind, std::uint64_t first, std::uint64_t count) {
     if (count > 0) {
       const memory::Address begin = layout.address(kind, first);
-      const memory::Address end = layout.address(kind, first + count - 1) + layout.record_bytes(kind);
+      const memory::Address end = layout.address(kind, first + count - 1) + layout.record_bytes(kind, first);
       for (std::uint64_t line = begin / 32; line <= (end - 1) / 32; ++line) {
         lines.insert(line);
       }
@@ -185,6 +212,7 @@ TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
           operand < log.topology.nodes.size() ? log.topology.nodes[operand] : accel::TopologyNode{};
       switch (step_of(row.words[i])) {
         case Step::branch:
+        case Step::cut:
           touch(memory::RecordKind::node, operand, 1);
           break;
         case Step::leaf:
@@ -198,6 +226,7 @@ TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
           break;
         }
         case Step::shade:
+        case Step::pass:
           touch(memory::RecordKind::material, operand, 1);
           break;
         case Step::texel:

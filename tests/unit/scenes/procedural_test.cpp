@@ -223,7 +223,8 @@ TEST(Procedural, DefaultsAndNames) {
   for (const ProceduralScene& entry : procedural_scenes()) {
     EXPECT_FALSE(entry.meaning.empty());
     const std::string smallest = std::string(entry.name) + ":" + std::to_string(entry.minimum_size);
-    EXPECT_GT(make_procedural(smallest).triangles.size(), 0U);
+    const Scene scene = make_procedural(smallest);
+    EXPECT_GT(scene.triangles.size() + scene.quadrics.size(), 0U);
     const std::string beyond = std::string(entry.name) + ":" + std::to_string(entry.maximum_size + 1);
     EXPECT_THROW(static_cast<void>(make_procedural(beyond)), sim::UserError);
     for (const ProceduralVariant& variant : entry.variants) {

@@ -1,0 +1,51 @@
+// Hit points on spheres, cylinders and cones, made ready for shading.
+#pragma once
+
+#include "accel/quadric_shape.h"
+#include "processors/program/shading.h"
+
+namespace marti::processors {
+
+/// The surface at `hit`, the point of a ray at its t, seen along `direction`. The point is moved onto the
+/// surface, along the normal: what is left of its error are the roundings of that, in each coordinate.
+///
+/// The kernel accepts no hit that is farther than 2^-46 of the shape's reach from the surface, and some 20
+/// roundings (quadric_kernel.h). A ray that leaves outwards from a margin of 2^-45 stays outside of that, and
+/// one that leaves inwards meets it only at the other side. The outer side is the one away from the centre or
+/// axis.
+template <typename Real>
+Surface<Real> quadric_surface(const accel::QuadricShape& shape, const Vec3<Real>& hit,
+                              const Vec3<Real>& direction) {
+  using std::sqrt;
+  const Vec3<Real> center(Real(shape.center[0]), Real(shape.center[1]), Real(shape.center[2]));
+  const Vec3<Real> axis(Real(shape.axis[0]), Real(shape.axis[1]), Real(shape.axis[2]));
+  const Vec3<Real> from_center = hit - center;
+  const Real height = dot(from_center, axis);  // 0 for a sphere, whose axis is 0
+  const Vec3<Real> on_axis = axis * height;
+  const Vec3<Real> out = from_center - on_axis;
+  const Real squared = dot(out, out);
+
+  Surface<Real> surface;
+  Vec3<Real> radial;
+  if (squared > Real(0.0)) {
+    const Vec3<Real> unit = out * (Real(1.0) / sqrt(squared));
+    radial = unit * (Real(shape.radius) + Real(shape.slope) * height);
+    surface.geometric = (unit - axis * Real(shape.slope)) * Real(shape.cosine);
+  } else {
+    // The very point of a cone: it looks along the axis.
+    surface.geometric = shape.slope < 0.0 ? axis : -axis;
+  }
+  const Vec3<Real> offset = on_axis + radial;
+  surface.point = center + offset;
+  surface.error = absolute(surface.point) * Real(gamma_bound(1)) +
+                  (absolute(on_axis) + absolute(radial)) * Real(gamma_bound(8));
+  surface.margin = Real(0x1p-45 * shape.reach);
+  surface.outside = dot(surface.geometric, direction) < Real(0.0);
+  if (!surface.outside) {
+    surface.geometric = -surface.geometric;
+  }
+  surface.normal = surface.geometric;
+  return surface;
+}
+
+}  // namespace marti::processors
