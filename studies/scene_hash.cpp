@@ -48,6 +48,15 @@ void add(Hash& hash, const scenes::Texture& texture) {
   }
 }
 
+void add(Hash& hash, const scenes::Quadric& quadric) {
+  hash.add(static_cast<std::uint64_t>(quadric.kind));
+  hash.add_vector(quadric.base);
+  hash.add_vector(quadric.tip);
+  hash.add(quadric.radius);
+  hash.add(quadric.tip_radius);
+  hash.add(std::uint64_t{quadric.material});
+}
+
 void add(Hash& hash, const scenes::Light& light) {
   hash.add(static_cast<std::uint64_t>(light.kind));
   hash.add_vector(light.position);
@@ -79,6 +88,10 @@ std::uint64_t scene_hash(const scenes::Scene& scene) {
       hash.add(std::uint64_t{vertex});
     }
     hash.add(std::uint64_t{triangle.material});
+  }
+  hash.add(std::uint64_t{scene.quadrics.size()});
+  for (const scenes::Quadric& quadric : scene.quadrics) {
+    add(hash, quadric);
   }
   for (const scenes::Material& material : scene.materials) {
     add(hash, material);

@@ -7,7 +7,7 @@
 
 namespace marti::studies {
 
-/// FNV-1a (Fowler, Noll, Vo) over the bits of what a frame depends on: vertices, triangles, materials,
+/// FNV-1a (Fowler, Noll, Vo) over the bits of what a frame depends on: vertices, triangles, quadrics, materials,
 /// textures, lights, camera, background. Equal scenes have equal hashes, whatever their names.
 [[nodiscard]] std::uint64_t scene_hash(const scenes::Scene& scene);
 

@@ -29,7 +29,7 @@ Claim polygons(std::span<const SceneTrees> scenes, std::string_view name, std::u
   claim.verdict = Verdict::not_measured;
   if (const SceneTrees* scene = find(scenes, name)) {
     // The pot's polygons are its triangles; other scenes keep the count of their source.
-    const std::uint64_t here = name.starts_with("teapot") ? scene->triangles : scene->polygons;
+    const std::uint64_t here = name.starts_with("teapot") ? scene->primitives : scene->polygons;
     claim.here = fmt::format("{}", here);
     claim.verdict = verdict(here == published);
   }

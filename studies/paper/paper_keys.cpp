@@ -59,11 +59,11 @@ void declare_paper_keys(sim::Schema& schema) {
   schema.section("paper",
                  "only for `marti study paper`, which sets scene.*, image.max_depth and build.* itself and "
                  "wants an octree");
-  schema.texts("paper.scenes", {"gears:2", "tetra:6", "teapot:4:pot", "teapot:12:pot"},
+  schema.texts("paper.scenes", {"gears:2", "tetra:6", "teapot:4:pot", "teapot:12:pot", "large"},
                "scenes whose octree and BSP tree are compared (table 1)");
-  schema.texts("paper.run_scenes", {"gears:2", "teapot:12:pot", "teapot:12:pot"},
+  schema.texts("paper.run_scenes", {"gears:2", "teapot:12:pot", "teapot:12:pot", "large"},
                "scenes to render with trees built to several initial levels (tables 2 onwards)");
-  schema.integers("paper.run_depths", {2, 2, 4}, {1, processors::max_ray_depth}, "rays",
+  schema.integers("paper.run_depths", {2, 2, 4, 2}, {1, processors::max_ray_depth}, "rays",
                   "longest chain of rays in each of them, the eye ray being 1");
   schema.integers(
       "paper.levels", {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, {1, 21}, "",

@@ -45,7 +45,7 @@ SceneTrees measure_trees(const std::string& name, const scenes::Scene& scene,
   trees.scene = name;
   trees.hash = scene_hash(scene);
   trees.polygons = scene.polygons;
-  trees.triangles = scene.triangles.size();
+  trees.primitives = triangles->size();
   trees.octree = measure("octree", triangles, options);
   trees.bsp = measure("bsp", triangles, options);
   return trees;
@@ -55,7 +55,7 @@ Table tree_table(std::span<const SceneTrees> scenes, const memory::LayoutConfig&
   Table table("table1", "Table 1: octree and BSP tree of each scene",
               {{"scene", ColumnType::text, "", "scene"},
                {"polygons", ColumnType::integer, "1", "polygons of the scene's source"},
-               {"triangles", ColumnType::integer, "1", "triangles they are cut into"},
+               {"primitives", ColumnType::integer, "1", "triangles they are cut into, and curved primitives"},
                {"structure", ColumnType::text, "", "octree or bsp"},
                {"nodes", ColumnType::integer, "1", "nodes of the whole tree"},
                {"branches", ColumnType::integer, "1", "nodes that were divided"},
@@ -73,7 +73,7 @@ Table tree_table(std::span<const SceneTrees> scenes, const memory::LayoutConfig&
       const TreeSize& size = octree ? scene.octree : scene.bsp;
       const LevelCount total = size.total();
       const std::uint64_t bytes = bytes_of(size.levels, layout);
-      table.add_row({scene.scene, count_cell(scene.polygons), count_cell(scene.triangles),
+      table.add_row({scene.scene, count_cell(scene.polygons), count_cell(scene.primitives),
                      octree ? "octree" : "bsp", count_cell(total.nodes()), count_cell(total.branches),
                      count_cell(total.leaves), count_cell(size.empty_leaves), count_cell(total.leaf_entries),
                      count_cell(size.levels.size()), count_cell(bytes), quotient(total.nodes(), octree_nodes),
@@ -86,12 +86,12 @@ Table tree_table(std::span<const SceneTrees> scenes, const memory::LayoutConfig&
 Table host_tree_table(std::span<const SceneTrees> scenes) {
   Table table("host_table1", "Table 1 on the host: building the whole tree",
               {{"scene", ColumnType::text, "", "scene"},
-               {"triangles", ColumnType::integer, "1", "triangles"},
+               {"primitives", ColumnType::integer, "1", "triangles and curved primitives"},
                {"octree_seconds", ColumnType::real, "s", "building the octree, on all host threads"},
                {"bsp_seconds", ColumnType::real, "s", "building the BSP tree, on one"}});
   for (const SceneTrees& scene : scenes) {
     table.add_row(
-        {scene.scene, count_cell(scene.triangles), scene.octree.build_seconds, scene.bsp.build_seconds});
+        {scene.scene, count_cell(scene.primitives), scene.octree.build_seconds, scene.bsp.build_seconds});
   }
   return table;
 }

@@ -28,7 +28,7 @@ struct SceneTrees {
   std::string scene;
   std::uint64_t hash = 0;  ///< scene_hash
   std::uint64_t polygons = 0;
-  std::uint64_t triangles = 0;
+  std::uint64_t primitives = 0;  ///< triangles and quadrics
   TreeSize octree;
   TreeSize bsp;
 };

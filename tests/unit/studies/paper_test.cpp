@@ -191,7 +191,7 @@ TEST(Paper, WrongConfigurationsAreRefused) {
       {"[paper]\nscenes = [\"teapott:4\"]\n", {"paper.toml:2", "paper.scenes", "teapot"}},
       {"[paper]\nscenes = [\"tetra:1\"]\nrun_scenes = [\"nothing\"]\nrun_depths = [2]\n",
        {"paper.toml:3", "paper.run_scenes", "nothing"}},
-      {"[paper]\nrun_depths = [2]\n", {"paper.toml:2", "paper.run_depths", "3"}},
+      {"[paper]\nrun_depths = [2]\n", {"paper.toml:2", "paper.run_depths", "4"}},
       {"[paper]\nrun_scenes = [\"tetra:1\", \"tetra:1\"]\nrun_depths = [2, 2]\n",
        {"paper.toml:2", "paper.run_scenes", "twice"}},
       {"[paper]\nlevels = [0]\n", {"paper.toml:2", "paper.levels"}},
