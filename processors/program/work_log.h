@@ -32,8 +32,8 @@ enum class Step : std::uint32_t {
   texel,         ///< operand: texture; second word: texel index in the texture. A texel was read.
   cut,           ///< operand: node. Its record was read and the node taken as one voxel (accel/octree_cut.h);
                  ///< the shade of its averaged material follows.
-  pass,          ///< operand: material. The averaged material of a node was read, but too little of the node is
-                 ///< covered to take it as a voxel; its branch, leaf or partial_leaf follows.
+  pass,  ///< operand: material. The averaged material of a node was read, but too little of the node is
+         ///< covered to take it as a voxel; its branch, leaf or partial_leaf follows.
 };
 
 inline constexpr unsigned operand_bits = 28;
