@@ -11,14 +11,14 @@
 //     max(P, longest^2) / 4^(l-1) < threshold * w * z^2.
 //
 // What a small cell does. The share that its surfaces cover of it, seen along the ray, is estimated
-// (voxel_cover.h). From one quarter on the ray ends here: the whole cell is opaque. Below, the walk goes on into
-// the cell as usual, so no ray slips through a surface that lies in the corners of cells, and a cell that holds
-// a corner of something does not become a brick. What is left of the surfaces' shape is thus up to a cell
-// too thick. A cell in which a triangle listed in an earlier one was met already is not taken whole.
+// (voxel_cover.h). From one quarter on the ray ends here: the whole cell is opaque. Below, the walk goes on
+// into the cell as usual, so no ray slips through a surface that lies in the corners of cells, and a cell
+// that holds a corner of something does not become a brick. What is left of the surfaces' shape is thus up to
+// a cell too thick. A cell in which a triangle listed in an earlier one was met already is not taken whole.
 //
 // A ray that left a surface takes no cell whole that holds its origin or is nearer than four of the cell's
-// own diagonals: the surface it left passes through those. On a flat one, parallel to a face of the cells, rays
-// that stay in its cells for longer are so oblique that it covers less than a quarter.
+// own diagonals: the surface it left passes through those. On a flat one, parallel to a face of the cells,
+// rays that stay in its cells for longer are so oblique that it covers less than a quarter.
 #pragma once
 
 #include <algorithm>

@@ -14,7 +14,8 @@ struct NullVisitor {
   /// A leaf's record was read, then the first `tests` of its `entries` objects were tested, in list
   /// order. tests < entries only when an occlusion query ended early.
   void leaf(std::uint32_t /*node*/, std::uint32_t /*tests*/, std::uint32_t /*entries*/) {}
-  /// Only with the voxel cut (octree_cut.h): a node's record was read and the whole node is what the ray sees.
+  /// Only with the voxel cut (octree_cut.h): a node's record was read and the whole node is what the ray
+  /// sees.
   void cut(std::uint32_t /*node*/) {}
   /// Only with the voxel cut: a small node's voxel was read, but too little of it is covered; branch or leaf
   /// follows.
