@@ -306,8 +306,7 @@ class DynamicWalker {
     }
   }
 
-  void add_visits(const VisitCounts& counts, std::uint32_t visits,
-                  NodeStatistics& statistics) const {
+  void add_visits(const VisitCounts& counts, std::uint32_t visits, NodeStatistics& statistics) const {
     const auto of = [&](VisitCount what) { return std::int64_t{counts.of(what)}; };
     const auto add_hits = [&](memory::RecordKind kind, VisitCount what) {
       statistics.references.hits[static_cast<std::size_t>(kind)] += of(what);

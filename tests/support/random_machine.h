@@ -155,8 +155,9 @@ inline void add_random_work(Random& random, accel::Topology& topology) {
   }
 }
 
-/// Appends a ray's walk from a node down: random children, each after its parent.
-inline void append_walk(Random& random, const accel::Topology& topology, std::uint32_t number,
+/// Appends a ray's walk from a node down: random children, each after its parent; with mailboxes some leaves
+/// of which not all entries are tested.
+inline void append_walk(Random& random, const accel::Topology& topology, bool mailboxes, std::uint32_t number,
                         std::vector<std::uint32_t>& words) {
   using processors::make_word;
   using processors::Step;
@@ -171,8 +172,13 @@ inline void append_walk(Random& random, const accel::Topology& topology, std::ui
   if (!node.leaf) {
     words.push_back(make_word(Step::branch, number));
     for (std::int64_t left = pick(random, 0, 3); left > 0; --left) {
-      append_walk(random, topology, node.first + static_cast<std::uint32_t>(random() % node.count), words);
+      append_walk(random, topology, mailboxes, node.first + static_cast<std::uint32_t>(random() % node.count),
+                  words);
     }
+  } else if (mailboxes && node.count > 0 && random() % 4 == 0) {
+    const auto read = static_cast<std::uint32_t>(pick(random, 1, node.count));
+    words.insert(words.end(), {make_word(Step::mailed_leaf, number), read,
+                               static_cast<std::uint32_t>(pick(random, 0, (1 << read) - 2))});
   } else if (node.count > 1 && random() % 4 == 0) {
     words.push_back(make_word(Step::partial_leaf, number));
     words.push_back(static_cast<std::uint32_t>(pick(random, 0, node.count - 1)));
@@ -186,6 +192,8 @@ inline processors::WorkLog random_tree_log(Random& random, std::uint32_t width, 
   using processors::make_word;
   using processors::Step;
   processors::WorkLog log;
+  log.traversal = static_cast<accel::Traversal>(pick(random, 0, accel::traversals - 1));
+  log.mailboxes = pick(random, 0, 1) == 1;
   log.width = width;
   log.height = height;
   log.primitives = 50;
@@ -204,7 +212,7 @@ inline processors::WorkLog random_tree_log(Random& random, std::uint32_t width, 
       row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
       for (std::int64_t rays = pick(random, 0, 3); rays > 0; --rays) {
         row.words.push_back(make_word(Step::ray, static_cast<std::uint32_t>(pick(random, 0, 3))));
-        append_walk(random, log.topology, 0, row.words);
+        append_walk(random, log.topology, log.mailboxes, 0, row.words);
         if (random() % 2 == 0) {
           row.words.push_back(make_word(Step::shade, static_cast<std::uint32_t>(pick(random, 0, 1))));
         }
