@@ -288,13 +288,13 @@ class DynamicWalker {
       time = sim::add_ticks(time, visit.time);
       counts += visit.counts;
       if (++visits == most_summed_visits) [[unlikely]] {
-        add_visits(std::exchange(counts, {}), visits, statistics);
+        add_visits(std::exchange(counts, {}), visits, input_.log.mailboxes, statistics);
         visits = 0;
       }
     }
     cursor.word = word;
     cursor.time = time;
-    add_visits(counts, visits, statistics);
+    add_visits(counts, visits, input_.log.mailboxes, statistics);
   }
 
   [[gnu::always_inline]] bool look_up(View cache, const std::uint32_t* line) const {
@@ -304,26 +304,6 @@ class DynamicWalker {
     } else {
       return cache.touch(memory::RecordKind::node, *line);  // such caches do not look at the kind
     }
-  }
-
-  void add_visits(const VisitCounts& counts, std::uint32_t visits, NodeStatistics& statistics) const {
-    const auto of = [&](VisitCount what) { return std::int64_t{counts.of(what)}; };
-    const auto add_hits = [&](memory::RecordKind kind, VisitCount what) {
-      statistics.references.hits[static_cast<std::size_t>(kind)] += of(what);
-    };
-    StepCounts& steps = statistics.steps;
-    steps.branches += visits - of(VisitCount::leaf);
-    steps.leaves += of(VisitCount::leaf);
-    steps.lists += of(VisitCount::list);
-    steps.tests += of(VisitCount::test) + of(VisitCount::sphere_test) + of(VisitCount::cone_test);
-    steps.sphere_tests += of(VisitCount::sphere_test);
-    steps.cone_tests += of(VisitCount::cone_test);
-    if (input_.log.mailboxes) {
-      steps.lookups += of(VisitCount::test) + of(VisitCount::sphere_test) + of(VisitCount::cone_test);
-    }
-    add_hits(memory::RecordKind::node, VisitCount::node_line);
-    add_hits(memory::RecordKind::list, VisitCount::list_line);
-    add_hits(memory::RecordKind::primitive, VisitCount::primitive_line);
   }
 
   // Whether the node sees the lazy branch built whose record it reads now.

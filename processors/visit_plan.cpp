@@ -123,4 +123,23 @@ VisitPlan plan_visits(const WorkLog& log, const memory::Layout& layout, std::spa
   return plan;
 }
 
+void add_visits(const VisitCounts& counts, std::uint32_t visits, bool mailboxes, NodeStatistics& statistics) {
+  const auto of = [&](VisitCount what) { return std::int64_t{counts.of(what)}; };
+  const auto add_hits = [&](memory::RecordKind kind, VisitCount what) {
+    statistics.references.hits[static_cast<std::size_t>(kind)] += of(what);
+  };
+  const std::int64_t tests = of(VisitCount::test) + of(VisitCount::sphere_test) + of(VisitCount::cone_test);
+  StepCounts& steps = statistics.steps;
+  steps.branches += visits - of(VisitCount::leaf);
+  steps.leaves += of(VisitCount::leaf);
+  steps.lists += of(VisitCount::list);
+  steps.tests += tests;
+  steps.lookups += mailboxes ? tests : 0;
+  steps.sphere_tests += of(VisitCount::sphere_test);
+  steps.cone_tests += of(VisitCount::cone_test);
+  add_hits(memory::RecordKind::node, VisitCount::node_line);
+  add_hits(memory::RecordKind::list, VisitCount::list_line);
+  add_hits(memory::RecordKind::primitive, VisitCount::primitive_line);
+}
+
 }  // namespace marti::processors

@@ -89,4 +89,7 @@ inline constexpr std::uint64_t most_planned_lines = std::uint64_t{1} << 28U;
                                     std::span<const std::uint32_t> rank, unsigned line_shift,
                                     const StepTicks& ticks);
 
+/// Adds to a node's statistics so many visits of which all lines have hit, with the sum of their counts.
+void add_visits(const VisitCounts& counts, std::uint32_t visits, bool mailboxes, NodeStatistics& statistics);
+
 }  // namespace marti::processors
