@@ -97,17 +97,22 @@ NodeVisits count_visits(const processors::WorkLog& log) {
   NodeVisits visits;
   visits.touched.assign(nodes.size(), 0);
   for (const processors::LogRow& row : log.rows) {
-    for (std::size_t at = 0; at < row.words.size(); ++at) {
-      const Step step = processors::step_of(row.words[at]);
-      const std::uint32_t operand = processors::operand_of(row.words[at]);
-      at += processors::has_second_word(step) ? 1 : 0;
-      if (step != Step::branch && step != Step::leaf && step != Step::partial_leaf) {
+    for (std::size_t at = 0; at < row.words.size(); at += processors::step_words(row.words.data() + at)) {
+      const std::uint32_t* const word = row.words.data() + at;
+      const Step step = processors::step_of(*word);
+      const std::uint32_t operand = processors::operand_of(*word);
+      if (step != Step::branch && step != Step::leaf && step != Step::partial_leaf &&
+          step != Step::mailed_leaf) {
         continue;
       }
       const accel::TopologyNode& node = nodes[operand];
       ++grown(visits.per_level, node.level);
-      if (step != Step::branch) {
-        grown(visits.tests, node.level) += step == Step::leaf ? node.count : row.words[at];
+      if (step == Step::leaf) {
+        grown(visits.tests, node.level) += node.count;
+      } else if (step == Step::partial_leaf) {
+        grown(visits.tests, node.level) += word[1];
+      } else if (step == Step::mailed_leaf) {
+        grown(visits.tests, node.level) += processors::tests_of_mask(word + 2, word[1]);
       }
       visits.touched[operand] = 1;
     }
