@@ -15,6 +15,7 @@
 #include "sim/error.h"
 #include "sim/files.h"
 #include "sim/schema.h"
+#include "studies/frames/frames.h"
 #include "studies/image_file.h"
 #include "studies/output.h"
 #include "studies/paper/paper.h"
@@ -114,13 +115,21 @@ void study_paper(const StudyArguments& arguments) {
   write_and_print(studies::run_paper(config), arguments.directory);
 }
 
+void study_frames(const StudyArguments& arguments) {
+  sim::Config config = sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
+  studies::prepare_output(arguments.directory);
+  write_and_print(studies::run_frames(config), arguments.directory);
+}
+
 void add_study_commands(CLI::App& app, StudyArguments& arguments) {
   CLI::App* study = app.add_subcommand("study", "Runs a study: many machines, tables and charts");
   study->require_subcommand(1);
   CLI::App* operations =
       study->add_subcommand("operations", "Counts the operations of every walk, a step and a ray");
   CLI::App* paper = study->add_subcommand("paper", "The tables and figures of the paper of 1992");
-  for (CLI::App* command : {operations, paper}) {
+  CLI::App* frames =
+      study->add_subcommand("frames", "The cycle \"build, render\" of each frame of an animated scene");
+  for (CLI::App* command : {operations, paper, frames}) {
     CLI::Option* config = command->add_option("CONFIG", arguments.config, "configuration file (TOML)");
     CLI::Option* directory =
         command->add_option("-o,--output", arguments.directory, "directory for tables, charts and report")
@@ -132,6 +141,7 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
   }
   operations->callback([&] { study_operations(arguments); });
   paper->callback([&] { study_paper(arguments); });
+  frames->callback([&] { study_frames(arguments); });
 }
 
 void list_scenes() {
@@ -222,7 +232,6 @@ int parse_and_run(int argc, char** argv) {
     studies::declare_paper_keys(schema);
     print(markdown ? sim::list_keys_as_markdown(schema) : sim::list_keys_as_text(schema));
   });
-
 
   SceneArguments scene_arguments;
   add_scene_commands(app, scene_arguments);

@@ -1,5 +1,5 @@
 // A sequence of frames: what moves between them, and the box around all.
-#include "studies/frames.h"
+#include "studies/frames/frame_sequence.h"
 
 #include <bit>
 #include <memory>
