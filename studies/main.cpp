@@ -17,11 +17,11 @@
 #include "sim/schema.h"
 #include "studies/frames/frames.h"
 #include "studies/image_file.h"
+#include "studies/operations/operations.h"
 #include "studies/output.h"
 #include "studies/paper/paper.h"
 #include "studies/paper/paper_keys.h"
 #include "studies/run_result.h"
-#include "studies/study_operations.h"
 #include "studies/version.h"
 
 namespace {
@@ -77,48 +77,27 @@ std::string no_empty_directory(const std::string& name) {
   return name.empty() ? "the name of a directory must not be empty" : "";
 }
 
-void study_operations(const StudyArguments& arguments) {
-  sim::Config config =
-      arguments.config.empty()
-          ? sim::Config::from_text(studies::run_schema(), "", "defaults", arguments.assignments)
-          : sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
-  const std::filesystem::path directory = arguments.directory;
-  if (!directory.empty()) {
-    studies::prepare_output(directory);
+// Runs a study; without a directory it only prints.
+template <class Study>
+void run_study(const StudyArguments& arguments, const sim::Schema& schema, const Study& study) {
+  sim::Config config = arguments.config.empty()
+                           ? sim::Config::from_text(schema, "", "defaults", arguments.assignments)
+                           : sim::Config::from_file(schema, arguments.config, arguments.assignments);
+  if (!arguments.directory.empty()) {
+    studies::prepare_output(arguments.directory);
   }
-  const studies::OperationsStudy study = studies::study_operations(config);
-  std::string text = studies::text_of(study);
-  if (!directory.empty()) {
-    for (const auto& [name, content] : {std::pair{"operations.csv", studies::operations_csv(study)},
-                                        std::pair{"unit_length.csv", studies::unit_length_csv(study)}}) {
-      sim::PendingFile file(directory / name);
-      sim::write_file(file.temporary(), content);
-      file.commit();
-      text += "wrote " + (directory / name).string() + "\n";
+  const studies::StudyOutput output = study(config);
+  std::string text = output.report;
+  if (!output.host_report.empty()) {
+    text += "\n" + output.host_report;
+  }
+  if (!arguments.directory.empty()) {
+    text += "\n";
+    for (const std::filesystem::path& file : studies::write_study(output, arguments.directory)) {
+      text += "wrote " + file.string() + "\n";
     }
   }
   print(text);
-}
-
-void write_and_print(const studies::StudyOutput& output, const std::string& directory) {
-  std::string text = output.report + "\n" + output.host_report + "\n";
-  for (const std::filesystem::path& file : studies::write_study(output, directory)) {
-    text += "wrote " + file.string() + "\n";
-  }
-  print(text);
-}
-
-void study_paper(const StudyArguments& arguments) {
-  sim::Config config =
-      sim::Config::from_file(studies::paper_schema(), arguments.config, arguments.assignments);
-  studies::prepare_output(arguments.directory);
-  write_and_print(studies::run_paper(config), arguments.directory);
-}
-
-void study_frames(const StudyArguments& arguments) {
-  sim::Config config = sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
-  studies::prepare_output(arguments.directory);
-  write_and_print(studies::run_frames(config), arguments.directory);
 }
 
 void add_study_commands(CLI::App& app, StudyArguments& arguments) {
@@ -139,9 +118,9 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
     command->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
         ->allow_extra_args(false);
   }
-  operations->callback([&] { study_operations(arguments); });
-  paper->callback([&] { study_paper(arguments); });
-  frames->callback([&] { study_frames(arguments); });
+  operations->callback([&] { run_study(arguments, studies::run_schema(), studies::run_operations); });
+  paper->callback([&] { run_study(arguments, studies::paper_schema(), studies::run_paper); });
+  frames->callback([&] { run_study(arguments, studies::run_schema(), studies::run_frames); });
 }
 
 void list_scenes() {

@@ -13,9 +13,10 @@
 
 namespace marti::studies {
 
-enum class Verdict : std::uint8_t { agrees, differs, not_measured };
+/// in_part: agrees, but not under the conditions that the paper recommends.
+enum class Verdict : std::uint8_t { agrees, in_part, differs, not_measured };
 
-/// "agrees", "differs", "not measured".
+/// "agrees", "in part", "differs", "not measured".
 [[nodiscard]] std::string_view name_of(Verdict verdict);
 
 struct Claim {

@@ -62,7 +62,7 @@ std::string head_of(const sim::Config& config, const PaperConfig& paper) {
   const accel::OctreeOptions& octree = paper.frame.structure_options.octree;
   return fmt::format(
       "Space subdivision as the paper of 1992 studied it\n"
-      "trees    at most {} triangles in a leaf, {} levels\n"
+      "trees    at most {} primitives in a leaf, {} levels\n"
       "images   {} x {}\n"
       "machine  {} node{} at {}, operations as \"{}\"\n",
       octree.max_objects, octree.max_level, paper.frame.render.width, paper.frame.render.height,

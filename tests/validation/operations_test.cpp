@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "studies/unit_length.h"
+#include "studies/operations/unit_length.h"
 
 namespace marti::studies {
 namespace {

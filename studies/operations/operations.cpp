@@ -1,4 +1,4 @@
-#include "studies/study_operations.h"
+#include "studies/operations/operations.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include "studies/frame_keys.h"
 #include "studies/image_file.h"
 #include "studies/machine_keys.h"
+#include "studies/results/provenance.h"
 
 namespace marti::studies {
 
@@ -47,7 +48,7 @@ processors::RenderOptions shrink(processors::RenderOptions options, double side)
 
 }  // namespace
 
-OperationsStudy study_operations(sim::Config& config) {
+OperationsStudy count_operations(sim::Config& config) {
   const FrameConfig frame = read_frame(config);
   static_cast<void>(read_machine(config));
   config.refuse_unused();
@@ -85,6 +86,12 @@ OperationsStudy study_operations(sim::Config& config) {
   }
   study.lengths = measure_unit_lengths(deepest, unit_length_rays);
   return study;
+}
+
+StudyOutput run_operations(sim::Config& config) {
+  StudyOutput output = output_of(count_operations(config));
+  output.tables.push_back(provenance_table(config.effective_values()));
+  return output;
 }
 
 }  // namespace marti::studies

@@ -7,7 +7,8 @@
 
 #include "processors/operation_mix.h"
 #include "sim/config.h"
-#include "studies/unit_length.h"
+#include "studies/operations/unit_length.h"
+#include "studies/results/study_files.h"
 
 namespace marti::studies {
 
@@ -33,13 +34,13 @@ struct OperationsStudy {
 /// Counts all walks over the configured scene. Its image is made small, because counting is slow and brute
 /// force slower. Every structure is built whatever structure.kind is. Reads a configuration of `marti run`,
 /// whose machine it checks and does not use. Throws UserError as that does.
-[[nodiscard]] OperationsStudy study_operations(sim::Config& config);
+[[nodiscard]] OperationsStudy count_operations(sim::Config& config);
 
-/// The tables, for people.
-[[nodiscard]] std::string text_of(const OperationsStudy& study);
-/// One line for each walk and kind of step: walk, mailboxes, step, steps_per_ray, then operations a step.
-[[nodiscard]] std::string operations_csv(const OperationsStudy& study);
-/// One line for each depth, per unit length.
-[[nodiscard]] std::string unit_length_csv(const OperationsStudy& study);
+/// Report and tables: "operations" has a row for each walk and kind of step, "unit_length" one for each depth
+/// and structure.
+[[nodiscard]] StudyOutput output_of(const OperationsStudy& study);
+
+/// The study: both, and where its numbers come from.
+[[nodiscard]] StudyOutput run_operations(sim::Config& config);
 
 }  // namespace marti::studies

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <string_view>
 
-#include "studies/study_operations.h"
+#include "studies/operations/operations.h"
 
 namespace marti::studies {
 
@@ -33,7 +33,7 @@ struct StepRow {
   Operations operations;
 };
 
-/// Setting up, branch, leaf, look-up, test, and what a ray takes without and with its tests.
+/// Setting up, branch, leaf, look-up, tests by kind, and what a ray takes without and with its tests.
 std::vector<StepRow> steps_of(const WalkRow& row) {
   const processors::LogTotals& steps = row.measured.steps;
   const processors::OperationMixes& mixes = row.measured.mixes;
@@ -50,7 +50,9 @@ std::vector<StepRow> steps_of(const WalkRow& row) {
                                {"branch", per_ray(steps.branches), of(mixes.branch)},
                                {"leaf", per_ray(steps.leaves), of(mixes.leaf)},
                                {"lookup", per_ray(steps.lookups), of(mixes.lookup)},
-                               {"test", per_ray(steps.tests), of(mixes.test)}};
+                               {"test", per_ray(row.measured.tests[0]), of(mixes.test)},
+                               {"sphere_test", per_ray(row.measured.tests[1]), of(mixes.sphere_test)},
+                               {"cone_test", per_ray(row.measured.tests[2]), of(mixes.cone_test)}};
   Operations walk{};
   Operations all{};
   for (const StepRow& step : rows) {
@@ -85,7 +87,7 @@ void walk_lines(Lines out, const OperationsStudy& study) {
 }
 
 void step_lines(Lines out, const OperationsStudy& study) {
-  fmt::format_to(out, "\n{:<33}{:<8}{:>9} |", "walk", "step", "a ray");
+  fmt::format_to(out, "\n{:<33}{:<12}{:>9} |", "walk", "step", "a ray");
   for (const std::string_view name : operation_names) {
     fmt::format_to(out, "{:>12}", name);
   }
@@ -98,7 +100,7 @@ void step_lines(Lines out, const OperationsStudy& study) {
       if (step.per_ray == 0.0) {
         continue;
       }
-      fmt::format_to(out, "{:<33}{:<8}{:>9.2f} |", row.name, step.name, step.per_ray);
+      fmt::format_to(out, "{:<33}{:<12}{:>9.2f} |", row.name, step.name, step.per_ray);
       for (const double count : step.operations) {
         fmt::format_to(out, "{:>12.3f}", count);
       }
@@ -145,8 +147,6 @@ void length_lines(Lines out, const OperationsStudy& study) {
       "add+cmp: floating-point additions and comparisons counted; multiplications are in the table\n");
 }
 
-}  // namespace
-
 std::string text_of(const OperationsStudy& study) {
   std::string text;
   const Lines out = std::back_inserter(text);
@@ -156,45 +156,73 @@ std::string text_of(const OperationsStudy& study) {
   return text;
 }
 
-std::string operations_csv(const OperationsStudy& study) {
-  std::string text = "walk,mailboxes,nodes,entries,step,steps_per_ray";
-  const Lines out = std::back_inserter(text);
+void add_operation_columns(std::vector<Column>& columns, std::string_view of_what) {
   for (const std::string_view name : operation_names) {
-    fmt::format_to(out, ",{}", name);
+    columns.push_back({std::string(name), ColumnType::real, "1",
+                       std::string(name == "integer" ? "integer and logic operations" : name) + ", " +
+                           std::string(of_what)});
   }
-  for (const WalkRow& row : study.walks) {
-    for (const StepRow& step : steps_of(row)) {
-      fmt::format_to(out, "\n\"{}\",{},{},{},{},{:.6f}", row.name, row.mailboxes ? 1 : 0, row.nodes,
-                     row.entries, step.name, step.per_ray);
-      for (const double count : step.operations) {
-        fmt::format_to(out, ",{:.3f}", count);
-      }
-    }
-  }
-  return text + "\n";
 }
 
-std::string unit_length_csv(const OperationsStudy& study) {
-  std::string text = "depth,width,structure,predicted_nodes,nodes,branches,leaves";
-  const Lines out = std::back_inserter(text);
-  for (const std::string_view name : operation_names) {
-    fmt::format_to(out, ",{}", name);
+Table step_table(const OperationsStudy& study) {
+  std::vector<Column> columns = {
+      {"walk", ColumnType::text, "", "structure and walk"},
+      {"mailboxes", ColumnType::integer, "1", "1 with mailboxes, else 0"},
+      {"nodes", ColumnType::integer, "1", "nodes of the structure"},
+      {"entries", ColumnType::integer, "1", "primitives listed in its leaves"},
+      {"step", ColumnType::text, "",
+       "kind of step; walk: all branches and leaves of a ray; all: the whole ray"},
+      {"steps_per_ray", ColumnType::real, "1", "steps of the kind that a ray takes, on average"}};
+  add_operation_columns(columns, "on average, of one step");
+  Table table("operations", "Operations of each walk", std::move(columns));
+  for (const WalkRow& row : study.walks) {
+    for (const StepRow& step : steps_of(row)) {
+      std::vector<Cell> cells = {row.name,
+                                 count_cell(row.mailboxes ? 1 : 0),
+                                 count_cell(row.nodes),
+                                 count_cell(row.entries),
+                                 std::string(step.name),
+                                 step.per_ray};
+      cells.insert(cells.end(), step.operations.begin(), step.operations.end());
+      table.add_row(std::move(cells));
+    }
   }
+  return table;
+}
+
+Table length_table(const OperationsStudy& study) {
+  std::vector<Column> columns = {
+      {"depth", ColumnType::integer, "1", "levels of the octree"},
+      {"width", ColumnType::integer, "1", "finest cells along an axis"},
+      {"structure", ColumnType::text, "", "what the rays walk through"},
+      {"predicted_nodes", ColumnType::real, "1", "nodes per unit length by the argument; none for a surface"},
+      {"nodes", ColumnType::real, "1", "nodes visited per unit length, the width of the finest cell"},
+      {"branches", ColumnType::real, "1", "of these, branches"},
+      {"leaves", ColumnType::real, "1", "of these, leaves"}};
+  add_operation_columns(columns, "of the walk per unit length");
+  Table table("unit_length", "Operations per unit length of a ray", std::move(columns));
   for (const UnitLengthRow& row : study.lengths) {
     const auto unit = [&](std::uint64_t count) { return static_cast<double>(count) / row.length; };
-    const auto line = [&](std::string_view name, const std::string& predicted, std::uint64_t branches,
+    const auto line = [&](const char* name, const Cell& predicted, std::uint64_t branches,
                           std::uint64_t leaves, const accel::OperationCounts& c) {
-      fmt::format_to(out, "\n{},{},{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}",
-                     row.depth, row.width, name, predicted, unit(branches + leaves), unit(branches),
-                     unit(leaves), unit(c.add), unit(c.multiply), unit(c.divide), unit(c.square_root),
-                     unit(c.compare), unit(c.integer));
+      table.add_row({count_cell(row.depth), count_cell(row.width), std::string(name), predicted,
+                     unit(branches + leaves), unit(branches), unit(leaves), unit(c.add), unit(c.multiply),
+                     unit(c.divide), unit(c.square_root), unit(c.compare), unit(c.integer)});
     };
-    line("grid", "1.5", 0, row.cells, row.grid);
-    line("full octree", fmt::format("{:.6f}", predicted_full(row)), row.full_branches, row.full_leaves,
-         row.full);
-    line("surface octree", "", row.surface_branches, row.surface_leaves, row.surface);
+    line("grid", 1.5, 0, row.cells, row.grid);
+    line("full octree", predicted_full(row), row.full_branches, row.full_leaves, row.full);
+    line("surface octree", {}, row.surface_branches, row.surface_leaves, row.surface);
   }
-  return text + "\n";
+  return table;
+}
+
+}  // namespace
+
+StudyOutput output_of(const OperationsStudy& study) {
+  StudyOutput output;
+  output.tables = {step_table(study), length_table(study)};
+  output.report = text_of(study);
+  return output;
 }
 
 }  // namespace marti::studies

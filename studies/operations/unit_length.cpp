@@ -1,4 +1,4 @@
-#include "studies/unit_length.h"
+#include "studies/operations/unit_length.h"
 
 #include <algorithm>
 #include <cmath>
