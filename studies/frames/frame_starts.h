@@ -2,7 +2,8 @@
 //
 // The timing world knows one way to make a node's children: to split it, from its whole list, and to write
 // the records and lists of all its children. So a node whose moved triangles alone are sorted anew
-// (accel::NodeUpdate::resorted) is charged as if it were split: more than it takes, never less.
+// (accel::NodeUpdate::resorted) is charged as if it were split: more than it takes, unless almost all of its
+// triangles moved.
 // What it charges for neither: finding what moved, and gathering again the list of a branch from the leaves
 // below it.
 #pragma once
