@@ -45,6 +45,21 @@ Builders builders_of(const TreeCopies& copies, std::uint32_t lazy, std::uint32_t
   return builders;
 }
 
+// Of each tree node whether it is a branch whose children every copy has.
+std::vector<std::uint8_t> built_branches(const accel::Topology& topology, const TreePlan& plan,
+                                         const TreeCopies& copies) {
+  std::vector<std::uint8_t> built(topology.nodes.size());
+  for (std::uint32_t node = 0; node < built.size(); ++node) {
+    const std::uint32_t lazy = plan.place(node).lazy;
+    bool all = !topology.nodes[node].leaf;
+    for (std::uint32_t copy = 0; all && lazy != TreePlan::none && copy < copies.copies(); ++copy) {
+      all = copies.built(copy, lazy);
+    }
+    built[node] = all ? 1 : 0;
+  }
+  return built;
+}
+
 }  // namespace
 
 BuildCounts BuildResult::counts() const {
@@ -84,6 +99,9 @@ BuildResult report_build(const ReplayInput& input, const TreeCopies& copies) {
   result.levels.resize(deepest);
   count_visits(input.log, result.levels);
 
+  if (input.report_built) {
+    result.built = built_branches(topology, plan, copies);
+  }
   // Trees in which a node is there, by the lazy number of its parent.
   std::vector<std::int64_t> trees_with(plan.lazy().size());
   for (std::uint32_t number = 0; number < topology.nodes.size(); ++number) {

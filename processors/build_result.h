@@ -92,6 +92,9 @@ struct BuildResult {
   std::int64_t trees = 0;          ///< copies of what is below it
   std::vector<BuildLevel> levels;  ///< levels[i] is level i + 1; empty when the tree is given
   std::vector<BuildCounts> nodes;  ///< one a processor node; empty when the tree is given
+  /// Of each tree node 1 for a branch whose children are there in every copy of the tree at the end, else 0:
+  /// what the next frame can begin with. Empty unless ReplayOptions::report_built asks for it.
+  std::vector<std::uint8_t> built{};
 
   [[nodiscard]] BuildCounts counts() const;
   [[nodiscard]] BuildLevel all_levels() const;

@@ -94,8 +94,10 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   sim::Engine engine;
   engine.reserve(std::size_t{config.all_nodes()} + 1);
   Host host(config.host, packets.size(), config.all_nodes());
-  const std::unique_ptr<NodeArray> nodes = make_node_array(
-      {log, config, layout, packets, rank, options.step_by_step, plan ? &*plan : nullptr}, engine, host);
+  const std::unique_ptr<NodeArray> nodes =
+      make_node_array({log, config, layout, packets, rank, options.step_by_step, plan ? &*plan : nullptr,
+                       options.report_built},
+                      engine, host);
 
   std::vector<std::unique_ptr<memory::Interconnect>> interconnects;
   std::vector<memory::Interconnect*> links;

@@ -21,6 +21,7 @@ struct ReplayInput {
   std::span<const std::uint32_t> node_rank;  ///< record number of each tree node; empty: its own number
   bool step_by_step = false;                 ///< an event for every reference
   const TreePlan* tree = nullptr;            ///< how the tree is built; null when it is given
+  bool report_built = false;                 ///< say which branches are built at the end
 };
 
 }  // namespace marti::processors

@@ -31,6 +31,16 @@ void read_initial_level(const sim::Config& config, BuildConfig& build) {
   }
 }
 
+// Where the initial tree ends, in all its keys.
+void read_initial_tree(sim::Config& config, BuildConfig& build) {
+  read_initial_level(config, build);
+  if (build.initial == InitialTree::rule) {
+    build.rule_k = config.real("build.rule_k");
+  }
+  config.mark_unused_reason("build.rule_k", "it has no effect without build.initial_level = \"rule\"",
+                            "build.initial_level");
+}
+
 }  // namespace
 
 void declare_build_keys(sim::Schema& schema) {
@@ -73,12 +83,21 @@ BuildConfig read_build(sim::Config& config) {
     config.mark_unused_reason("build", chosen, "build.sharing");
     return build;
   }
-  read_initial_level(config, build);
-  if (build.initial == InitialTree::rule) {
-    build.rule_k = config.real("build.rule_k");
+  read_initial_tree(config, build);
+  return build;
+}
+
+BuildConfig read_dynamic_build(sim::Config& config) {
+  BuildConfig build = read_build(config);
+  if (build.sharing == Sharing::shared || build.sharing == Sharing::private_trees) {
+    return build;
   }
-  config.mark_unused_reason("build.rule_k", "it has no effect without build.initial_level = \"rule\"",
-                            "build.initial_level");
+  if (config.given("build.sharing")) {
+    config.fail("build.sharing", "the study builds on demand: it must be \"shared\" or \"private\"");
+  }
+  build.sharing =
+      config.choice_name("database.placement") == "replicated" ? Sharing::private_trees : Sharing::shared;
+  read_initial_tree(config, build);
   return build;
 }
 

@@ -14,4 +14,9 @@ void declare_build_keys(sim::Schema& schema);
 /// tree to share.
 [[nodiscard]] processors::BuildConfig read_build(sim::Config& config);
 
+/// For studies that build on demand whatever the machine does by itself: as read_build, but without
+/// `build.sharing` the tree is shared, or private where each node has a database. Throws UserError too when
+/// it is "given" or "none". Call it after read_machine.
+[[nodiscard]] processors::BuildConfig read_dynamic_build(sim::Config& config);
+
 }  // namespace marti::studies

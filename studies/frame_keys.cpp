@@ -60,6 +60,10 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.integer("frames.first", 0, {0, 1'000'000'000}, "",
                  "number of the first; frame i shows the animation at i / rate seconds");
   schema.real("frames.rate", 24.0, {1e-6, 1e6}, "frames a second", "frames of a second of the animation");
+  schema.boolean(
+      "frames.verify", true,
+      "`marti study frames` only: render every frame once more with a tree built from nothing, and "
+      "compare the images");
   schema.section("image", "the image and the rays it takes");
   schema.integer("image.width", 512, {1, 32768}, "pixels", "columns");
   schema.integer("image.height", 512, {1, 32768}, "pixels", "rows");
@@ -117,6 +121,7 @@ FrameConfig read_frame(sim::Config& config) {
   frame.frames.first = static_cast<std::uint32_t>(config.integer("frames.first"));
   frame.frames.rate = config.real("frames.rate");
   frame.open.gltf.time = frame.frames.time(0);
+  config.mark_unused_reason("frames.verify", "only `marti study frames` renders frames twice");
   frame.render.width = static_cast<std::uint32_t>(config.integer("image.width"));
   frame.render.height = static_cast<std::uint32_t>(config.integer("image.height"));
   frame.render.max_depth = static_cast<std::uint32_t>(config.integer("image.max_depth"));

@@ -13,8 +13,13 @@ namespace marti::studies {
 
 namespace {
 
+// A rendering of at most this many pixels a side is made without asking what it takes.
+constexpr std::uint32_t sample_side = 64;
+
+}  // namespace
+
 // FNV-1a (Fowler, Noll, Vo) over the bits of all pixels.
-std::uint64_t hash_of(const processors::Image& image) {
+std::uint64_t image_hash(const processors::Image& image) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   for (const glm::vec3& pixel : image.pixels) {
     for (int channel = 0; channel < 3; ++channel) {
@@ -23,9 +28,6 @@ std::uint64_t hash_of(const processors::Image& image) {
   }
   return hash;
 }
-
-// A rendering of at most this many pixels a side is made without asking what it takes.
-constexpr std::uint32_t sample_side = 64;
 
 // Bytes of log and image, scaled up from a small rendering of the same view. Doubled, because a row grows
 // by doubling and the coarse sample may miss what is expensive.
@@ -54,8 +56,6 @@ void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
   }
 }
 
-}  // namespace
-
 FunctionalRun run_functional(const FrameConfig& config) {
   const scenes::Scene scene = scenes::open_scene(config.scene, config.open, decode_image);
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
@@ -75,7 +75,7 @@ FunctionalRun run_functional(const FrameConfig& config) {
   options.record = true;
   run.frame = processors::render(scene, *triangles, *structure, options);
   run.totals = processors::totals_of(*run.frame.log);
-  run.image_hash = hash_of(run.frame.image);
+  run.image_hash = image_hash(run.frame.image);
   if (options.voxel_cut > 0.0) {
     VoxelReport& report = run.voxel_cut.emplace();
     report.use = database_use(*run.frame.log);

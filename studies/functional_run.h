@@ -25,6 +25,14 @@ struct FunctionalRun {
   std::uint64_t image_hash = 0;          ///< of the pixels' bits
 };
 
+/// FNV-1a (Fowler, Noll, Vo) over the bits of all pixels.
+[[nodiscard]] std::uint64_t image_hash(const processors::Image& image);
+
+/// Throws UserError when the frame's image and log would take more than the memory limit, by an estimate
+/// from a small rendering.
+void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
+                          const accel::TriangleSet& triangles, const accel::Structure& structure);
+
 /// Opens the scene, builds the structure, renders and records. Throws UserError when the scene cannot be
 /// used or the frame would take more than the memory limit, which it estimates from a small rendering.
 [[nodiscard]] FunctionalRun run_functional(const FrameConfig& config);

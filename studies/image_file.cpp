@@ -51,6 +51,8 @@ void write_exr(const processors::Image& image, const std::filesystem::path& file
   OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 3,
                        OIIO::TypeDesc::FLOAT);
   spec.attribute("compression", "zip");
+  // Without a date the library writes that of today, and equal images would be different files.
+  spec.attribute("DateTime", "1970:01:01 00:00:00");
   write(file, spec, OIIO::TypeDesc::FLOAT, image.pixels.data());
 }
 

@@ -12,7 +12,8 @@
 
 namespace marti::studies {
 
-/// Writes 32-bit float linear RGB as OpenEXR. Throws UserError when the file cannot be written.
+/// Writes 32-bit float linear RGB as OpenEXR, without a date that means anything: equal images are equal
+/// files. Throws UserError when the file cannot be written.
 void write_exr(const processors::Image& image, const std::filesystem::path& file);
 
 /// Writes 8-bit sRGB-encoded PNG; values are clamped to 0..1. Throws UserError likewise.

@@ -15,6 +15,7 @@
 #include "sim/error.h"
 #include "sim/files.h"
 #include "sim/schema.h"
+#include "studies/frames/frames.h"
 #include "studies/image_file.h"
 #include "studies/operations/operations.h"
 #include "studies/output.h"
@@ -105,7 +106,9 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
   CLI::App* operations =
       study->add_subcommand("operations", "Counts the operations of every walk, a step and a ray");
   CLI::App* paper = study->add_subcommand("paper", "The tables and figures of the paper of 1992");
-  for (CLI::App* command : {operations, paper}) {
+  CLI::App* frames =
+      study->add_subcommand("frames", "The cycle \"build, render\" of each frame of an animated scene");
+  for (CLI::App* command : {operations, paper, frames}) {
     CLI::Option* config = command->add_option("CONFIG", arguments.config, "configuration file (TOML)");
     CLI::Option* directory =
         command->add_option("-o,--output", arguments.directory, "directory for tables, charts and report")
@@ -117,6 +120,7 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
   }
   operations->callback([&] { run_study(arguments, studies::run_schema(), studies::run_operations); });
   paper->callback([&] { run_study(arguments, studies::paper_schema(), studies::run_paper); });
+  frames->callback([&] { run_study(arguments, studies::run_schema(), studies::run_frames); });
 }
 
 void list_scenes() {

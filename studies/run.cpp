@@ -23,7 +23,8 @@ void refuse_several_frames(const sim::Config& config, const FrameRange& frames) 
   if (frames.count > 1) {
     config.fail("frames.count",
                 std::to_string(frames.count) +
-                    " frames are asked for, but `marti run` renders one, frames.first: set frames.count = 1");
+                    " frames are asked for, but `marti run` renders one, frames.first: set frames.count = 1, or "
+                    "use `marti study frames`");
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "sim/error.h"
 #include "sim/files.h"
+#include "studies/image_file.h"
 #include "studies/results/chart.h"
 #include "studies/results/csv.h"
 #include "studies/results/sqlite.h"
@@ -61,6 +62,10 @@ std::vector<fs::path> write_study(const StudyOutput& output, const fs::path& dir
         files.write(std::string(chart.name) + ".vl.json", fill_chart(chart, table));
       }
     }
+  }
+  for (const StudyImage& image : output.images) {
+    write_exr(image.image, files.add(image.name + ".exr"));
+    write_png(image.image, files.add(image.name + ".png"));
   }
   files.write("report.txt", output.report);
   if (!output.host_report.empty()) {

@@ -5,20 +5,28 @@
 #include <string>
 #include <vector>
 
+#include "processors/program/image.h"
 #include "studies/results/table.h"
 
 namespace marti::studies {
 
+struct StudyImage {
+  std::string name;  ///< of its files, without .exr and .png
+  processors::Image image;
+};
+
 struct StudyOutput {
-  std::vector<Table> tables;       ///< the same input gives the same rows
-  std::vector<Table> host_tables;  ///< measured on the host: they differ from run to run
-  std::string report;              ///< for people; the same input gives the same text
-  std::string host_report;         ///< for people; what was measured on the host
+  std::vector<Table> tables;         ///< the same input gives the same rows
+  std::vector<Table> host_tables;    ///< measured on the host: they differ from run to run
+  std::string report;                ///< for people; the same input gives the same text
+  std::string host_report;           ///< for people; what was measured on the host
+  std::vector<StudyImage> images{};  ///< the same input gives the same pixels
 };
 
 /// Writes into `directory`, which must exist:
 ///   NAME.csv for each table, and columns.csv with unit and meaning of every column;
 ///   NAME.vl.json for each chart whose table is among `tables` and has rows;
+///   NAME.exr and NAME.png for each image;
 ///   report.txt, and host.txt unless host_report is empty;
 ///   results.sqlite with all tables and their columns.
 /// Only host.txt, the host tables' files and results.sqlite differ between two equal runs. All files are

@@ -1,111 +1,162 @@
-// A sequence of frames: what moves between them, and the box around all.
-#include "studies/frames.h"
-
-#include <bit>
-#include <memory>
-#include <set>
-#include <string>
-#include <vector>
+// The study of frames as a whole.
+#include "studies/frames/frames.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
-#include "scenes/open.h"
-#include "scenes/procedural.h"
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/config.h"
+#include "sim/error.h"
+#include "studies/frames/frames_config.h"
+#include "studies/functional_run.h"
+#include "studies/results/csv.h"
+#include "studies/run_result.h"
+#include "tests/support/user_error.h"
 
 namespace marti::studies {
 namespace {
 
-FrameConfig swing(std::uint32_t count, std::uint32_t first, double rate) {
-  FrameConfig config;
-  config.scene = std::string(MARTI_SOURCE) + "/configs/scenes/swing.glb";
-  config.frames = {count, first, rate};
-  return config;
+const std::string swing = "[scene]\nsource = \"" MARTI_SOURCE "/configs/scenes/swing.glb\"\n";
+const std::string small =
+    "[frames]\ncount = 3\nfirst = 2\nrate = 8\n[image]\nwidth = 32\nheight = 24\nmax_depth = 2\n"
+    "[machine]\nnodes = 3\n";
+
+StudyOutput run(const std::string& text, int threads = 2) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+  sim::Config config = sim::Config::from_text(run_schema(), text, "frames.toml");
+  return run_frames(config);
 }
 
-TEST(FrameSequence, FramesComeInOrderAtTheirTimes) {
-  const FrameSequence sequence(swing(5, 3, 16.0));
-  EXPECT_EQ(sequence.size(), 5U);
-  std::vector<std::uint32_t> numbers;
-  sequence.visit([&](const PosedFrame& frame) {
-    numbers.push_back(frame.number);
-    EXPECT_EQ(frame.seconds, frame.number / 16.0);
-    const scenes::Scene pose = sequence.scene().at(frame.seconds);
-    EXPECT_TRUE(scenes::moved_primitives(pose, frame.scene).empty());
-  });
-  EXPECT_EQ(numbers, (std::vector<std::uint32_t>{3, 4, 5, 6, 7}));
-}
-
-TEST(FrameSequence, WhatIsNotListedHasNotMoved) {
-  const FrameSequence sequence(swing(8, 0, 8.0));
-  std::vector<scenes::Scene> poses;
-  std::uint32_t frames_that_moved = 0;
-  sequence.visit([&](const PosedFrame& frame) {
-    poses.push_back(frame.scene);
-    if (poses.size() == 1) {
-      EXPECT_TRUE(frame.moved.empty());
-      return;
+const Table& table_of(const StudyOutput& output, std::string_view name) {
+  for (const Table& table : output.tables) {
+    if (table.name() == name) {
+      return table;
     }
-    const scenes::Scene& before = poses[poses.size() - 2];
-    std::set<std::uint32_t> moved(frame.moved.begin(), frame.moved.end());
-    EXPECT_EQ(moved.size(), frame.moved.size());
-    for (std::uint32_t id = 0; id < frame.scene.triangles.size(); ++id) {
-      bool same = true;
-      for (std::size_t k = 0; k < 3; ++k) {
-        for (int axis = 0; axis < 3; ++axis) {
-          const double a = before.positions[before.triangles[id].vertex[k]][axis];
-          const double b = frame.scene.positions[frame.scene.triangles[id].vertex[k]][axis];
-          same = same && std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-        }
-      }
-      EXPECT_EQ(same, !moved.contains(id)) << id;
-    }
-    frames_that_moved += frame.moved.empty() ? 0U : 1U;
-    EXPECT_LT(frame.moved.size(), frame.scene.triangles.size() / 2) << "most of the scene stands still";
-  });
-  EXPECT_EQ(frames_that_moved, 7U);
-}
-
-TEST(FrameSequence, TheBoxIsTightAroundAllFrames) {
-  const FrameSequence sequence(swing(8, 0, 8.0));
-  scenes::Bounds all;
-  sequence.visit([&](const PosedFrame& frame) {
-    const scenes::Bounds bounds = scenes::bounds_of(frame.scene);
-    all.include(bounds.lo);
-    all.include(bounds.hi);
-  });
-  EXPECT_EQ(all.lo, sequence.bounds().lo);
-  EXPECT_EQ(all.hi, sequence.bounds().hi);
-}
-
-/// One triangle whose first corner is at the time.
-class Rising : public scenes::PoseSource {
- public:
-  [[nodiscard]] scenes::Scene at(double seconds) const override {
-    scenes::Scene scene;
-    scene.positions = {{seconds, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    scene.triangles = {{{0, 1, 2}, 0, 0}};
-    return scene;
   }
-  [[nodiscard]] bool moves() const override { return true; }
-  [[nodiscard]] double duration() const override { return 100.0; }
-  [[nodiscard]] scenes::MotionFacts facts() const override { return {}; }
+  throw sim::InternalError("there is no table " + std::string(name));
+}
+
+TEST(Frames, GivesTheSameBytesAtAnyNumberOfThreads) {
+  const StudyOutput one = run(swing + small, 1);
+  const StudyOutput two = run(swing + small, 2);
+  ASSERT_EQ(one.tables.size(), two.tables.size());
+  for (std::size_t i = 0; i < one.tables.size(); ++i) {
+    EXPECT_EQ(csv_of(one.tables[i]), csv_of(two.tables[i])) << one.tables[i].name();
+  }
+  EXPECT_EQ(one.report, two.report);
+  ASSERT_EQ(one.images.size(), 3U);
+  for (std::size_t i = 0; i < one.images.size(); ++i) {
+    EXPECT_EQ(one.images[i].image.pixels, two.images[i].image.pixels);
+  }
+}
+
+TEST(Frames, ImagesAreThoseOfRunsOfOneFrame) {
+  for (const char* walk : {"", "[structure]\nmailboxes = true\n"}) {
+    const StudyOutput study = run(swing + small + walk);
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      sim::Config config = sim::Config::from_text(
+          run_schema(), swing + small + walk, "frames.toml",
+          std::vector<std::string>{"frames.count=1", "frames.first=" + std::to_string(2 + i)});
+      const FunctionalRun one = run_functional(read_frame(config));
+      EXPECT_EQ(study.images[i].name, "frame-000" + std::to_string(2 + i));
+      EXPECT_EQ(study.images[i].image.pixels, one.frame.image.pixels);
+    }
+  }
+}
+
+TEST(Frames, VerifyingChangesNothingElse) {
+  const StudyOutput with = run(swing + small);
+  const StudyOutput without = run(swing + "[frames]\nverify = false\n" + small.substr(9));
+  for (const char* name : {"frames", "cycles", "totals"}) {
+    EXPECT_EQ(csv_of(table_of(with, name)), csv_of(table_of(without, name))) << name;
+  }
+  EXPECT_NE(with.report, without.report) << "it says whether the images were compared";
+}
+
+TEST(Frames, TheVoxelCutIsVerifiedWithTheSameCells) {
+  const StudyOutput cut =
+      run(swing + "[frames]\ncount = 2\n[image]\nwidth = 32\nheight = 24\nmax_depth = 2\nvoxel_cut = 2.0\n");
+  EXPECT_EQ(cut.images.size(), 2U);
+}
+
+TEST(Frames, TotalsAreSumsOfCycles) {
+  const StudyOutput output = run(swing + small);
+  const Table& cycles = table_of(output, "cycles");
+  const Table& totals = table_of(output, "totals");
+  ASSERT_EQ(cycles.rows().size(), 12U);
+  ASSERT_EQ(totals.rows().size(), 4U);
+  for (const char* column : {"build", "render", "cycle", "building", "splits"}) {
+    for (std::size_t way = 0; way < 4; ++way) {
+      std::int64_t sum = 0;
+      for (std::size_t frame = 0; frame < 3; ++frame) {
+        EXPECT_EQ(cycles.at(4 * frame + way, "way"), totals.at(way, "way"));
+        sum += std::get<std::int64_t>(cycles.at(4 * frame + way, column));
+      }
+      EXPECT_EQ(std::get<std::int64_t>(totals.at(way, column)), sum) << column;
+    }
+  }
+}
+
+TEST(Frames, AStillSceneIsKept) {
+  const StudyOutput output = run("[scene]\nsource = \"tetra:3\"\n" + small);
+  const Table& frames = table_of(output, "frames");
+  for (std::size_t row = 1; row < frames.rows().size(); ++row) {
+    EXPECT_EQ(std::get<double>(frames.at(row, "kept")), 1.0);
+    EXPECT_EQ(frames.at(row, "image_hash"), frames.at(0, "image_hash"));
+  }
+  const StudyOutput one = run("[scene]\nsource = \"tetra:3\"\n[image]\nwidth = 16\nheight = 16\n");
+  EXPECT_EQ(table_of(one, "frames").rows().size(), 1U);
+  EXPECT_EQ(table_of(one, "totals").at(0, "later_saved"), Cell());
+}
+
+TEST(Frames, TreesAreSharedUnlessToldOtherwise) {
+  const auto sharing = [](const std::string& text) {
+    sim::Config config = sim::Config::from_text(run_schema(), text, "frames.toml");
+    return read_frames(config).machine.build;
+  };
+  EXPECT_EQ(sharing("").sharing, processors::Sharing::shared);
+  EXPECT_EQ(sharing("[build]\ninitial_level = \"3\"\n").level, 3U);
+  EXPECT_EQ(sharing("[build]\nrule_k = 3.0\n").rule_k, 3.0);
+  EXPECT_EQ(sharing("[build]\nsharing = \"private\"\n").sharing, processors::Sharing::private_trees);
+  EXPECT_EQ(sharing("[database]\nplacement = \"replicated\"\n").sharing, processors::Sharing::private_trees);
+}
+
+struct Wrong {
+  std::string text;
+  std::vector<std::string> complaint;
 };
 
-TEST(FrameSequence, TheBoxHoldsWhatOnlyMiddleFramesReach) {
-  const FrameSequence sequence(scenes::AnimatedScene(std::make_shared<Rising>()), {4, 2, 0.5});
-  EXPECT_EQ(sequence.bounds().hi.x, 10.0) << "frames 2 to 5 at two seconds each";
-  EXPECT_EQ(sequence.bounds().lo.x, 0.0);
-}
-
-TEST(FrameSequence, AStillSceneHasOnePose) {
-  const FrameSequence sequence(scenes::AnimatedScene(scenes::make_procedural("tetra:2")), {3, 1, 24.0});
-  std::uint32_t frames = 0;
-  sequence.visit([&](const PosedFrame& frame) {
-    ++frames;
-    EXPECT_TRUE(frame.moved.empty());
-    EXPECT_EQ(frame.scene.triangles.size(), 16U);
-  });
-  EXPECT_EQ(frames, 3U);
+TEST(Frames, WrongConfigurationsAreRefused) {
+  const std::vector<Wrong> cases = {
+      {"[frames]\ncount = 0\n", {"frames.toml:2", "frames.count"}},
+      {"[frames]\ncount = 2000000\n", {"frames.toml:2", "frames.count"}},
+      {"[frames]\ncount = 1000000\n", {"frames.toml:2", "frames.count", "host_machine.memory_limit"}},
+      {"[frames]\nverify = 1\n", {"frames.toml:2", "frames.verify"}},
+      {"[structure]\nkind = \"bsp\"\n", {"frames.toml:2", "structure.kind", "octree"}},
+      {"[build]\nsharing = \"given\"\n", {"frames.toml:2", "build.sharing", "shared"}},
+      {"[build]\nsharing = \"none\"\n", {"frames.toml:2", "build.sharing", "private"}},
+      {"[build]\ninitial_level = \"0\"\n", {"frames.toml:2", "build.initial_level"}},
+      {"[build]\ninitial_level = \"full\"\nrule_k = 3.0\n", {"frames.toml:3", "build.rule_k"}},
+      {"[build]\nsharing = \"shared\"\n[database]\nplacement = \"replicated\"\n",
+       {"frames.toml:2", "build.sharing", "private"}},
+      {"[image]\nvoxel_cut = 1.0\nvoxel_cut_reference = true\n",
+       {"frames.toml:3", "image.voxel_cut_reference"}},
+      {"[machine]\nnodes = 65536\n[cache]\nsize = \"16 MiB\"\n", {"frames.toml:2", "machine.nodes"}},
+      {"[scene]\nsource = \"no.glb\"\n", {"no.glb"}},
+      {"[scene]\nsource = \"teapott:2\"\n", {"teapot"}},
+      {"[host_machine]\nmemory_limit = \"4 MiB\"\n", {"memory_limit"}},
+  };
+  for (const Wrong& wrong : cases) {
+    const std::string message = test::user_error_of([&] { run(wrong.text); });
+    for (const std::string& part : wrong.complaint) {
+      EXPECT_NE(message.find(part), std::string::npos) << wrong.text << "\n" << message;
+    }
+  }
 }
 
 }  // namespace

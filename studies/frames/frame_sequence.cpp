@@ -1,4 +1,4 @@
-#include "studies/frames.h"
+#include "studies/frames/frame_sequence.h"
 
 #include <utility>
 

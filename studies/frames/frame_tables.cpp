@@ -1,0 +1,164 @@
+#include "studies/frames/frame_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+namespace marti::studies {
+
+namespace {
+
+std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+double share(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+/// By how much a time is shorter than the whole rebuild's, as a fraction of that.
+double saved(sim::Ticks time, sim::Ticks rebuild) {
+  return rebuild == 0 ? 0.0 : static_cast<double>(rebuild - time) / static_cast<double>(rebuild);
+}
+
+sim::Ticks cycle_of(const FrameOutcome& frame, FrameWay way) {
+  return frame.ways[static_cast<std::size_t>(way)].cycle();
+}
+
+}  // namespace
+
+TreeChange change_of(const FrameTree& tree) {
+  TreeChange change;
+  const accel::Topology& topology = tree.topology();
+  change.nodes = topology.nodes.size();
+  for (std::size_t node = 0; node < topology.nodes.size(); ++node) {
+    if (!topology.nodes[node].leaf) {
+      ++change.branches;
+      change.all_sorted += topology.work[node].listed;
+      change.all_tests += topology.work[node].overlaps;
+    }
+  }
+  if (!tree.update) {
+    change.altered = change.nodes;
+    change.split = change.branches;
+    change.sorted = change.all_sorted;
+    change.tests = change.all_tests;
+    return change;
+  }
+  const accel::OctreeUpdate& update = *tree.update;
+  change.moved = update.moved;
+  for (std::uint32_t node = 0; node < update.nodes.size(); ++node) {
+    change.altered += update.altered(node) ? 1 : 0;
+    change.resorted += update.nodes[node] == accel::NodeUpdate::resorted ? 1 : 0;
+    change.split += update.nodes[node] == accel::NodeUpdate::split ? 1 : 0;
+    change.sorted += update.work[node].listed;
+    change.tests += update.work[node].overlaps;
+  }
+  return change;
+}
+
+Table frame_table(std::span<const FrameOutcome> frames) {
+  Table table("frames", "Frames: what moved, and what an update of the tree alters",
+              {{"frame", ColumnType::integer, "1", "number of the frame"},
+               {"time", ColumnType::real, "s", "from the animation's beginning"},
+               {"moved", ColumnType::integer, "1", "primitives that moved since the frame before"},
+               {"nodes", ColumnType::integer, "1", "nodes of the whole tree"},
+               {"branches", ColumnType::integer, "1", "of these, branches"},
+               {"altered", ColumnType::integer, "1", "nodes whose record or list must be made anew"},
+               {"kept", ColumnType::real, "fraction", "nodes that stay as they were"},
+               {"resorted", ColumnType::integer, "1", "branches that sort moved primitives only"},
+               {"split", ColumnType::integer, "1", "branches whose children are made anew"},
+               {"sorted", ColumnType::real, "fraction",
+                "primitives that the update sorts, once a node, against a build from nothing"},
+               {"tests", ColumnType::real, "fraction", "overlap tests that it runs, against such a build"},
+               {"hit_hash", ColumnType::text, "", "hash of every ray's outcome"},
+               {"image_hash", ColumnType::text, "", "hash of the pixels' bits"}});
+  for (const FrameOutcome& frame : frames) {
+    const TreeChange& change = frame.change;
+    table.add_row({count_cell(frame.number), frame.seconds, count_cell(change.moved),
+                   count_cell(change.nodes), count_cell(change.branches), count_cell(change.altered),
+                   share(change.nodes - change.altered, change.nodes), count_cell(change.resorted),
+                   count_cell(change.split), share(change.sorted, change.all_sorted),
+                   share(change.tests, change.all_tests), hash_text(frame.hit_hash),
+                   hash_text(frame.image_hash)});
+  }
+  return table;
+}
+
+Table cycle_table(std::span<const FrameOutcome> frames) {
+  Table table("cycles", "The cycle \"build, render\" of each frame",
+              {{"frame", ColumnType::integer, "1", "number of the frame"},
+               {"way", ColumnType::text, "", "how the machine comes by the frame's tree"},
+               {"build", ColumnType::integer, "ps", "time for building before the frame"},
+               {"render", ColumnType::integer, "ps", "time of the frame, building on demand included"},
+               {"cycle", ColumnType::integer, "ps", "both"},
+               {"building", ColumnType::integer, "ps",
+                "compute time for building before the frame and in it, all nodes together"},
+               {"start_up_splits", ColumnType::integer, "1", "branches split before the frame"},
+               {"splits", ColumnType::integer, "1", "branches split before the frame and in it"},
+               {"branches", ColumnType::integer, "1", "branches at the end of the frame"},
+               {"partial", ColumnType::integer, "1", "partially built nodes at the end of the frame"},
+               {"memory", ColumnType::integer, "byte", "records and lists at the end of the frame"},
+               {"cycle_saved", ColumnType::real, "fraction", "of the cycle with the whole tree rebuilt"}});
+  for (const FrameOutcome& frame : frames) {
+    const sim::Ticks rebuild = cycle_of(frame, FrameWay::rebuild_all);
+    for (std::size_t way = 0; way < frame_ways; ++way) {
+      const WayOutcome& outcome = frame.ways[way];
+      table.add_row({count_cell(frame.number), std::string(frame_way_names[way]), outcome.build,
+                     outcome.render, outcome.cycle(), outcome.building, outcome.start_up_splits,
+                     outcome.all_splits(), outcome.branches, outcome.partial, outcome.bytes,
+                     saved(outcome.cycle(), rebuild)});
+    }
+  }
+  return table;
+}
+
+Table total_table(std::span<const FrameOutcome> frames) {
+  Table table("totals", "All frames together",
+              {{"way", ColumnType::text, "", "how the machine comes by a frame's tree"},
+               {"build", ColumnType::integer, "ps", "time for building before frames"},
+               {"render", ColumnType::integer, "ps", "time of frames, building on demand included"},
+               {"cycle", ColumnType::integer, "ps", "both"},
+               {"building", ColumnType::integer, "ps", "compute time for building, all nodes together"},
+               {"splits", ColumnType::integer, "1", "branches split"},
+               {"largest", ColumnType::integer, "byte", "records and lists, of the frame with most"},
+               {"cycle_saved", ColumnType::real, "fraction", "of the cycles with the whole tree rebuilt"},
+               {"later_saved", ColumnType::real, "fraction",
+                "the same without the first frame, before which there is no tree"}});
+  for (std::size_t way = 0; way < frame_ways; ++way) {
+    WayOutcome sum;
+    sim::Ticks rebuild = 0;
+    std::int64_t splits = 0;
+    for (const FrameOutcome& frame : frames) {
+      const WayOutcome& outcome = frame.ways[way];
+      sum.build = sim::add_ticks(sum.build, outcome.build);
+      sum.render = sim::add_ticks(sum.render, outcome.render);
+      sum.building = sim::add_ticks(sum.building, outcome.building);
+      sum.bytes = std::max(sum.bytes, outcome.bytes);
+      splits += outcome.all_splits();
+      rebuild = sim::add_ticks(rebuild, cycle_of(frame, FrameWay::rebuild_all));
+    }
+    Cell later;
+    if (frames.size() > 1) {
+      const FrameOutcome& first = frames.front();
+      later = saved(sum.cycle() - first.ways[way].cycle(), rebuild - cycle_of(first, FrameWay::rebuild_all));
+    }
+    table.add_row({std::string(frame_way_names[way]), sum.build, sum.render, sum.cycle(), sum.building,
+                   splits, sum.bytes, saved(sum.cycle(), rebuild), later});
+  }
+  return table;
+}
+
+Table host_frame_table(std::span<const FrameOutcome> frames) {
+  Table table("host_frames", "The trees on the host",
+              {{"frame", ColumnType::integer, "1", "number of the frame"},
+               {"build", ColumnType::real, "s", "the tree from nothing, on all host threads"},
+               {"update", ColumnType::real, "s", "the tree from the one before, on one host thread"}});
+  for (const FrameOutcome& frame : frames) {
+    const bool first = &frame == frames.data();
+    table.add_row(
+        {count_cell(frame.number), frame.build_seconds, first ? Cell() : Cell(frame.update_seconds)});
+  }
+  return table;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,49 @@
+// The tables of `marti study frames`.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "studies/frames/frame_tree.h"
+#include "studies/frames/frame_ways.h"
+#include "studies/results/table.h"
+
+namespace marti::studies {
+
+/// What an update did to a tree. In a first frame everything was made anew.
+struct TreeChange {
+  std::uint64_t nodes = 0;       ///< of the new tree
+  std::uint64_t branches = 0;    ///< of these
+  std::uint64_t moved = 0;       ///< primitives; 0 in a first frame
+  std::uint64_t altered = 0;     ///< nodes whose record or list had to be made anew
+  std::uint64_t resorted = 0;    ///< branches in which only moved primitives were sorted anew
+  std::uint64_t split = 0;       ///< branches whose children were made anew
+  std::uint64_t sorted = 0;      ///< primitives sorted by the update, each once a node
+  std::uint64_t tests = 0;       ///< overlap tests run by it
+  std::uint64_t all_sorted = 0;  ///< the same of a build from nothing
+  std::uint64_t all_tests = 0;
+};
+[[nodiscard]] TreeChange change_of(const FrameTree& tree);
+
+/// What is kept of a frame when its scene, tree and log are gone.
+struct FrameOutcome {
+  std::uint32_t number = 0;  ///< as the animation counts
+  double seconds = 0.0;      ///< from the animation's beginning
+  TreeChange change;
+  std::uint64_t hit_hash = 0;
+  std::uint64_t image_hash = 0;
+  double build_seconds = 0.0;   ///< host: the tree from nothing
+  double update_seconds = 0.0;  ///< host: the tree by update
+  WayOutcomes ways;
+};
+
+/// "frames": a row for each frame: what moved, what was altered, hashes.
+[[nodiscard]] Table frame_table(std::span<const FrameOutcome> frames);
+/// "cycles": a row for each frame and way.
+[[nodiscard]] Table cycle_table(std::span<const FrameOutcome> frames);
+/// "totals": a row for each way, over all frames.
+[[nodiscard]] Table total_table(std::span<const FrameOutcome> frames);
+/// "host_frames": seconds of building and of updating on the host.
+[[nodiscard]] Table host_frame_table(std::span<const FrameOutcome> frames);
+
+}  // namespace marti::studies

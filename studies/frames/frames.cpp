@@ -1,0 +1,153 @@
+#include "studies/frames/frames.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "processors/program/render.h"
+#include "sim/error.h"
+#include "sim/units.h"
+#include "studies/frames/frame_sequence.h"
+#include "studies/frames/frame_tables.h"
+#include "studies/frames/frame_tree.h"
+#include "studies/frames/frame_ways.h"
+#include "studies/frames/frames_config.h"
+#include "studies/functional_run.h"
+#include "studies/results/provenance.h"
+#include "studies/results/text_table.h"
+#include "studies/results/wide_table.h"
+
+namespace marti::studies {
+
+namespace {
+
+/// With a tree of this frame alone: its root is tight around it, as in a run of one frame. The voxel cut's
+/// cells must be the same, or the image is another approximation.
+void verify(const FramesConfig& config, const PosedFrame& pose, const FrameTree& tree,
+            const processors::Frame& frame) {
+  accel::OctreeOptions options = config.frame.structure_options.octree;
+  if (config.frame.render.voxel_cut > 0.0) {
+    options = tree.octree->concrete().options();
+  }
+  const accel::StructureOf<accel::Octree> fresh(accel::Octree::build(tree.triangles, options));
+  const processors::Frame other = render(pose.scene, *tree.triangles, fresh, config.frame.render);
+  sim::ensure(other.hit_hash == frame.hit_hash && other.image.pixels.size() == frame.image.pixels.size() &&
+                  image_hash(other.image) == image_hash(frame.image),
+              "an updated octree gives another image than one built from nothing");
+}
+
+class FramesStudy {
+ public:
+  explicit FramesStudy(const FramesConfig& config)
+      : config_(config), sequence_(config.frame), ways_(config.machine) {
+    options_ = config.frame.structure_options.octree;
+    options_.enclose = sequence_.bounds();
+  }
+
+  void run() {
+    sequence_.visit([this](const PosedFrame& pose) { add(pose); });
+  }
+
+  [[nodiscard]] const std::vector<FrameOutcome>& outcomes() const { return outcomes_; }
+  [[nodiscard]] std::vector<StudyImage> take_images() { return std::move(images_); }
+
+ private:
+  void add(const PosedFrame& pose) {
+    FrameTree tree = make_frame_tree(before_ ? &*before_ : nullptr, pose.scene, options_);
+    refuse_beyond_memory(config_.frame, pose.scene, *tree.triangles, *tree.octree);
+    processors::RenderOptions options = config_.frame.render;
+    options.record = true;
+    processors::Frame frame = render(pose.scene, *tree.triangles, *tree.octree, options);
+    if (config_.verify) {
+      verify(config_, pose, tree, frame);
+    }
+    FrameOutcome& outcome = outcomes_.emplace_back();
+    outcome.number = pose.number;
+    outcome.seconds = pose.seconds;
+    outcome.change = change_of(tree);
+    outcome.hit_hash = frame.hit_hash;
+    outcome.image_hash = image_hash(frame.image);
+    outcome.build_seconds = tree.build_seconds;
+    outcome.update_seconds = tree.update_seconds;
+    outcome.ways = ways_.time(*frame.log, tree.update ? &*tree.update : nullptr);
+    images_.push_back({fmt::format("frame-{:04}", pose.number), std::move(frame.image)});
+    tree.update.reset();
+    before_ = std::move(tree);
+  }
+
+  const FramesConfig& config_;
+  FrameSequence sequence_;
+  accel::OctreeOptions options_;
+  FrameWays ways_;
+  std::optional<FrameTree> before_;
+  std::vector<FrameOutcome> outcomes_;
+  std::vector<StudyImage> images_;
+};
+
+std::string head_of(const sim::Config& config, const FramesConfig& frames, std::size_t count) {
+  const processors::BuildConfig& build = frames.machine.build;
+  std::string initial = "the whole tree";
+  if (build.initial == processors::InitialTree::level) {
+    initial = fmt::format("level {}", build.level);
+  } else if (build.initial == processors::InitialTree::rule) {
+    initial = fmt::format("the level of rule k = {:g}", build.rule_k);
+  }
+  return fmt::format(
+      "The cycle \"build, render\", frame by frame\n"
+      "scene    {}, {} frame{} at {:g} a second, the first is number {}\n"
+      "images   {} x {}{}\n"
+      "machine  {} node{} at {}, operations as \"{}\"\n"
+      "\n"
+      "rebuild_all      the whole tree is built before each frame\n"
+      "partial          altered branches are built anew before each frame, the rest is kept\n"
+      "dynamic          built before each frame to {}, the rest on demand ({})\n"
+      "partial_dynamic  altered branches are built anew on demand, the rest is kept as it is\n",
+      frames.frame.scene, count, count == 1 ? "" : "s", frames.frame.frames.rate, frames.frame.frames.first,
+      frames.frame.render.width, frames.frame.render.height,
+      frames.verify ? ", each equal to that of a tree built from nothing" : "", frames.machine.all_nodes(),
+      frames.machine.all_nodes() == 1 ? "" : "s", sim::print_frequency(config.frequency("node.clock")),
+      config.choice_name("costs.preset"), initial,
+      processors::sharing_names[static_cast<std::size_t>(build.sharing)]);
+}
+
+/// The same figure of all ways side by side.
+std::string side_by_side(const Table& cycles, std::string_view value, std::string_view title) {
+  const Table wide = widen(cycles, std::array{std::string_view("frame")}, "way", "", value);
+  Table titled("shown", std::string(title), {wide.columns().begin(), wide.columns().end()});
+  for (const std::vector<Cell>& row : wide.rows()) {
+    titled.add_row(row);
+  }
+  return text_of(titled);
+}
+
+}  // namespace
+
+StudyOutput run_frames(sim::Config& config) {
+  const FramesConfig frames = read_frames(config);
+  FramesStudy study(frames);
+  study.run();
+  const std::vector<FrameOutcome>& outcomes = study.outcomes();
+
+  StudyOutput output;
+  output.tables = {frame_table(outcomes), cycle_table(outcomes), total_table(outcomes)};
+  const Table& cycles = output.tables[1];
+  output.report = head_of(config, frames, outcomes.size()) + "\n" + text_of(output.tables[0]) + "\n" +
+                  side_by_side(cycles, "build", "Build: time before each frame") + "\n" +
+                  side_by_side(cycles, "render", "Render: time of each frame, building on demand included") +
+                  "\n" + side_by_side(cycles, "cycle", "Cycle: both") + "\n" +
+                  side_by_side(cycles, "splits", "Branches split, before the frame and in it") + "\n" +
+                  side_by_side(cycles, "memory", "Memory: records and lists at the end of each frame") +
+                  "\n" + text_of(output.tables[2]);
+  output.tables.push_back(provenance_table(config.effective_values()));
+  output.host_tables = {host_frame_table(outcomes), host_table()};
+  output.host_report = text_of(output.host_tables[0]) + "\n" + text_of(output.host_tables[1]);
+  output.images = study.take_images();
+  return output;
+}
+
+}  // namespace marti::studies

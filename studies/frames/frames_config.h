@@ -1,0 +1,21 @@
+// The configuration of `marti study frames`: the keys of a run.
+#pragma once
+
+#include "processors/machine_config.h"
+#include "sim/config.h"
+#include "studies/frame_keys.h"
+
+namespace marti::studies {
+
+struct FramesConfig {
+  FrameConfig frame;
+  /// Its `build` is that of the ways that build on demand: shared or private, with the initial tree.
+  processors::MachineConfig machine;
+  bool verify = true;  ///< render every frame with a tree built from nothing too
+};
+
+/// Throws UserError naming file, line and key: what read_frame, read_machine and read_dynamic_build refuse;
+/// another structure than an octree; frames or machines that would take more than the memory limit.
+[[nodiscard]] FramesConfig read_frames(sim::Config& config);
+
+}  // namespace marti::studies

@@ -1,0 +1,82 @@
+// `marti study frames` as its user meets it: exit status, messages, files.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/cli/shell.h"
+#include "tests/support/temporary_directory.h"
+
+namespace marti::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path shipped = fs::path(MARTI_SOURCE) / "configs" / "animation.toml";
+const std::string small =
+    quoted(shipped) + " --set image.width=24 --set image.height=16 --set frames.count=2 --set frames.rate=2";
+
+TEST(FramesCommand, WritesTablesChartAndImages) {
+  const TemporaryDirectory directory;
+  const fs::path a = directory.path() / "a";
+  const fs::path b = directory.path() / "b";
+  const Outcome outcome = marti("study frames " + small + " -o " + quoted(a));
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  for (const char* text : {"swing.glb", "partial_dynamic", "All frames together", "frame-0001.png"}) {
+    EXPECT_NE(outcome.output.find(text), std::string::npos) << text;
+  }
+  for (const char* name :
+       {"frames.csv", "cycles.csv", "totals.csv", "columns.csv", "host_frames.csv", "frames.vl.json",
+        "results.sqlite", "report.txt", "frame-0000.png", "frame-0000.exr", "frame-0001.exr"}) {
+    EXPECT_TRUE(fs::exists(a / name)) << name;
+  }
+  EXPECT_FALSE(fs::exists(a / "frame-0002.png"));
+  ASSERT_EQ(marti("study frames " + small + " -o " + quoted(b)).status, 0);
+  for (const auto& entry : fs::directory_iterator(a)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with("host") && name != "results.sqlite") {
+      EXPECT_EQ(read(a / name), read(b / name)) << name;
+    }
+  }
+}
+
+TEST(FramesCommand, WrongInputIsTwoAndOlderResultsStay) {
+  const TemporaryDirectory directory;
+  const fs::path out = directory.path() / "out";
+  ASSERT_EQ(marti("study frames " + small + " -o " + quoted(out)).status, 0);
+  const std::string before = read(out / "cycles.csv") + read(out / "frame-0001.png");
+  const auto files = std::distance(fs::directory_iterator(out), {});
+  const auto refused = [&](const std::string& options, const std::string& complaint) {
+    const Outcome outcome = marti("study frames " + small + options);
+    EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.output;
+    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
+  };
+  refused(" -o " + quoted(out) + " --set frames.count=0", "frames.count");
+  refused(" -o " + quoted(out) + " --set frames.count=99999999999", "frames.count");
+  refused(" -o " + quoted(out) + " --set scene.source=/nonexistent.glb", "/nonexistent.glb");
+  refused(" -o " + quoted(out) + " --set scene.animation=waltz", "waltz");
+  refused(" -o " + quoted(out) + " --set structure.kind=grid", "structure.kind");
+  refused(" -o " + quoted(out) + " --set build.sharing=none", "build.sharing");
+  refused("", "--output");
+  write(directory.path() / "file", "in the way");
+  refused(" -o " + quoted(directory.path() / "file"), "file");
+  refused(" -o " + quoted(directory.path() / "file" / "below"), "file");
+  // Nothing larger than a few blocks can be written, as on a full disk: the images cannot.
+  const Outcome full = shell("ulimit -f 4; trap '' XFSZ; " + quoted(MARTI_PROGRAM) + " study frames " +
+                             small + " --set node.clock=40MHz -o " + quoted(out));
+  EXPECT_EQ(full.status, 2) << full.output;
+  EXPECT_EQ(read(out / "cycles.csv") + read(out / "frame-0001.png"), before);
+  EXPECT_EQ(std::distance(fs::directory_iterator(out), {}), files) << "nothing may be left behind";
+}
+
+TEST(FramesCommand, ARunOfSeveralFramesIsSentThere) {
+  const Outcome several = marti("run " + quoted(shipped));
+  EXPECT_EQ(several.status, 2);
+  EXPECT_NE(several.output.find("marti study frames"), std::string::npos) << several.output;
+  const Outcome verify = marti("run " + small + " --set frames.count=1 --set frames.verify=false");
+  EXPECT_EQ(verify.status, 2);
+  EXPECT_NE(verify.output.find("frames.verify"), std::string::npos) << verify.output;
+}
+
+}  // namespace
+}  // namespace marti::test
