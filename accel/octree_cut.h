@@ -140,8 +140,6 @@ struct CutSpan : NodeSpan<Real> {
 template <class Real, class Visitor>
 void walk_octree_cut(const OctreeView& view, const WalkStart<Real>& start, const RaySetup<Real>& setup,
                      CutRay<Real>& cut, Best<Real>& best, Visitor& visitor) {
-  using Integer = IntegerOf<Real>;
-  const Real half(0.5);
   std::array<CutSpan<Real>, walk_stack_size> stack;
   std::size_t waiting = 0;
   CutSpan<Real> now{start.root, 1};
@@ -163,49 +161,7 @@ void walk_octree_cut(const OctreeView& view, const WalkStart<Real>& start, const
       continue;
     }
     visitor.branch(now.node);
-    std::array<Real, 3> m;
-    Integer side = 0U;
-    for (std::uint32_t a = 0; a < 3; ++a) {
-      m[a] = (now.s0[a] + now.s1[a]) * half;
-      if (m[a] <= now.in) {
-        side = side | (1U << a);
-      }
-    }
-    const std::uint32_t outcome =
-        (m[0] <= m[1] ? 1U : 0U) | (m[1] <= m[2] ? 2U : 0U) | (m[0] <= m[2] ? 4U : 0U);
-    const unsigned order = plane_order[outcome];
-    std::array<CutSpan<Real>, 4> children;
-    std::size_t found = 0;
-    Real in = now.in;
-    const auto enter = [&](Real until) {
-      CutSpan<Real>& child = children[found++];
-      for (std::uint32_t a = 0; a < 3; ++a) {
-        const bool upper = ((plain(side) >> a) & 1U) != 0;
-        child.s0[a] = upper ? m[a] : now.s0[a];
-        child.s1[a] = upper ? now.s1[a] : m[a];
-      }
-      child.in = in;
-      child.out = until;
-      child.node = plain(Integer(record.first) + (side ^ start.mask));
-      child.level = now.level + 1;
-      in = until;
-    };
-    for (unsigned k = 0; k < 3; ++k) {
-      const unsigned a = (order >> (2 * k)) & 3U;
-      if (((plain(side) >> a) & 1U) != 0) {
-        continue;
-      }
-      if (!(m[a] < now.out)) {
-        break;
-      }
-      enter(m[a]);
-      side = side | (1U << a);
-    }
-    enter(now.out);
-    for (std::size_t k = found; k-- > 1;) {
-      stack[waiting++] = children[k];
-    }
-    now = children[0];
+    now = enter_children<Real>(now, record.first, start.mask, stack, waiting);
   }
 }
 

@@ -2,7 +2,8 @@
 // afterwards, which is the one a fresh build gives, node by node and entry by entry. What is said of
 // triangles here holds for all primitives.
 //
-// Nodes that list no moved triangle, neither before nor after, are kept with all that is below them. In a
+// Nodes that list no moved triangle, neither before nor after, are kept with all that is below them (unless
+// max_entries cuts one of the trees: what it leaves undivided depends on the whole tree). In a
 // node that stays a branch only the moved triangles are sorted anew: what its other triangles do is known. A
 // branch that has come to be divided for nothing or to list few enough triangles is collapsed to a leaf; a
 // leaf that lists too many is split. Where more triangles moved than a node lists, it is sorted anew as a

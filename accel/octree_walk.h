@@ -51,12 +51,65 @@ inline bool test_leaf(const View& view, const typename View::Record& record, std
   return false;
 }
 
+/// Goes from a branch to its children on the ray: returns the first, the others wait, the next one last.
+/// `Span` is NodeSpan or has its members, and a level too where a walk needs it.
+template <class Real, class Span>
+inline Span enter_children(const Span& now, std::uint32_t first_child, const IntegerOf<Real>& mask,
+                           std::array<Span, walk_stack_size>& stack, std::size_t& waiting) {
+  using Integer = IntegerOf<Real>;
+  const Real half(0.5);
+  std::array<Real, 3> m;
+  Integer side = 0U;
+  for (std::uint32_t a = 0; a < 3; ++a) {
+    m[a] = (now.s0[a] + now.s1[a]) * half;
+    if (m[a] <= now.in) {
+      side = side | (1U << a);
+    }
+  }
+  const std::uint32_t outcome =
+      (m[0] <= m[1] ? 1U : 0U) | (m[1] <= m[2] ? 2U : 0U) | (m[0] <= m[2] ? 4U : 0U);
+  const unsigned order = plane_order[outcome];
+  // Find the children in order of entry, then let the later ones wait.
+  std::array<Span, 4> children;
+  std::size_t found = 0;
+  Real in = now.in;
+  const auto enter = [&](Real until) {
+    Span& child = children[found++];
+    for (std::uint32_t a = 0; a < 3; ++a) {
+      const bool upper = ((plain(side) >> a) & 1U) != 0;
+      child.s0[a] = upper ? m[a] : now.s0[a];
+      child.s1[a] = upper ? now.s1[a] : m[a];
+    }
+    child.in = in;
+    child.out = until;
+    child.node = plain(Integer(first_child) + (side ^ mask));
+    if constexpr (requires { child.level; }) {
+      child.level = now.level + 1;
+    }
+    in = until;
+  };
+  for (unsigned k = 0; k < 3; ++k) {
+    const unsigned a = (order >> (2 * k)) & 3U;
+    if (((plain(side) >> a) & 1U) != 0) {
+      continue;
+    }
+    if (!(m[a] < now.out)) {
+      break;
+    }
+    enter(m[a]);
+    side = side | (1U << a);
+  }
+  enter(now.out);
+  for (std::size_t k = found; k-- > 1;) {
+    stack[waiting++] = children[k];
+  }
+  return children[0];
+}
+
 /// The walk itself. True when an occlusion query found its hit.
 template <bool Any, class Real, class View, class Visitor>
 bool walk_octree(const View& view, const WalkStart<Real>& start, const RaySetup<Real>& setup,
                  Best<Real>& best, Visitor& visitor) {
-  using Integer = IntegerOf<Real>;
-  const Real half(0.5);
   std::array<NodeSpan<Real>, walk_stack_size> stack;
   std::size_t waiting = 0;
   NodeSpan<Real> now = start.root;
@@ -77,49 +130,7 @@ bool walk_octree(const View& view, const WalkStart<Real>& start, const RaySetup<
       continue;
     }
     visitor.branch(now.node);
-    std::array<Real, 3> m;
-    Integer side = 0U;
-    for (std::uint32_t a = 0; a < 3; ++a) {
-      m[a] = (now.s0[a] + now.s1[a]) * half;
-      if (m[a] <= now.in) {
-        side = side | (1U << a);
-      }
-    }
-    const std::uint32_t outcome =
-        (m[0] <= m[1] ? 1U : 0U) | (m[1] <= m[2] ? 2U : 0U) | (m[0] <= m[2] ? 4U : 0U);
-    const unsigned order = plane_order[outcome];
-    // Find the children in order of entry, then let the later ones wait.
-    std::array<NodeSpan<Real>, 4> children;
-    std::size_t found = 0;
-    Real in = now.in;
-    const auto enter = [&](Real until) {
-      NodeSpan<Real>& child = children[found++];
-      for (std::uint32_t a = 0; a < 3; ++a) {
-        const bool upper = ((plain(side) >> a) & 1U) != 0;
-        child.s0[a] = upper ? m[a] : now.s0[a];
-        child.s1[a] = upper ? now.s1[a] : m[a];
-      }
-      child.in = in;
-      child.out = until;
-      child.node = plain(Integer(record.first) + (side ^ start.mask));
-      in = until;
-    };
-    for (unsigned k = 0; k < 3; ++k) {
-      const unsigned a = (order >> (2 * k)) & 3U;
-      if (((plain(side) >> a) & 1U) != 0) {
-        continue;
-      }
-      if (!(m[a] < now.out)) {
-        break;
-      }
-      enter(m[a]);
-      side = side | (1U << a);
-    }
-    enter(now.out);
-    for (std::size_t k = found; k-- > 1;) {
-      stack[waiting++] = children[k];
-    }
-    now = children[0];
+    now = enter_children<Real>(now, record.first, start.mask, stack, waiting);
   }
 }
 

@@ -11,34 +11,31 @@
 
 #include "processors/build_report.h"
 #include "processors/dynamic_walker.h"
-#include "processors/node_array.h"
-#include "sim/large_pages.h"
+#include "processors/packet_nodes.h"
 
 namespace marti::processors {
 
 /// `Caches` is one of node_caches.h. See node_array.h for what the members do.
 template <class Caches>
-class DynamicNodes final : public NodeArray {
+class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCursor> {
+  using Base = PacketNodes<DynamicNodes<Caches>, DynamicCursor>;
+  friend Base;
+  using Base::cursors_;
+  using Base::dispatch;
+  using Base::end_;
+  using Base::has_room;
+  using Base::input_;
+  using Base::interconnect_of;
+  using Base::last_write_done_;
+  using Base::port_of;
+  using Base::post;
+  using Base::spend;
+  using Base::statistics_;
+  using Base::write_pixel;
+
  public:
   DynamicNodes(const ReplayInput& input, sim::Engine& engine, Host& host, Caches caches)
-      : input_(input),
-        engine_(engine),
-        host_(host),
-        walker_(input, std::move(caches)),
-        cursors_(input.config.all_nodes()),
-        statistics_(input.config.all_nodes()),
-        built_(input.config.all_nodes()),
-        writes_(std::size_t{input.config.all_nodes()} * input.config.write_buffer) {
-    clients_.reserve(input.config.clusters);
-    for (std::uint32_t cluster = 0; cluster < input.config.clusters; ++cluster) {
-      clients_.emplace_back(*this, cluster * input.config.nodes);
-    }
-  }
-
-  void connect(std::vector<memory::Interconnect*> interconnects) override {
-    interconnects_ = std::move(interconnects);
-  }
-  memory::InterconnectClient& client(std::uint32_t cluster) override { return clients_[cluster]; }
+      : Base(input, engine, host), walker_(input, std::move(caches)), built_(input.config.all_nodes()) {}
 
   void start(std::uint64_t seed) override {
     order_.resize(cursors_.size());
@@ -84,8 +81,6 @@ class DynamicNodes final : public NodeArray {
     }
   }
 
-  sim::Ticks end() const override { return end_; }
-
   void finish() override {
     for (std::size_t node = 0; node < statistics_.size(); ++node) {
       NodeStatistics& statistics = statistics_[node];
@@ -95,8 +90,6 @@ class DynamicNodes final : public NodeArray {
     }
   }
 
-  std::vector<NodeStatistics> statistics() const override { return {statistics_.begin(), statistics_.end()}; }
-
   BuildResult build_result() const override {
     BuildResult result = report_build(input_, walker_.copies());
     result.start_up = start_up_;
@@ -105,40 +98,10 @@ class DynamicNodes final : public NodeArray {
     return result;
   }
 
-  std::size_t bytes_per_node() const override {
-    return sizeof(DynamicCursor) + sizeof(NodeStatistics) + sizeof(BuildCounts) + sizeof(sim::Event) +
-           input_.config.write_buffer * sizeof(sim::Ticks);
-  }
+  std::size_t bytes_per_node() const override { return Base::common_bytes() + sizeof(BuildCounts); }
 
  private:
-  // One cluster's ports, with port numbers turned into node numbers.
-  class Client final : public memory::InterconnectClient {
-   public:
-    Client(DynamicNodes& nodes, std::uint32_t first) : nodes_(nodes), first_(first) {}
-    void read_done(std::uint32_t port, const memory::Service& service) override {
-      nodes_.read_done(first_ + port, service);
-    }
-    void write_done(std::uint32_t port, sim::Ticks done) override { nodes_.write_done(first_ + port, done); }
-
-   private:
-    DynamicNodes& nodes_;
-    std::uint32_t first_;
-  };
-
   static constexpr std::uint32_t none = DynamicCursor::none;
-
-  // One cluster is the common case, and a division at every event shows.
-  std::uint32_t cluster_of(std::uint32_t node) const {
-    return interconnects_.size() == 1 ? 0 : node / input_.config.nodes;
-  }
-  std::uint32_t port_of(std::uint32_t node) const { return node - cluster_of(node) * input_.config.nodes; }
-  memory::Interconnect& interconnect_of(std::uint32_t node) { return *interconnects_[cluster_of(node)]; }
-  void post(EventClass event_class, sim::Ticks time, std::uint32_t node) {
-    engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(event_class), node));
-  }
-  void spend(std::uint32_t node, Activity activity, sim::Ticks time) {
-    statistics_[node].time[static_cast<std::size_t>(activity)] += time;
-  }
 
   // The first node of each cluster builds its database's tree; with a database in every node, each does.
   bool builds_before(std::uint32_t node) const {
@@ -164,31 +127,6 @@ class DynamicNodes final : public NodeArray {
       cursors_[node].time = start_up_;
       post(EventClass::dispatch, start_up_, node);
     }
-  }
-
-  // Gives the node its next packet, or ends it.
-  void dispatch(std::uint32_t node) {
-    DynamicCursor& cursor = cursors_[node];
-    const std::optional<Grant> grant = host_.next(node, cursor.time);
-    if (!grant) {
-      statistics_[node].finish = cursor.time;
-      end_ = std::max(end_, cursor.time);
-      return;
-    }
-    spend(node, Activity::dispatch_wait, grant->start - cursor.time);
-    ++statistics_[node].packets;
-    cursor.time = grant->start;
-    cursor.packet = input_.packets[grant->packet];
-    cursor.y = cursor.packet.y0;
-    cursor.x = cursor.packet.x0;
-    begin_pixel(cursor);
-    run(node);
-  }
-
-  void begin_pixel(DynamicCursor& cursor) {
-    const std::span<const std::uint32_t> words = input_.log.pixel(cursor.x, cursor.y);
-    cursor.word = words.data();
-    cursor.word_end = words.data() + words.size();
   }
 
   // Lets a node work until it needs something shared.
@@ -246,10 +184,7 @@ class DynamicNodes final : public NodeArray {
   }
 
   void read_done(std::uint32_t node, const memory::Service& service) {
-    spend(node, Activity::interconnect_wait, service.wait_interconnect);
-    spend(node, Activity::transfer, service.transfer);
-    spend(node, Activity::bank_wait, service.wait_bank);
-    spend(node, Activity::bank_access, service.bank);
+    spend(node, service);
     DynamicCursor& cursor = cursors_[node];
     cursor.time = service.done;
     if (cursor.todo != Todo::lock) {
@@ -273,26 +208,15 @@ class DynamicNodes final : public NodeArray {
     post(EventClass::step, cursor.time, node);
   }
 
-  // The oldest write still in the buffer decides whether there is room; a full buffer stalls the node
-  // until that write is done, and the write is tried again then.
   void write(std::uint32_t node) {
-    DynamicCursor& cursor = cursors_[node];
-    const sim::Ticks room_at = writes_[std::size_t{node} * input_.config.write_buffer + cursor.writes];
-    if (room_at > cursor.time) {
-      spend(node, Activity::queue_full_wait, room_at - cursor.time);
-      cursor.time = room_at;
-      post(EventClass::write, room_at, node);
+    if (!has_room(node)) {
       return;
     }
-    if (cursor.todo != Todo::step) {
+    if (cursors_[node].todo == Todo::step) {
+      write_pixel(node);
+    } else {
       write_tree(node);
-      return;
     }
-    ++statistics_[node].writes;
-    const std::uint64_t pixel = std::uint64_t{cursor.y} * input_.log.width + cursor.x;
-    interconnect_of(node).write({port_of(node), input_.layout.address(memory::RecordKind::pixel, pixel),
-                                 input_.layout.record_bytes(memory::RecordKind::pixel)});
-    next_pixel(node);
   }
 
   // A part of a record or list of the tree. Copies of its line in other caches of the cluster are stale; the
@@ -340,45 +264,12 @@ class DynamicNodes final : public NodeArray {
     }
   }
 
-  // Interconnects serve first come, first served, so they say during the write when it will be done.
-  void write_done(std::uint32_t node, sim::Ticks done) {
-    DynamicCursor& cursor = cursors_[node];
-    const std::uint32_t depth = input_.config.write_buffer;
-    writes_[std::size_t{node} * depth + cursor.writes] = done;
-    cursor.writes = cursor.writes + 1 == depth ? 0 : cursor.writes + 1;
-    last_write_done_ = done;
-    end_ = std::max(end_, done);
-  }
-
-  void next_pixel(std::uint32_t node) {
-    DynamicCursor& cursor = cursors_[node];
-    if (++cursor.x == cursor.packet.x1) {
-      cursor.x = cursor.packet.x0;
-      if (++cursor.y == cursor.packet.y1) {
-        post(EventClass::dispatch, cursor.time, node);
-        return;
-      }
-    }
-    begin_pixel(cursor);
-    run(node);
-  }
-
-  ReplayInput input_;
-  sim::Engine& engine_;
-  Host& host_;
   DynamicWalker<Caches> walker_;
-  sim::LargeVector<DynamicCursor> cursors_;
-  sim::LargeVector<NodeStatistics> statistics_;
   sim::LargeVector<BuildCounts> built_;
-  sim::LargeVector<sim::Ticks> writes_;  // when each entry of each node's write buffer is free
-  std::vector<Client> clients_;
-  std::vector<memory::Interconnect*> interconnects_;
   std::vector<std::uint32_t> order_;  // in which first events are posted; it changes nothing
   std::uint32_t builders_left_ = 0;
   sim::Ticks start_up_ = 0;
   sim::Ticks start_up_wait_ = 0;
-  sim::Ticks last_write_done_ = 0;
-  sim::Ticks end_ = 0;
 };
 
 }  // namespace marti::processors

@@ -251,20 +251,7 @@ class DynamicWalker {
 
   // A test's computing, at its price.
   void begin_test(DynamicCursor& cursor, StepCounts& steps, std::uint32_t primitive) const {
-    ++steps.tests;
-    switch (input_.log.kind_of(primitive)) {
-      case accel::PrimitiveKind::triangle:
-        spend(cursor, ticks_.test, 1);
-        return;
-      case accel::PrimitiveKind::sphere:
-        ++steps.sphere_tests;
-        spend(cursor, ticks_.sphere_test, 1);
-        return;
-      case accel::PrimitiveKind::cone:
-        ++steps.cone_tests;
-        spend(cursor, ticks_.cone_test, 1);
-        return;
-    }
+    cursor.time = sim::add_ticks(cursor.time, count_test(ticks_, input_.log.kind_of(primitive), steps));
   }
 
   // Takes visits to the initial tree whose lines are all settled and in the cache. The visit at which that

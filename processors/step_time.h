@@ -30,4 +30,21 @@ struct StepTicks {
 /// Adds traversal, intersection, shading and cache access of `counts` to `time`.
 void add_counted_time(const StepTicks& ticks, const StepCounts& steps, std::int64_t hits, TimeDivision& time);
 
+/// Counts one test of a primitive; returns its time.
+[[nodiscard]] inline sim::Ticks count_test(const StepTicks& ticks, accel::PrimitiveKind kind,
+                                           StepCounts& steps) {
+  ++steps.tests;
+  switch (kind) {
+    case accel::PrimitiveKind::triangle:
+      break;
+    case accel::PrimitiveKind::sphere:
+      ++steps.sphere_tests;
+      return ticks.sphere_test;
+    case accel::PrimitiveKind::cone:
+      ++steps.cone_tests;
+      return ticks.cone_test;
+  }
+  return ticks.test;
+}
+
 }  // namespace marti::processors

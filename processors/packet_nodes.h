@@ -1,0 +1,165 @@
+// What the nodes of every replay of the image scheme have in common: packets from the host, pixels one after
+// the other, posted writes, and the way to their cluster's interconnect.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "processors/node_array.h"
+#include "sim/large_pages.h"
+
+namespace marti::processors {
+
+/// `Derived` has run(node), which lets a node work until it needs something shared, and
+/// read_done(node, service). `Cursor` has time, word, word_end, writes, x, y and packet.
+template <class Derived, class Cursor>
+class PacketNodes : public NodeArray {
+ public:
+  void connect(std::vector<memory::Interconnect*> interconnects) override {
+    interconnects_ = std::move(interconnects);
+  }
+  memory::InterconnectClient& client(std::uint32_t cluster) override { return clients_[cluster]; }
+  sim::Ticks end() const override { return end_; }
+  std::vector<NodeStatistics> statistics() const override { return {statistics_.begin(), statistics_.end()}; }
+
+ protected:
+  PacketNodes(const ReplayInput& input, sim::Engine& engine, Host& host)
+      : input_(input),
+        engine_(engine),
+        host_(host),
+        cursors_(input.config.all_nodes()),
+        statistics_(input.config.all_nodes()),
+        writes_(std::size_t{input.config.all_nodes()} * input.config.write_buffer) {
+    clients_.reserve(input.config.clusters);
+    for (std::uint32_t cluster = 0; cluster < input.config.clusters; ++cluster) {
+      clients_.emplace_back(derived(), cluster * input.config.nodes);
+    }
+  }
+
+  // One cluster is the common case, and a division at every event shows.
+  std::uint32_t cluster_of(std::uint32_t node) const {
+    return interconnects_.size() == 1 ? 0 : node / input_.config.nodes;
+  }
+  std::uint32_t port_of(std::uint32_t node) const { return node - cluster_of(node) * input_.config.nodes; }
+  memory::Interconnect& interconnect_of(std::uint32_t node) { return *interconnects_[cluster_of(node)]; }
+  void post(EventClass event_class, sim::Ticks time, std::uint32_t node) {
+    engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(event_class), node));
+  }
+  void spend(std::uint32_t node, Activity activity, sim::Ticks time) {
+    statistics_[node].time[static_cast<std::size_t>(activity)] += time;
+  }
+  void spend(std::uint32_t node, const memory::Service& service) {
+    spend(node, Activity::interconnect_wait, service.wait_interconnect);
+    spend(node, Activity::transfer, service.transfer);
+    spend(node, Activity::bank_wait, service.wait_bank);
+    spend(node, Activity::bank_access, service.bank);
+  }
+  /// What all nodes take each: the cursor, statistics, an event, and the write buffer.
+  [[nodiscard]] std::size_t common_bytes() const {
+    return sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(sim::Event) +
+           input_.config.write_buffer * sizeof(sim::Ticks);
+  }
+
+  // Gives the node its next packet, or ends it.
+  void dispatch(std::uint32_t node) {
+    Cursor& cursor = cursors_[node];
+    const std::optional<Grant> grant = host_.next(node, cursor.time);
+    if (!grant) {
+      statistics_[node].finish = cursor.time;
+      end_ = std::max(end_, cursor.time);
+      return;
+    }
+    spend(node, Activity::dispatch_wait, grant->start - cursor.time);
+    ++statistics_[node].packets;
+    cursor.time = grant->start;
+    cursor.packet = input_.packets[grant->packet];
+    cursor.y = cursor.packet.y0;
+    cursor.x = cursor.packet.x0;
+    begin_pixel(cursor);
+    derived().run(node);
+  }
+
+  // The oldest write still in the buffer decides whether there is room; a full buffer stalls the node until
+  // that write is done, and the write is tried again then.
+  bool has_room(std::uint32_t node) {
+    Cursor& cursor = cursors_[node];
+    const sim::Ticks room_at = writes_[std::size_t{node} * input_.config.write_buffer + cursor.writes];
+    if (room_at <= cursor.time) {
+      return true;
+    }
+    spend(node, Activity::queue_full_wait, room_at - cursor.time);
+    cursor.time = room_at;
+    post(EventClass::write, room_at, node);
+    return false;
+  }
+
+  // Posts the finished pixel and goes on to the next.
+  void write_pixel(std::uint32_t node) {
+    Cursor& cursor = cursors_[node];
+    ++statistics_[node].writes;
+    const std::uint64_t pixel = std::uint64_t{cursor.y} * input_.log.width + cursor.x;
+    interconnect_of(node).write({port_of(node), input_.layout.address(memory::RecordKind::pixel, pixel),
+                                 input_.layout.record_bytes(memory::RecordKind::pixel)});
+    if (++cursor.x == cursor.packet.x1) {
+      cursor.x = cursor.packet.x0;
+      if (++cursor.y == cursor.packet.y1) {
+        post(EventClass::dispatch, cursor.time, node);
+        return;
+      }
+    }
+    begin_pixel(cursor);
+    derived().run(node);
+  }
+
+  ReplayInput input_;
+  sim::Engine& engine_;
+  Host& host_;
+  sim::LargeVector<Cursor> cursors_;
+  sim::LargeVector<NodeStatistics> statistics_;
+  sim::Ticks end_ = 0;
+  sim::Ticks last_write_done_ = 0;  // of the write posted last
+
+ private:
+  // One cluster's ports, with port numbers turned into node numbers.
+  class Client final : public memory::InterconnectClient {
+   public:
+    Client(Derived& nodes, std::uint32_t first) : nodes_(nodes), first_(first) {}
+    void read_done(std::uint32_t port, const memory::Service& service) override {
+      nodes_.read_done(first_ + port, service);
+    }
+    void write_done(std::uint32_t port, sim::Ticks done) override {
+      static_cast<PacketNodes&>(nodes_).write_done(first_ + port, done);
+    }
+
+   private:
+    Derived& nodes_;
+    std::uint32_t first_;
+  };
+
+  Derived& derived() { return static_cast<Derived&>(*this); }
+
+  void begin_pixel(Cursor& cursor) const {
+    const std::span<const std::uint32_t> words = input_.log.pixel(cursor.x, cursor.y);
+    cursor.word = words.data();
+    cursor.word_end = words.data() + words.size();
+  }
+
+  // Interconnects serve first come, first served, so they say during the write when it will be done.
+  void write_done(std::uint32_t node, sim::Ticks done) {
+    Cursor& cursor = cursors_[node];
+    const std::uint32_t depth = input_.config.write_buffer;
+    writes_[std::size_t{node} * depth + cursor.writes] = done;
+    cursor.writes = cursor.writes + 1 == depth ? 0 : cursor.writes + 1;
+    last_write_done_ = done;
+    end_ = std::max(end_, done);
+  }
+
+  sim::LargeVector<sim::Ticks> writes_;  // when each entry of each node's write buffer is free
+  std::vector<Client> clients_;
+  std::vector<memory::Interconnect*> interconnects_;
+};
+
+}  // namespace marti::processors
