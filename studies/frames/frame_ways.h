@@ -44,7 +44,7 @@ using WayOutcomes = std::array<WayOutcome, frame_ways>;
 class FrameWays {
  public:
   /// `machine.build` is that of the ways that build on demand: shared or private.
-  explicit FrameWays(processors::MachineConfig machine) : machine_(std::move(machine)) {}
+  explicit FrameWays(const processors::MachineConfig& machine) : machine_(machine) {}
 
   /// The next frame. `update` is that from the frame before to this one, null for the first. The four are
   /// simulated at the same time; the results do not depend on how many host threads there are.
