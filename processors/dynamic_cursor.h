@@ -38,8 +38,8 @@ struct DynamicCursor {
   const std::uint32_t* entry = nullptr;  ///< primitives still to be tested or sorted
   const std::uint32_t* entry_end = nullptr;
   const std::uint32_t* tested = nullptr;  ///< of a mailed leaf: a bit for each entry; null: all are tested
-  sim::Ticks arrived = 0;             ///< waiting: when the lock transaction was done; -1 before
-  sim::Ticks published = 0;           ///< waiting: when the branch can be seen; -1 before
+  sim::Ticks arrived = 0;                 ///< waiting: when the lock transaction was done; -1 before
+  sim::Ticks published = 0;               ///< waiting: when the branch can be seen; -1 before
   std::uint32_t node = 0;             ///< the leaf that is tested, or the branch that is looked at or split
   std::uint32_t child = 0;            ///< next child to make
   std::uint32_t eager = 0;            ///< next branch to split before the frame

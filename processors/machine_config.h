@@ -40,7 +40,8 @@ struct NodeCacheConfig {
   std::int64_t hit_cycles = 1;
 };
 
-/// The memory of a replicated database or of private trees: no contention, one line after `access_cycles` plus its beats.
+/// The memory of a replicated database or of private trees: no contention, one line after `access_cycles`
+/// plus its beats.
 struct LocalMemoryConfig {
   sim::Clock clock = sim::Clock::from_hertz(33e6);
   std::uint32_t width = 8;  ///< bytes a beat

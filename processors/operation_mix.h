@@ -68,9 +68,9 @@ struct OperationMixes {
 
 /// The table that step_cycles prices. Measured on teapot:12 in an octree or a BSP tree (max_objects 9,
 /// max_level 12) or a grid (density 4), 128 x 128, depth 2; brute force on teapot:4, 32 x 32; refraction on
-/// gears:2, which has glass; the tests of spheres, cylinders and cones on lattice:4 in the octree; the texel on
-/// a textured square. Sampling the texel and converting the pixel are counted by hand (operation_mix.cpp says
-/// how).
+/// gears:2, which has glass; the tests of spheres, cylinders and cones on lattice:4 in the octree; the texel
+/// on a textured square. Sampling the texel and converting the pixel are counted by hand (operation_mix.cpp
+/// says how).
 [[nodiscard]] const OperationMixes& operation_mixes(accel::Traversal traversal);
 
 /// What a measurement saw: the means and how many steps they are means of.

@@ -21,10 +21,10 @@ void refuse_beyond_memory(const sim::Config& config, const RunResult& result) {
 
 void refuse_several_frames(const sim::Config& config, const FrameRange& frames) {
   if (frames.count > 1) {
-    config.fail("frames.count",
-                std::to_string(frames.count) +
-                    " frames are asked for, but `marti run` renders one, frames.first: set frames.count = 1, or "
-                    "use `marti study frames`");
+    config.fail("frames.count", std::to_string(frames.count) +
+                                    " frames are asked for, but `marti run` renders one, that of "
+                                    "frames.first; set frames.count = 1, or "
+                                    "use `marti study frames`");
   }
 }
 

@@ -36,11 +36,11 @@ enum class Step : std::uint32_t {
   texel,         ///< operand: texture; second word: texel index in the texture. A texel was read.
   cut,           ///< operand: node. Its record was read and the node taken as one voxel (accel/octree_cut.h);
                  ///< the shade of its averaged material follows.
-  pass,          ///< operand: material. The averaged material of a node was read, but too little of the node is
-                 ///< covered to take it as a voxel; its branch, leaf or partial_leaf follows.
-  mailed_leaf,   ///< operand: node; second word: how many of its entries were looked up in the mailboxes;
-                 ///< then one bit for each of them, from the lowest bit of the first word on: was it tested?
-                 ///< The last word's other bits are 0. At least one was not.
+  pass,  ///< operand: material. The averaged material of a node was read, but too little of the node is
+         ///< covered to take it as a voxel; its branch, leaf or partial_leaf follows.
+  mailed_leaf,  ///< operand: node; second word: how many of its entries were looked up in the mailboxes;
+                ///< then one bit for each of them, from the lowest bit of the first word on: was it tested?
+                ///< The last word's other bits are 0. At least one was not.
 };
 
 inline constexpr unsigned operand_bits = 28;
