@@ -12,6 +12,9 @@ using processors::InitialTree;
 using processors::Sharing;
 
 // "full", "rule" or a level, which is written as a text too, so that the key has one type.
+// Of the deepest BSP tree.
+constexpr std::uint32_t most_levels = 61;
+
 void read_initial_level(const sim::Config& config, BuildConfig& build) {
   const std::string& text = config.text("build.initial_level");
   if (text == "full") {
@@ -25,9 +28,9 @@ void read_initial_level(const sim::Config& config, BuildConfig& build) {
   build.initial = InitialTree::level;
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, build.level);
-  if (error != std::errc{} || rest != end || build.level == 0 || build.level > 255) {
-    config.fail("build.initial_level",
-                "must be \"full\", \"rule\" or a level from \"1\" to \"255\", not \"" + text + "\"");
+  if (error != std::errc{} || rest != end || build.level == 0 || build.level > most_levels) {
+    config.fail("build.initial_level", "must be \"full\", \"rule\" or a level from \"1\" to \"" +
+                                           std::to_string(most_levels) + "\", not \"" + text + "\"");
   }
 }
 

@@ -173,6 +173,12 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
     if (octree == nullptr) {
       throw sim::UserError("the voxel cut needs an octree, not \"" + std::string(structure.kind()) + "\"");
     }
+    // Whatever the threshold, so that a smaller one does not seem to work.
+    if (!scene.quadrics.empty()) {
+      throw sim::UserError("image.voxel_cut averages triangles only, and scene.source has " +
+                           std::to_string(scene.quadrics.size()) +
+                           " spheres, cylinders and cones; set image.voxel_cut = 0");
+    }
     voxels = make_voxels(scene, octree->concrete(), options, threads);
   }
   frame.voxels = voxels ? voxels->size() : 0;

@@ -256,11 +256,7 @@ unsigned first_small_level(const scenes::Bounds& root, const scenes::ImagePlane&
 
 VoxelAverages VoxelAverages::build(const scenes::Scene& scene, const accel::Octree& octree,
                                    unsigned first_level, unsigned threads) {
-  if (!scene.quadrics.empty()) {
-    throw sim::UserError("the voxel cut averages triangles only, and the scene has " +
-                         std::to_string(scene.quadrics.size()) +
-                         " spheres, cylinders and cones; use it without the cut");
-  }
+  sim::ensure(scene.quadrics.empty(), "voxel averages: spheres, cylinders and cones have none");
   const std::vector<accel::TopologyNode>& nodes = octree.topology().nodes;
   const std::vector<std::uint32_t>& entries = octree.topology().entries;
   VoxelAverages averages;

@@ -94,10 +94,16 @@ PaperConfig read_paper(sim::Config& config) {
     }
   }
   paper.frame = read_frame(config);
+  if (paper.frame.render.voxel_cut > 0.0) {
+    config.fail("image.voxel_cut", "the study renders exact images");
+  }
   if (paper.frame.structure != "octree") {
     config.fail("structure.kind", "the study builds octrees, and BSP trees beside them");
   }
   paper.machine = read_machine(config);
+  if (paper.machine.placement == processors::Placement::replicated) {
+    config.fail("database.placement", "the study builds one tree that all nodes share");
+  }
   paper.scenes = config.texts("paper.scenes");
   if (paper.scenes.empty()) {
     config.fail("paper.scenes", "must name a scene");
