@@ -10,7 +10,8 @@ namespace marti::scenes::spd {
 
 Scene make_lattice(std::uint32_t n) {
   const double count = n;
-  const double x = (n / 2 + 0.5) / count;
+  const std::uint32_t middle = n / 2;
+  const double x = (middle + 0.5) / count;
   Scene scene = make_scene({x, 1.0, 1.0 - 0.5 / count}, {x, -1.0, -1.0 - 0.5 / count}, {0.2, 1.0, 0.0});
   scene.camera.vertical_fov = std::numbers::pi / 3.0;
   constexpr std::array<glm::dvec3, 6> lights = {glm::dvec3{2.0, 0.5, 0.5}, glm::dvec3{-1.0, 0.5, 0.5},

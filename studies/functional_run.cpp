@@ -56,6 +56,26 @@ void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
   }
 }
 
+namespace {
+
+// A tree that was cut is not the one that was asked for. Dividing a node never lists less than before, so the
+// limit, once met, stays met.
+void note_cut_tree(const FrameConfig& config, const accel::Structure& structure,
+                   std::vector<std::string>& notes) {
+  const accel::StructureOptions& options = config.structure_options;
+  const std::uint64_t limit = structure.kind() == accel::Octree::kind_name ? options.octree.max_entries
+                              : structure.kind() == accel::Bsp::kind_name  ? options.bsp.max_entries
+                                                                           : 0;
+  const std::size_t listed = structure.topology().entries.size();
+  if (limit != 0 && listed >= limit) {
+    notes.push_back("division stopped at " + std::to_string(listed) +
+                    " listed primitives, so leaves above structure.max_level may list more than "
+                    "structure.max_objects; lower the one or raise the other");
+  }
+}
+
+}  // namespace
+
 FunctionalRun run_functional(const FrameConfig& config) {
   const scenes::Scene scene = scenes::open_scene(config.scene, config.open, decode_image);
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
@@ -71,6 +91,7 @@ FunctionalRun run_functional(const FrameConfig& config) {
   } else if (const auto* grid = dynamic_cast<const accel::StructureOf<accel::Grid>*>(structure.get())) {
     run.structure_notes.push_back(accel::describe_resolution(grid->concrete()));
   }
+  note_cut_tree(config, *structure, run.structure_notes);
   processors::RenderOptions options = config.render;
   options.record = true;
   run.frame = processors::render(scene, *triangles, *structure, options);
