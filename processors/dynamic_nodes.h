@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
-#include <random>
 #include <utility>
 
 #include "processors/build_report.h"
@@ -38,11 +36,7 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
       : Base(input, engine, host), walker_(input, std::move(caches)), built_(input.config.all_nodes()) {}
 
   void start(std::uint64_t seed) override {
-    order_.resize(cursors_.size());
-    std::iota(order_.begin(), order_.end(), 0U);
-    if (seed != 0) {
-      std::shuffle(order_.begin(), order_.end(), std::mt19937_64(seed));
-    }
+    order_ = Base::first_order(seed);
     for (const std::uint32_t node : order_) {
       if (!input_.tree->eager().empty() && builds_before(node)) {
         cursors_[node].before = true;

@@ -1,10 +1,7 @@
 // Nodes of the image scheme: each takes a packet of neighbouring pixels and traces it whole.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <numeric>
-#include <random>
 #include <utility>
 
 #include "processors/log_walker.h"
@@ -36,12 +33,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
       : Base(input, engine, host), walker_(input, std::move(caches)) {}
 
   void start(std::uint64_t seed) override {
-    std::vector<std::uint32_t> order(cursors_.size());
-    std::iota(order.begin(), order.end(), 0U);
-    if (seed != 0) {
-      std::shuffle(order.begin(), order.end(), std::mt19937_64(seed));
-    }
-    for (const std::uint32_t node : order) {
+    for (const std::uint32_t node : Base::first_order(seed)) {
       post(EventClass::dispatch, 0, node);
     }
   }

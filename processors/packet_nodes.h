@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
+#include <random>
 #include <span>
 #include <utility>
 #include <vector>
@@ -37,6 +39,16 @@ class PacketNodes : public NodeArray {
     for (std::uint32_t cluster = 0; cluster < input.config.clusters; ++cluster) {
       clients_.emplace_back(derived(), cluster * input.config.nodes);
     }
+  }
+
+  // All nodes, in an order drawn from `seed` (0: ascending).
+  [[nodiscard]] std::vector<std::uint32_t> first_order(std::uint64_t seed) const {
+    std::vector<std::uint32_t> order(cursors_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    if (seed != 0) {
+      std::shuffle(order.begin(), order.end(), std::mt19937_64(seed));
+    }
+    return order;
   }
 
   // One cluster is the common case, and a division at every event shows.
