@@ -131,12 +131,7 @@ bool Bsp::walk(const WalkStart<Real>& start, const RaySetup<Real>& setup, Best<R
       if (test_list<Any>(topology_, *triangles_, now.node, setup, best, visitor)) {
         return true;
       }
-      if (waiting == 0) {
-        return false;
-      }
-      now = stack[--waiting];
-      // What waits below begins no earlier.
-      if (now.in > best.t + start.slack) {
+      if (!take_waiting(stack, waiting, best.t, start.slack, now)) {
         return false;
       }
       continue;

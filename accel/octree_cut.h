@@ -151,11 +151,7 @@ void walk_octree_cut(const OctreeView& view, const WalkStart<Real>& start, const
     }
     if (record.leaf()) {
       test_leaf<false>(view, record, now.node, setup, best, visitor);
-      if (waiting == 0) {
-        return;
-      }
-      now = stack[--waiting];
-      if (now.in > best.t + start.slack) {
+      if (!take_waiting(stack, waiting, best.t, start.slack, now)) {
         return;
       }
       continue;

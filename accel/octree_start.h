@@ -92,6 +92,18 @@ inline constexpr std::array<std::uint8_t, 8> plane_order = [] {
   return table;
 }();
 
+/// Takes the span that waits on top of the stack. False when the walk is over: none waits, or this one, and
+/// so all below it, begins more than `slack` beyond the best hit at `best_t`.
+template <class Real, class Span, std::size_t Size>
+[[nodiscard]] inline bool take_waiting(const std::array<Span, Size>& stack, std::size_t& waiting,
+                                       const Real& best_t, const Real& slack, Span& now) {
+  if (waiting == 0) {
+    return false;
+  }
+  now = stack[--waiting];
+  return !(now.in > best_t + slack);
+}
+
 /// A walk holds at most three waiting siblings a level.
 inline constexpr std::size_t walk_stack_size = std::size_t{3} * 21 + 1;
 

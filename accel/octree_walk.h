@@ -119,12 +119,7 @@ bool walk_octree(const View& view, const WalkStart<Real>& start, const RaySetup<
       if (test_leaf<Any>(view, record, now.node, setup, best, visitor)) {
         return true;
       }
-      if (waiting == 0) {
-        return false;
-      }
-      now = stack[--waiting];
-      // What waits below begins no earlier.
-      if (now.in > best.t + start.slack) {
+      if (!take_waiting(stack, waiting, best.t, start.slack, now)) {
         return false;
       }
       continue;
