@@ -18,21 +18,23 @@ enum class Activity : std::uint8_t {
   shading,       ///< hit points, lights, textures, finished pixels
   building,      ///< subdividing nodes during the frame
   cache_access,  ///< hit cycles
+  switching,     ///< going from one context to another
+  messaging,     ///< composing messages and taking them from the queue
   interconnect_wait,
   transfer,
   bank_wait,
   bank_access,
   lock_wait,
-  message_wait,
-  queue_full_wait,  ///< the write buffer or another bounded queue was full
+  message_wait,     ///< no ray in the queue, before the frame is over
+  queue_full_wait,  ///< the write buffer or the next node's queue was full
   dispatch_wait,    ///< between asking the host for a packet and beginning it
   idle,             ///< no packet left, until the last node and the last write are done
 };
-inline constexpr std::size_t activities = 14;
+inline constexpr std::size_t activities = 16;
 inline constexpr std::array<std::string_view, activities> activity_names = {
-    "traversal",         "intersection",    "shading",       "building",    "cache_access",
-    "interconnect_wait", "transfer",        "bank_wait",     "bank_access", "lock_wait",
-    "message_wait",      "queue_full_wait", "dispatch_wait", "idle"};
+    "traversal",    "intersection",      "shading",       "building",  "cache_access", "switching",
+    "messaging",    "interconnect_wait", "transfer",      "bank_wait", "bank_access",  "lock_wait",
+    "message_wait", "queue_full_wait",   "dispatch_wait", "idle"};
 
 using TimeDivision = std::array<sim::Ticks, activities>;
 

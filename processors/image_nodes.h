@@ -91,6 +91,9 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
     NodeStatistics& statistics = statistics_[node];
     const Stop stop = input_.step_by_step ? walker_.template advance<false>(node, cursor, statistics)
                                           : walker_.template advance<true>(node, cursor, statistics);
+    if (stop == Stop::end) {
+      walker_.finish_pixel(cursor, statistics);
+    }
     constexpr std::array classes = {EventClass::step, EventClass::read, EventClass::write};
     post(classes[static_cast<std::size_t>(stop)], cursor.time, node);
   }

@@ -39,8 +39,8 @@ struct Cursor {
   memory::RecordKind kind = memory::RecordKind::node;
 };
 
-/// Why a walk stopped.
-enum class Stop : std::uint8_t { hit, miss, pixel };
+/// Why a walk stopped: after a hit (only without running ahead), at a miss, or at the end of its words.
+enum class Stop : std::uint8_t { hit, miss, end };
 
 /// `Caches` is one of node_caches.h.
 template <class Caches>
@@ -76,6 +76,12 @@ class LogWalker {
     const Stop stop = walk<RunAhead>(caches_.view(node), cursor, statistics, tally);
     flush(tally, statistics);
     return stop;
+  }
+
+  /// The steps of a pixel are done; what is left is to convert and store it.
+  void finish_pixel(Cursor& cursor, NodeStatistics& statistics) const {
+    ++statistics.steps.pixels;
+    spend(cursor, ticks_.pixel, 1);
   }
 
   /// Address and bytes of the reference that missed: a whole line with a cache, else its own part of the
@@ -161,9 +167,7 @@ class LogWalker {
         return stop;
       }
     }
-    ++statistics.steps.pixels;
-    spend(cursor, ticks_.pixel, 1);
-    return Stop::pixel;
+    return Stop::end;
   }
 
   // Takes all planned visits up to the next step that has to be taken record by record, with what it needs

@@ -10,8 +10,10 @@
 #include "memory/cache_config.h"
 #include "memory/interconnect.h"
 #include "memory/layout.h"
+#include "memory/network.h"
 #include "processors/build_config.h"
 #include "processors/cost_model.h"
+#include "processors/flow_config.h"
 #include "processors/host.h"
 #include "processors/packets.h"
 #include "sim/time.h"
@@ -65,6 +67,11 @@ struct MachineConfig {
   PacketConfig packets;
   HostConfig host;
   BuildConfig build;
+  Scheme scheme = Scheme::image;
+  memory::NetworkConfig network;  ///< pipeline and space
+  MessageConfig messages;         ///< pipeline and space
+  PipelineConfig pipeline;
+  SpaceConfig space;
 
   [[nodiscard]] std::uint32_t all_nodes() const { return clusters * nodes; }
 };

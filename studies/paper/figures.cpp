@@ -26,6 +26,8 @@ Task task_of(processors::Activity activity) {
     case Activity::bank_access:
     case Activity::queue_full_wait:
       return Task::memory;
+    case Activity::switching:
+    case Activity::messaging:
     case Activity::lock_wait:
     case Activity::message_wait:
     case Activity::dispatch_wait:

@@ -1,0 +1,49 @@
+// Configuration of the schemes in which rays move from node to node: pipeline and space.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace marti::processors {
+
+/// image: a node takes a packet of pixels and traces it whole. pipeline: nodes search, intersect or shade,
+/// and rays go round between them (after LINKS-1). space: a node holds a part of space, and rays go to the
+/// node whose part they enter.
+enum class Scheme : std::uint8_t { image, pipeline, space };
+inline constexpr std::array<std::string_view, 3> scheme_names = {"image", "pipeline", "space"};
+
+/// What is sent. A ray message holds origin, direction, weight, pixel, kind, bounce, and where in the walk
+/// the ray is; a contribution holds pixel and colour.
+struct MessageConfig {
+  std::uint32_t ray_bytes = 64;
+  std::uint32_t contribution_bytes = 16;
+  std::int64_t send_cycles = 0;     ///< of a node's clock, to compose and send one message
+  std::int64_t receive_cycles = 0;  ///< to take one message from the queue
+};
+
+/// How many of each cluster's nodes are stages of each kind; the first ones search, then nearest, then shade.
+/// Together they are MachineConfig::nodes, each at least 1.
+struct PipelineConfig {
+  std::uint32_t search = 8;
+  std::uint32_t nearest = 6;
+  std::uint32_t shade = 2;
+  std::uint32_t queue = 16;     ///< rays that wait before each node, at least 1
+  std::uint32_t in_flight = 0;  ///< most rays admitted at a time; 0: as many as cannot deadlock
+};
+
+/// How regions are dealt out. blocks: runs of neighbouring regions. scatter: region i to node i modulo
+/// nodes. balanced: by the primitives in them. sampled: by the work of a pre-pass over few pixels.
+enum class RegionPolicy : std::uint8_t { blocks, scatter, balanced, sampled };
+inline constexpr std::array<std::string_view, 4> region_policy_names = {"blocks", "scatter", "balanced",
+                                                                        "sampled"};
+
+struct SpaceConfig {
+  RegionPolicy policy = RegionPolicy::scatter;
+  std::uint32_t level = 4;      ///< regions are the subtrees whose roots lie on this level (root: 1)
+  std::uint32_t queue = 16;     ///< rays that wait in a node's message buffer, at least 1
+  std::uint32_t in_flight = 0;  ///< most rays in flight at a time; 0: half of all message buffers, at least 1
+  std::uint32_t sample_step = 8;  ///< sampled: every so many columns and rows is a pixel of the pre-pass
+};
+
+}  // namespace marti::processors

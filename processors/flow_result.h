@@ -1,0 +1,59 @@
+// What a scheme in which rays move from node to node counts beside what every scheme does.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "memory/network.h"
+#include "memory/wait_statistics.h"
+#include "sim/statistics.h"
+#include "sim/time.h"
+
+namespace marti::processors {
+
+/// The rays and messages of one node.
+struct FlowCounts {
+  std::int64_t taken = 0;
+  std::int64_t made = 0;
+  std::int64_t passed_on = 0;
+  std::int64_t ended = 0;
+  std::int64_t contributions = 0;
+  std::int64_t bytes_sent = 0;
+  std::int64_t longest_queue = 0;
+  std::int64_t most_set_aside = 0;
+  sim::Ticks queued = 0;
+
+  static constexpr auto counters() {
+    using C = sim::Counter<FlowCounts>;
+    using sim::MergeRule;
+    return std::array{
+        C{"taken", "1", "rays taken from the queue", &FlowCounts::taken},
+        C{"made", "1", "rays made at points shaded here", &FlowCounts::made},
+        C{"passed_on", "1", "rays sent to other nodes for their next steps", &FlowCounts::passed_on},
+        C{"ended", "1", "rays that ended here", &FlowCounts::ended},
+        C{"contributions", "1", "contributions to pixels sent to the host", &FlowCounts::contributions},
+        C{"bytes_sent", "byte", "bytes of the messages sent", &FlowCounts::bytes_sent},
+        C{"longest_queue", "1", "most rays waiting at a time", &FlowCounts::longest_queue,
+          MergeRule::maximum},
+        C{"most_set_aside", "1", "most rays set aside in the node's own memory at a time",
+          &FlowCounts::most_set_aside, MergeRule::maximum},
+        C{"queued", "ps", "waits of the rays in its queue", &FlowCounts::queued}};
+  }
+};
+static_assert(sim::declares_every_member<FlowCounts>());
+
+/// Empty (no nodes) for the image scheme.
+struct FlowResult {
+  std::vector<FlowCounts> nodes;                    ///< one a node
+  std::vector<memory::NetworkStatistics> networks;  ///< one a cluster
+  std::vector<std::uint64_t> memory_bytes;          ///< of the database, in each node's own memory
+  std::int64_t rays = 0;                            ///< camera rays the host sent and rays made
+  std::int64_t collected = 0;                       ///< contributions that reached the host
+  std::int64_t most_in_flight = 0;                  ///< rays at a time, of all clusters
+  std::uint64_t regions = 0;                        ///< space: cut out of the tree
+  std::uint64_t top_nodes = 0;                      ///< space: tree nodes that every node has
+  std::uint64_t duplicated_primitives = 0;          ///< space: primitive records beyond one of each
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,46 @@
+#include "processors/program/ray_tree.h"
+
+namespace marti::processors {
+
+namespace {
+
+// The ray that made number `child`, or none for a pixel's first ray.
+std::uint32_t parent_of(const std::vector<LoggedRay>& rays, std::uint32_t child) {
+  for (std::uint32_t at = child; at-- > 0;) {
+    if (rays[at].kind != RayKind::shadow && rays[at].bounce < rays[child].bounce) {
+      return at;
+    }
+  }
+  return child == 0 ? LoggedRay::none : 0;
+}
+
+}  // namespace
+
+void rays_of_pixel(std::span<const std::uint32_t> words, std::vector<LoggedRay>& rays) {
+  rays.clear();
+  const std::uint32_t* const end = words.data() + words.size();
+  for (const std::uint32_t* word = words.data(); word != end; word += step_words(word)) {
+    if (step_of(*word) == Step::ray) {
+      LoggedRay ray;
+      ray.begin = rays.empty() ? words.data() : word;
+      ray.kind = static_cast<RayKind>(operand_of(*word) & 3U);
+      ray.bounce = operand_of(*word) >> 2U;
+      if (!rays.empty()) {
+        rays.back().end = word;
+      }
+      rays.push_back(ray);
+    }
+  }
+  if (!rays.empty()) {
+    rays.back().end = end;
+  }
+  // From the last on, so that each list of children comes out in the order of the log.
+  for (auto child = static_cast<std::uint32_t>(rays.size()); child-- > 1;) {
+    LoggedRay& ray = rays[child];
+    ray.parent = parent_of(rays, child);
+    ray.next_sibling = rays[ray.parent].first_child;
+    rays[ray.parent].first_child = child;
+  }
+}
+
+}  // namespace marti::processors
