@@ -19,6 +19,17 @@ std::uint64_t tag_bytes(const memory::CacheConfig& cache) {
 
 }  // namespace
 
+MachineConfig one_node_of(const MachineConfig& config) {
+  MachineConfig one = config;
+  one.clusters = 1;
+  one.nodes = 1;
+  one.scheme = Scheme::image;
+  if (config.scheme == Scheme::space) {
+    one.placement = Placement::replicated;
+  }
+  return one;
+}
+
 std::uint64_t host_bytes(const MachineConfig& config) {
   constexpr std::uint64_t bytes_a_node = 600;
   std::uint64_t tags = 0;

@@ -52,10 +52,7 @@ RunResult run(sim::Config& config) {
   result.timed = processors::replay(log, result.machine);
   sim::Ticks one_node_end = result.timed.end;
   if (result.machine.all_nodes() > 1) {
-    processors::MachineConfig one = result.machine;
-    one.clusters = 1;
-    one.nodes = 1;
-    one_node_end = processors::replay(log, one).end;
+    one_node_end = processors::replay(log, processors::one_node_of(result.machine)).end;
   }
   result.scaling = scaling_of(one_node_end, result.timed.end, result.machine.all_nodes());
   result.finding = find_limit(result.machine, result.timed);
