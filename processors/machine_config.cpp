@@ -14,7 +14,9 @@ std::uint64_t tag_bytes(const memory::CacheConfig& cache) {
   const memory::CacheShape shape = memory::shape_of(cache);
   // Hashed sets keep a list entry and two to four table slots for each line.
   const std::uint64_t bytes_a_line = shape.ways > memory::most_searched_ways ? 28 : 6;
-  return shape.lines() * bytes_a_line;
+  const std::uint64_t tree_bytes =
+      cache.replacement == memory::Replacement::plru ? 8 * std::uint64_t{shape.sets} + shape.lines() / 8 : 0;
+  return shape.lines() * bytes_a_line + tree_bytes;
 }
 
 }  // namespace
