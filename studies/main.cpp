@@ -52,7 +52,7 @@ void run_command(const RunArguments& arguments) {
   if (!arguments.directory.empty()) {
     studies::prepare_output(arguments.directory);
   }
-  const studies::RunResult result = studies::run(config);
+  const studies::RunResult result = studies::run(config, arguments.directory);
   std::vector<std::filesystem::path> files;
   if (!arguments.directory.empty()) {
     files = studies::write_output(result, arguments.directory);
@@ -200,7 +200,7 @@ int parse_and_run(int argc, char** argv) {
   run->add_option("--set", run_arguments.assignments, "key=value, overrides the file; may be repeated")
       ->allow_extra_args(false);
   run->add_option("-o,--output", run_arguments.directory,
-                  "directory for image.exr, image.png and result.json")
+                  "directory for image.exr, image.png, result.json and what is recorded")
       ->check(no_empty_directory);
   run->add_flag("--json", run_arguments.json, "print the result as JSON instead of the summary");
   run->callback([&] { run_command(run_arguments); });
