@@ -67,6 +67,11 @@ inline constexpr std::uint32_t max_operand = (1U << operand_bits) - 1U;
       return 1;
   }
 }
+/// Whether a step reads a tree node, which is its operand.
+[[nodiscard]] constexpr bool visits_node(Step step) {
+  return step == Step::branch || step == Step::leaf || step == Step::partial_leaf ||
+         step == Step::mailed_leaf || step == Step::cut;
+}
 /// Whether the entry of that number was tested, by a mailed_leaf's mask.
 [[nodiscard]] constexpr bool tested_in_mask(const std::uint32_t* mask, std::uint32_t entry) {
   return ((mask[entry / 32] >> (entry % 32)) & 1U) != 0;
