@@ -1,6 +1,7 @@
 #include <string>
 
 #include "processors/build_report.h"
+#include "processors/flow_conservation.h"
 #include "processors/replay.h"
 #include "sim/error.h"
 
@@ -34,12 +35,16 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
     check_node(result.nodes[node], result.end, node);
   }
   const StepCounts steps = result.steps();
-  require(steps.pixels == static_cast<std::int64_t>(log.width) * log.height, "every pixel is written once");
-  std::int64_t packets = 0;
-  for (const NodeStatistics& node : result.nodes) {
-    packets += node.packets;
+  if (config.scheme == Scheme::image) {
+    require(steps.pixels == static_cast<std::int64_t>(log.width) * log.height, "every pixel is written once");
+    std::int64_t packets = 0;
+    for (const NodeStatistics& node : result.nodes) {
+      packets += node.packets;
+    }
+    require(packets == static_cast<std::int64_t>(result.packets), "every packet is traced once");
+  } else {
+    check_flow_conservation(log, config, result);
   }
-  require(packets == static_cast<std::int64_t>(result.packets), "every packet is traced once");
 
   std::int64_t reads = 0;
   std::int64_t writes = 0;
@@ -59,8 +64,9 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
   }
   const ReferenceCounts references = result.references();
   const BuildCounts built = result.build.counts();
-  const std::int64_t misses =
-      config.placement == Placement::shared ? references.all_misses() - built.local_misses : 0;
+  const std::int64_t misses = config.placement == Placement::shared && config.scheme != Scheme::space
+                                  ? references.all_misses() - built.local_misses
+                                  : 0;
   require(reads == misses + built.locks, "every miss and every lock is one read of the interconnect");
   require(writes == steps.pixels + built.writes,
           "every pixel and every part of the tree is one write of the interconnect");

@@ -34,7 +34,7 @@ struct FlowCounts {
         C{"ended", "1", "rays that ended here", &FlowCounts::ended},
         C{"contributions", "1", "contributions to pixels sent to the host", &FlowCounts::contributions},
         C{"bytes_sent", "byte", "bytes of the messages sent", &FlowCounts::bytes_sent},
-        C{"longest_queue", "1", "most rays waiting at a time", &FlowCounts::longest_queue,
+        C{"longest_queue", "1", "most slots of its queue in use at a time", &FlowCounts::longest_queue,
           MergeRule::maximum},
         C{"most_set_aside", "1", "most rays set aside in the node's own memory at a time",
           &FlowCounts::most_set_aside, MergeRule::maximum},
@@ -53,7 +53,8 @@ struct FlowResult {
   std::int64_t most_in_flight = 0;                  ///< rays at a time, of all clusters
   std::uint64_t regions = 0;                        ///< space: cut out of the tree
   std::uint64_t top_nodes = 0;                      ///< space: tree nodes that every node has
-  std::uint64_t duplicated_primitives = 0;          ///< space: primitive records beyond one of each
+  std::uint64_t duplicated_primitives = 0;          ///< space: records beyond one of each, in a cluster
+  sim::Ticks sampling_work = 0;                     ///< space: computing of a pre-pass before the frame
 };
 
 }  // namespace marti::processors

@@ -42,6 +42,7 @@ void check(const MachineConfig& config) {
   if (std::uint64_t{config.clusters} * config.nodes > most_nodes) {
     throw sim::UserError("a machine of more than 2^24 nodes");
   }
+  check_flow(config);
   if (config.write_buffer == 0 || config.word_bytes == 0) {
     throw sim::UserError("the write buffer and the word must not be empty");
   }
@@ -50,7 +51,8 @@ void check(const MachineConfig& config) {
         "build.sharing: nodes with a database each (database.placement = \"replicated\") have no tree to "
         "share; use \"private\" or \"none\"");
   }
-  if ((config.placement == Placement::replicated || config.build.sharing == Sharing::private_trees) &&
+  if ((config.placement == Placement::replicated || config.build.sharing == Sharing::private_trees ||
+       config.scheme == Scheme::space) &&
       config.local.width == 0) {
     throw sim::UserError("local memory must be at least one byte wide");
   }

@@ -236,10 +236,8 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
       return;  // a message sent later has come earlier, and was woken for
     }
     node.wake_at = never;
-    if (node.current == RayPool::none) {
-      spend(number, Activity::message_wait, now - cursors_[number].time);
-      take(number, now);
-    }
+    spend(number, Activity::message_wait, now - cursors_[number].time);
+    take(number, now);
   }
 
   // --- the nodes ---
@@ -347,10 +345,10 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     if (contributes(ray)) {
       Base::send_contribution(number, now);
     }
-    make_rays(number, ray);
     const std::uint32_t cluster = cluster_of(number);
-    trees_.end_ray(ray.tree);
     host_.leave(cluster);
+    make_rays(number, ray);
+    trees_.end_ray(ray.tree);
     if (host_.has_credit(cluster)) {
       ask_for_rays(cluster, now);
     }

@@ -51,8 +51,13 @@ RunResult run(sim::Config& config) {
   const processors::WorkLog& log = *result.functional.frame.log;
   result.timed = processors::replay(log, result.machine);
   sim::Ticks one_node_end = result.timed.end;
-  if (result.machine.all_nodes() > 1) {
+  if (result.machine.all_nodes() > 1 || result.machine.scheme != processors::Scheme::image) {
+    // However the machine divides its work, one node has nobody to divide it with: it traces the image.
     processors::MachineConfig one = result.machine;
+    one.scheme = processors::Scheme::image;
+    if (result.machine.scheme == processors::Scheme::space) {
+      one.placement = processors::Placement::replicated;  // in its own memory, where it has the whole scene
+    }
     one.clusters = 1;
     one.nodes = 1;
     one_node_end = processors::replay(log, one).end;

@@ -292,6 +292,7 @@ class NaiveSpace {
             cluster.network->send(now, number - base(number), machine_.nodes, bytes).arrival;
         last_arrival_ = std::max(last_arrival_, arrival);
       }
+      --cluster.in_flight;
       std::vector<RayPointer> children;
       for (std::uint32_t child = ray->logged().first_child; child != processors::LoggedRay::none;
            child = (*ray->tree)[child].next_sibling) {
@@ -300,7 +301,6 @@ class NaiveSpace {
         ++node.counts.made;
       }
       node.made.insert(node.made.end(), children.rbegin(), children.rend());
-      --cluster.in_flight;
       post(now, admit_class, number / machine_.nodes, {});
     }
     look(number, now);
