@@ -62,6 +62,10 @@ RegionMap cut_regions(const accel::Topology& topology, std::uint32_t level) {
     const std::uint32_t number = to_visit.back();
     to_visit.pop_back();
     const accel::TopologyNode& node = topology.nodes[number];
+    if (node.leaf && node.count == 0) {
+      ++map.top_nodes;
+      continue;
+    }
     if (node.leaf || node.level >= level) {
       map.region_of[number] = map.size();
       map.roots.push_back(number);

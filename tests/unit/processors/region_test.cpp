@@ -44,7 +44,7 @@ RC_GTEST_PROP(Regions, EachTreeNodeIsInOneRegionOrTheTop, (std::uint64_t seed)) 
     while (topology.nodes[root].level > level) {
       root = parents[root];
     }
-    if (topology.nodes[root].level < level && !node.leaf) {
+    if ((node.level < level && !node.leaf) || (node.level <= level && node.leaf && node.count == 0)) {
       RC_ASSERT(map.region_of[number] == RegionMap::top);
       ++top;
     } else {
@@ -57,18 +57,29 @@ RC_GTEST_PROP(Regions, EachTreeNodeIsInOneRegionOrTheTop, (std::uint64_t seed)) 
 
 TEST(Regions, OneLevelIsOneRegion) {
   test::Random random(1);
-  const RegionMap map = cut_regions(test::random_topology(random, 9, 50, 6), 1);
+  const RegionMap map = cut_regions(test::random_topology(random, 9, 50, 6), 1);  // its root is a branch
   EXPECT_EQ(map.size(), 1U);
   EXPECT_EQ(map.top_nodes, 0U);
   EXPECT_EQ(std::set<std::uint32_t>(map.region_of.begin(), map.region_of.end()), std::set<std::uint32_t>{0});
 }
 
-TEST(Regions, BelowTheTreeEveryLeafIsOne) {
+TEST(Regions, AnEmptySceneHasNone) {
+  accel::Topology topology;
+  topology.nodes = {{0, 0, 1, true}};
+  const RegionMap map = cut_regions(topology, 1);
+  EXPECT_EQ(map.size(), 0U);
+  EXPECT_EQ(map.top_nodes, 1U);
+  EXPECT_TRUE(deal_in_blocks(0, 3).empty());
+  EXPECT_TRUE(deal_balanced({}, 3).empty());
+}
+
+TEST(Regions, BelowTheTreeEveryLeafWithObjectsIsOne) {
   test::Random random(2);
   const accel::Topology topology = test::random_topology(random, 9, 50, 6);
   const RegionMap map = cut_regions(topology, 0xffffffffU);
-  const auto leaves = std::count_if(topology.nodes.begin(), topology.nodes.end(),
-                                    [](const accel::TopologyNode& node) { return node.leaf; });
+  const auto leaves =
+      std::count_if(topology.nodes.begin(), topology.nodes.end(),
+                    [](const accel::TopologyNode& node) { return node.leaf && node.count > 0; });
   EXPECT_EQ(map.size(), leaves);
   EXPECT_EQ(map.top_nodes, topology.nodes.size() - static_cast<std::size_t>(leaves));
 }
@@ -76,8 +87,9 @@ TEST(Regions, BelowTheTreeEveryLeafIsOne) {
 TEST(Regions, AreNumberedDepthFirst) {
   // A root with two branches of two leaves each, and a leaf between them.
   accel::Topology topology;
-  topology.nodes = {{1, 3, 1, false}, {4, 2, 2, false}, {0, 0, 2, true}, {6, 2, 2, false},
-                    {0, 0, 3, true},  {0, 0, 3, true},  {0, 0, 3, true}, {0, 0, 3, true}};
+  topology.entries = {0};
+  topology.nodes = {{1, 3, 1, false}, {4, 2, 2, false}, {0, 1, 2, true}, {6, 2, 2, false},
+                    {0, 1, 3, true},  {0, 1, 3, true},  {0, 1, 3, true}, {0, 1, 3, true}};
   EXPECT_EQ(cut_regions(topology, 3).roots, (std::vector<std::uint32_t>{4, 5, 2, 6, 7}));
   EXPECT_EQ(cut_regions(topology, 2).roots, (std::vector<std::uint32_t>{1, 2, 3}));
 }
@@ -102,7 +114,7 @@ RC_GTEST_PROP(Regions, DistinctPrimitivesAreThoseOfASet, (std::uint64_t seed)) {
   const RegionMap map = cut_regions(topology, static_cast<std::uint32_t>(test::pick(random, 1, 6)));
   std::vector<std::set<std::uint32_t>> sets(map.size());
   for (std::size_t number = 0; number < topology.nodes.size(); ++number) {
-    if (topology.nodes[number].leaf) {
+    if (topology.nodes[number].leaf && topology.nodes[number].count > 0) {
       const auto first = topology.entries.begin() + topology.nodes[number].first;
       sets[map.region_of[number]].insert(first, first + topology.nodes[number].count);
     }
@@ -213,8 +225,8 @@ TEST(RegionWork, FollowsARayFromRegionToRegion) {
   log.height = 1;
   log.primitives = 1;
   log.materials = 1;
-  log.topology.nodes = {{1, 2, 1, false}, {0, 1, 2, true}, {1, 0, 2, true}};
-  log.topology.entries = {0};
+  log.topology.nodes = {{1, 2, 1, false}, {0, 1, 2, true}, {1, 1, 2, true}};
+  log.topology.entries = {0, 0};
   const auto ray = [](RayKind kind, std::uint32_t bounce) {
     return make_word(Step::ray, static_cast<std::uint32_t>(kind) | bounce << 2U);
   };
@@ -234,8 +246,9 @@ TEST(RegionWork, FollowsARayFromRegionToRegion) {
   ticks.shade = 10000;
   ticks.light = 100000;
   const RegionWork work = sample_work(log, cut_regions(log.topology, 2), ticks, 2);
-  EXPECT_EQ(work.of, (std::vector<std::uint64_t>{100 + 1000 + 10000 + 2 + 10, 1 + 10 + 100 + 100 + 100000}));
-  EXPECT_EQ(work.total, sim::Ticks{11112 + 100211 + 11});
+  EXPECT_EQ(work.of,
+            (std::vector<std::uint64_t>{100 + 1000 + 10000 + 2 + 10, 1 + 10 + 2 * (100 + 1000) + 100000}));
+  EXPECT_EQ(work.total, sim::Ticks{11112 + 102211 + 1 + 10});
 }
 
 RC_GTEST_PROP(SpacePlan, MemoryIsThatOfBruteForce, (std::uint64_t seed)) {
@@ -267,7 +280,8 @@ RC_GTEST_PROP(SpacePlan, MemoryIsThatOfBruteForce, (std::uint64_t seed)) {
     std::set<std::uint32_t> primitives;
     for (std::size_t number = 0; number < log.topology.nodes.size(); ++number) {
       const accel::TopologyNode& record = log.topology.nodes[number];
-      const bool in_top = record.level < machine.space.level && !record.leaf;
+      const bool in_top = record.leaf ? record.level <= machine.space.level && record.count == 0
+                                      : record.level < machine.space.level;
       RC_ASSERT(in_top == (plan.owner[number] == RegionMap::top));
       if (in_top || plan.owner[number] == node) {
         bytes += padded(machine.layout.node_bytes);
