@@ -292,7 +292,14 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   // Up to where the ray's steps are taken at a node; also finds the light that a shadow ray reaches.
   const std::uint32_t* last_word_here(std::uint32_t port, FlowRay& ray) const {
     const std::uint32_t* word = ray.word;
-    for (; word != ray.end; word += step_words(word)) {
+    const std::uint32_t* const end = ray.end;
+    for (; word != end; word += step_words(word)) {
+      while (whole_visit(*word)) {
+        const std::uint32_t owner = owner_[operand_of(*word)];
+        if ((owner != port && owner != RegionMap::top) || ++word == end) {
+          return word;
+        }
+      }
       const std::uint32_t owner = owner_of(*word);
       if (owner != port && owner != RegionMap::top) {
         break;
