@@ -11,6 +11,7 @@
 #include "sim/error.h"
 #include "studies/build_keys.h"
 #include "studies/flow_keys.h"
+#include "studies/network_keys.h"
 
 namespace marti::studies {
 
@@ -300,12 +301,23 @@ void read_interconnect(sim::Config& config, processors::MachineConfig& machine) 
   config.mark_unused_reason("memory", "there are no banks " + kind, "interconnect.kind");
 }
 
+// Only where rays move from node to node are messages sent.
+void read_messages(sim::Config& config, processors::MachineConfig& machine) {
+  if (machine.scheme != processors::Scheme::image) {
+    machine.network = read_network(config);
+    return;
+  }
+  config.mark_unused_reason("network", "no messages are sent with machine.scheme = \"image\"",
+                            "machine.scheme");
+}
+
 }  // namespace
 
 void declare_machine_keys(sim::Schema& schema) {
   declare_node(schema);
   declare_memory(schema);
   declare_interconnect(schema);
+  declare_network_keys(schema);
   declare_host(schema);
   declare_build_keys(schema);
   declare_flow_keys(schema);
@@ -332,6 +344,7 @@ processors::MachineConfig read_machine(sim::Config& config) {
   read_local(config, machine);
   read_interconnect(config, machine);
   read_flow(config, machine);
+  read_messages(config, machine);
   machine.packets = {count(config, "packets.width"), count(config, "packets.height"),
                      config.choice_as<processors::PacketOrder>("packets.order")};
   if (image) {
