@@ -7,6 +7,7 @@
 
 #include "memory/layout.h"
 #include "memory/set_tags.h"
+#include "processors/memory_system.h"
 #include "processors/node_array.h"
 #include "processors/node_order.h"
 #include "processors/packets.h"
@@ -102,15 +103,14 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   std::vector<std::unique_ptr<memory::Interconnect>> interconnects;
   std::vector<memory::Interconnect*> links;
   for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
-    interconnects.push_back(memory::make_interconnect(
-        config.interconnect, config.banks,
-        {engine, nodes->client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * config.nodes,
-         config.nodes}));
+    interconnects.push_back(make_memory_system(
+        config, {engine, nodes->client(cluster), static_cast<std::uint8_t>(EventClass::reply),
+                 cluster * config.nodes, config.nodes, static_cast<std::uint8_t>(EventClass::memory)}));
     links.push_back(interconnects.back().get());
   }
   nodes->connect(links);
-  for (const EventClass c :
-       {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read, EventClass::write}) {
+  for (const EventClass c : {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read,
+                             EventClass::write, EventClass::memory}) {
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
   }
   nodes->start(options.start_seed);
@@ -123,6 +123,9 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   result.nodes = nodes->statistics();
   for (const auto& interconnect : interconnects) {
     result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
+    if (const memory::DistributedStatistics* const accesses = interconnect->distribution()) {
+      result.clusters.back().distributed = {*accesses, *interconnect->network_statistics()};
+    }
   }
   result.host = host.statistics();
   result.build = nodes->build_result();
