@@ -84,9 +84,10 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
       make_node_array({log, config, layout, packets, rank, options.step_by_step, plan ? &*plan : nullptr,
                        options.report_built},
                       engine, host);
-  const Interconnects interconnects = connect_memory(config, engine, *nodes);
-  for (const EventClass c :
-       {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read, EventClass::write}) {
+  const Interconnects interconnects =
+      connect_memory(config, engine, static_cast<std::uint8_t>(EventClass::memory), *nodes);
+  for (const EventClass c : {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read,
+                             EventClass::write, EventClass::memory}) {
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
   }
   nodes->start(options.start_seed);
