@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "studies/build_output.h"
+#include "studies/flow_output.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
 #include "studies/version.h"
@@ -202,7 +203,7 @@ std::string json_of(const RunResult& r) {
   const processors::MachineResult& timed = r.timed;
   const Utilisation used = utilisation_of(r.machine, timed);
   Json machine = {
-      {"scheme", "image"},
+      {"scheme", processors::scheme_names[static_cast<std::size_t>(r.machine.scheme)]},
       {"clusters", r.machine.clusters},
       {"nodes", r.machine.nodes},
       {"frame_time_ps", timed.end},
@@ -230,6 +231,9 @@ std::string json_of(const RunResult& r) {
       {"per_node", nodes_json(timed)}};
   if (timed.build.sharing != processors::Sharing::given) {
     machine["build"] = build_json(timed.build, timed.nodes.size() <= most_listed);
+  }
+  if (r.machine.scheme != processors::Scheme::image) {
+    machine["flow"] = flow_json(r.machine, timed, timed.nodes.size() <= most_listed);
   }
   const Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
                        {"config", config_json(r)},

@@ -43,6 +43,9 @@ enum class Limit {
   lock,
   imbalance,
   write_buffer,
+  slowest_part,
+  queues,
+  messages,
   compute
 };
 

@@ -7,6 +7,7 @@
 
 #include "sim/units.h"
 #include "studies/build_output.h"
+#include "studies/flow_output.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
 #include "studies/text_units.h"
@@ -129,8 +130,9 @@ void voxel_lines(Lines out, const RunResult& r) {
 
 void machine_lines(Lines out, const RunResult& r) {
   const processors::MachineConfig& machine = r.machine;
-  fmt::format_to(out, "machine       {} of {}, image scheme, {} of {} x {}\n",
+  fmt::format_to(out, "machine       {} of {}, {} scheme, {} of {} x {}\n",
                  counted(machine.clusters, "cluster"), counted(machine.nodes, "node"),
+                 processors::scheme_names[static_cast<std::size_t>(machine.scheme)],
                  counted(r.timed.packets, "packet"), machine.packets.width, machine.packets.height);
   fmt::format_to(out, "database      {}, {} cop{}: {} in all\n",
                  bytes(static_cast<double>(r.timed.database_bytes)), grouped(r.timed.copies),
@@ -219,6 +221,7 @@ std::string summary_of(const RunResult& r) {
   time_lines(out, r);
   memory_lines(out, r);
   text += build_lines(r.timed);
+  text += flow_lines(r.machine, r.timed);
   text += bound_lines(r);
   text += record_lines(r);
   fmt::format_to(out, "\nlimited by    {}\n", r.finding.sentence);

@@ -63,8 +63,8 @@ RC_GTEST_PROP(Replay, ScalingEveryDurationScalesEveryTimeExactly, (std::uint64_t
   const MachineResult base = replay(log, machine);
   for (std::int64_t scale = 10; scale <= 1'000'000'000; scale *= 10) {
     MachineConfig slow = machine;
-    for (sim::Clock* clock :
-         {&slow.clock, &slow.interconnect.clock, &slow.banks.clock, &slow.host.clock, &slow.local.clock}) {
+    for (sim::Clock* clock : {&slow.clock, &slow.interconnect.clock, &slow.banks.clock, &slow.host.clock,
+                              &slow.local.clock, &slow.network.clock}) {
       *clock = sim::Clock::from_period(clock->period() * scale);
     }
     const MachineResult scaled = replay(log, slow);
