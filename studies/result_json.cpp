@@ -171,12 +171,21 @@ Json clusters_json(const processors::MachineResult& result) {
   for (const processors::ClusterResult& cluster : result.clusters) {
     Json interconnect = counters_json(cluster.interconnect);
     interconnect["waits"] = wait_json(cluster.interconnect.waits);
-    Json banks = Json::array();
-    for (const memory::BankStatistics& bank : cluster.banks) {
-      banks.push_back(counters_json(bank));
-      banks.back()["waits"] = wait_json(bank.waits);
+    Json banks = nullptr;
+    if (cluster.banks.size() <= most_listed) {
+      banks = Json::array();
+      for (const memory::BankStatistics& bank : cluster.banks) {
+        banks.push_back(counters_json(bank));
+        banks.back()["waits"] = wait_json(bank.waits);
+      }
     }
     clusters.push_back({{"interconnect", interconnect}, {"banks", banks}});
+    if (cluster.distributed) {
+      Json network = counters_json(cluster.distributed->network);
+      network["waits"] = wait_json(cluster.distributed->network.waits);
+      clusters.back()["distributed"] = counters_json(cluster.distributed->accesses);
+      clusters.back()["distributed"]["network"] = network;
+    }
   }
   return clusters;
 }

@@ -19,7 +19,8 @@ double share(sim::Ticks part, double whole) { return whole > 0.0 ? static_cast<d
 std::string describe(Limit limit, double part, const Utilisation& used,
                      const processors::MachineConfig& machine, const processors::MachineResult& result) {
   const double percent = 100.0 * part;
-  const bool bus = machine.interconnect.kind == memory::InterconnectKind::bus;
+  const bool distributed = machine.placement == processors::Placement::distributed;
+  const bool bus = !distributed && machine.interconnect.kind == memory::InterconnectKind::bus;
   switch (limit) {
     case Limit::nothing:
       return "nothing to do";
@@ -27,8 +28,15 @@ std::string describe(Limit limit, double part, const Utilisation& used,
       return fmt::format(
           "the {} is {:.1f} % busy and nodes spend {:.1f} % of their time waiting for it; fewer misses "
           "(larger cache), a wider {} or more clusters would help",
-          bus ? "bus" : "crossbar", 100.0 * used.interconnect.value_or(0.0), percent, bus ? "bus" : "link");
+          interconnect_name(machine), 100.0 * used.interconnect.value_or(0.0), percent, bus ? "bus" : "link");
     case Limit::bank:
+      if (distributed) {
+        return fmt::format(
+            "the busiest node's memory is {:.1f} % busy and nodes spend {:.1f} % of their time waiting for "
+            "each other's memories; fewer misses (larger cache), faster memories or another "
+            "database.interleave would help",
+            100.0 * used.bank, percent);
+      }
       return fmt::format(
           "the busiest bank is {:.1f} % busy and nodes spend {:.1f} % of their time waiting for banks; more "
           "or "
@@ -96,6 +104,28 @@ std::string describe(Limit limit, double part, const Utilisation& used,
 
 }  // namespace
 
+std::string interconnect_name(const processors::MachineConfig& machine) {
+  if (machine.placement == processors::Placement::distributed) {
+    const auto kind = static_cast<std::size_t>(machine.network.kind);
+    return std::string(memory::network_kind_names[kind]) + " network";
+  }
+  switch (machine.interconnect.kind) {
+    case memory::InterconnectKind::ideal:
+      return "ideal interconnect";
+    case memory::InterconnectKind::crossbar:
+      return "crossbar";
+    case memory::InterconnectKind::bus:
+      break;
+  }
+  return "bus";
+}
+
+bool has_links(const processors::MachineConfig& machine) {
+  return machine.placement == processors::Placement::distributed
+             ? machine.network.kind != memory::NetworkKind::ideal
+             : machine.interconnect.kind != memory::InterconnectKind::ideal;
+}
+
 Scaling scaling_of(sim::Ticks one_node_end, sim::Ticks end, std::uint32_t nodes) {
   Scaling scaling;
   scaling.nodes = nodes;
@@ -119,7 +149,7 @@ Utilisation utilisation_of(const processors::MachineConfig& machine,
   double busy = 0.0;
   const double end = static_cast<double>(result.end);
   for (const processors::ClusterResult& cluster : result.clusters) {
-    if (machine.interconnect.kind != memory::InterconnectKind::ideal) {
+    if (has_links(machine)) {
       const double links = static_cast<double>(cluster.interconnect.links);
       used.interconnect =
           std::max(used.interconnect.value_or(0.0), share(cluster.interconnect.busy, end * links));
