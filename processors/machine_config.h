@@ -76,6 +76,11 @@ struct MachineConfig {
   [[nodiscard]] std::uint32_t all_nodes() const { return clusters * nodes; }
 };
 
+/// What a machine's speed-up is measured against: the same with one cluster of one node. A single node has
+/// nobody to send rays to, so it traces packets: a pipeline's with its memory, a space-parallel machine's with
+/// the whole database in its own.
+[[nodiscard]] MachineConfig one_node_of(const MachineConfig& config);
+
 /// The most nodes a machine may have; event keys and node tables are sized by it.
 inline constexpr std::uint32_t most_nodes = 1U << 24U;
 

@@ -7,8 +7,10 @@
 
 #include "memory/layout.h"
 #include "memory/set_tags.h"
+#include "processors/bounds.h"
 #include "processors/node_array.h"
 #include "processors/node_order.h"
+#include "processors/observer.h"
 #include "processors/packets.h"
 #include "sim/engine.h"
 #include "sim/error.h"
@@ -94,10 +96,19 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   sim::Engine engine;
   engine.reserve(std::size_t{config.all_nodes()} + 1);
   Host host(config.host, packets.size(), config.all_nodes());
-  const std::unique_ptr<NodeArray> nodes =
-      make_node_array({log, config, layout, packets, rank, options.step_by_step, plan ? &*plan : nullptr,
-                       options.report_built},
-                      engine, host);
+  const ReplayInput input = {log,
+                             config,
+                             layout,
+                             packets,
+                             rank,
+                             options.step_by_step,
+                             plan ? &*plan : nullptr,
+                             options.report_built,
+                             options.observer};
+  if (options.observer != nullptr) {
+    options.observer->begin(input);
+  }
+  const std::unique_ptr<NodeArray> nodes = make_node_array(input, engine, host);
 
   std::vector<std::unique_ptr<memory::Interconnect>> interconnects;
   std::vector<memory::Interconnect*> links;
@@ -120,6 +131,9 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
 
   MachineResult result;
   result.end = nodes->end();
+  if (options.observer != nullptr) {
+    options.observer->end(result.end);
+  }
   result.nodes = nodes->statistics();
   for (const auto& interconnect : interconnects) {
     result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
@@ -135,6 +149,7 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
       config.cache.organisation == CacheOrganisation::none ? config.banks.interleave
                                                            : config.cache.cache.line);
   check_conservation(log, config, result);
+  check_bounds(config, result);
   return result;
 }
 

@@ -15,6 +15,8 @@
 
 namespace marti::processors {
 
+class Observer;
+
 /// What one cluster's interconnect and banks counted.
 struct ClusterResult {
   memory::InterconnectStatistics interconnect;
@@ -47,7 +49,8 @@ struct ReplayOptions {
   /// What of the tree is there when the frame begins, one entry a node, instead of what MachineConfig::build
   /// says; its `sharing` must not be `given`, and with `none` no branch may be lazy. Empty: what it says.
   std::vector<BranchStart> starts{};
-  bool report_built = false;  ///< fill BuildResult::built; empty all the same when the tree is given
+  bool report_built = false;     ///< fill BuildResult::built; empty all the same when the tree is given
+  Observer* observer = nullptr;  ///< watches (processors/observer.h); same result
 };
 
 /// Times `config` on `log`. Deterministic, single-threaded; many replays may share one log. Before it

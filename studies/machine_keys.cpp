@@ -10,6 +10,7 @@
 
 #include "sim/error.h"
 #include "studies/build_keys.h"
+#include "studies/network_keys.h"
 
 namespace marti::studies {
 
@@ -296,12 +297,23 @@ void read_interconnect(sim::Config& config, processors::MachineConfig& machine) 
   config.mark_unused_reason("memory", "there are no banks " + kind, "interconnect.kind");
 }
 
+// Only where rays move from node to node are messages sent.
+void read_messages(sim::Config& config, processors::MachineConfig& machine) {
+  if (machine.scheme != processors::Scheme::image) {
+    machine.network = read_network(config);
+    return;
+  }
+  config.mark_unused_reason("network", "no messages are sent with machine.scheme = \"image\"",
+                            "machine.scheme");
+}
+
 }  // namespace
 
 void declare_machine_keys(sim::Schema& schema) {
   declare_node(schema);
   declare_memory(schema);
   declare_interconnect(schema);
+  declare_network_keys(schema);
   declare_host(schema);
   declare_build_keys(schema);
 }
@@ -323,6 +335,7 @@ processors::MachineConfig read_machine(sim::Config& config) {
   machine.build = read_build(config);
   read_local(config, machine);
   read_interconnect(config, machine);
+  read_messages(config, machine);
   machine.packets = {count(config, "packets.width"), count(config, "packets.height"),
                      config.choice_as<processors::PacketOrder>("packets.order")};
   machine.host.assignment = config.choice_as<processors::Assignment>("host.assignment");
