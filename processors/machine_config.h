@@ -87,6 +87,9 @@ inline constexpr std::uint32_t most_nodes = 1U << 24U;
 /// Host bytes that a replay of the machine takes for its nodes and their tags, roughly.
 [[nodiscard]] std::uint64_t host_bytes(const MachineConfig& config);
 
+/// check() for what only schemes other than image have; nothing with the image scheme.
+void check_flow(const MachineConfig& config);
+
 /// Throws UserError with the reason when the machine cannot be built.
 void check(const MachineConfig& config);
 

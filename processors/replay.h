@@ -60,7 +60,8 @@ struct ReplayOptions {
                                    const ReplayOptions& options = {});
 
 /// The conservation laws that every result must obey: each node's time adds up to the end; every pixel is
-/// written once; what the nodes waited is what the interconnect and the banks made them wait; what was built
+/// written once, or where rays move, every ray of the log is made, traced and ended once, and every message
+/// arrives; what the nodes waited is what the interconnect and the banks made them wait; what was built
 /// is what is there.
 void check_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result);
 
