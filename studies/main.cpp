@@ -148,7 +148,11 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
   trace->add_option("--nodes", arguments.options.nodes, "which nodes, as 0-3 or 0,2,8-9; all if not given");
   trace->add_option("--limit", arguments.limit, "refuse to write more than this, as \"4 GiB\"");
   trace->callback([&] {
-    arguments.options.most_bytes = static_cast<std::uint64_t>(sim::parse_size(arguments.limit));
+    try {
+      arguments.options.most_bytes = static_cast<std::uint64_t>(sim::parse_size(arguments.limit));
+    } catch (const sim::UserError& error) {
+      throw sim::UserError("--limit: " + std::string(error.what()));
+    }
     sim::Config config =
         sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
     studies::prepare_output(arguments.directory);
