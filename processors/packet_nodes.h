@@ -116,6 +116,7 @@ class PacketNodes : public NodeArray {
   // Gives the node its next packet, or ends it.
   void dispatch(std::uint32_t node) {
     Cursor& cursor = cursors_[node];
+    watch_misses(node, {});  // those before the frame are no pixel's
     const std::optional<Grant> grant = host_.next(node, cursor.time);
     if (!grant) {
       statistics_[node].finish = cursor.time;
@@ -127,7 +128,6 @@ class PacketNodes : public NodeArray {
     const sim::Ticks asked = std::exchange(cursor.time, grant->start);
     if (input_.observer != nullptr) {
       watch(node, NodeState::dispatch_wait, asked, false);
-      watch_misses(node, {});
       input_.observer->began_packet(node, grant->packet, grant->start);
     }
     cursor.packet = input_.packets[grant->packet];
