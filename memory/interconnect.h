@@ -93,6 +93,8 @@ class Interconnect {
   [[nodiscard]] virtual const InterconnectStatistics& statistics() const = 0;
   /// Statistics of the banks behind it; empty where no banks are modelled.
   [[nodiscard]] virtual const std::vector<BankStatistics>& bank_statistics() const = 0;
+  /// Statistics of the cache before them; null where there is none.
+  [[nodiscard]] virtual const SharedCacheStatistics* cache_statistics() const { return nullptr; }
   /// Time of a read of `bytes` that meets no other transaction.
   [[nodiscard]] virtual sim::Ticks unloaded_read(std::uint32_t bytes) const = 0;
 };

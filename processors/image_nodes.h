@@ -74,6 +74,8 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
     }
   }
 
+  SecondLevelResult second_level() const override { return walker_.second_level().result(); }
+
   std::size_t bytes_per_node() const override { return Base::common_bytes(); }
 
  private:

@@ -11,6 +11,7 @@
 #include "processors/packets.h"
 #include "processors/program/work_log.h"
 #include "processors/replay_input.h"
+#include "processors/second_level.h"
 #include "processors/step_time.h"
 #include "processors/visit_plan.h"
 
@@ -60,7 +61,9 @@ class LogWalker {
         mailboxes_(input.log.mailboxes),
         local_access_(input.config.local.clock.cycles(input.config.local.access_cycles)),
         local_beat_(input.config.local.clock.cycles(input.config.local.cycles_per_beat)),
-        local_database_(input.config.placement == Placement::replicated) {
+        local_database_(input.config.placement == Placement::replicated),
+        second_level_(input.config),
+        passes_misses_on_(!local_database_ || second_level_.present()) {
     if (Caches::present && !input.step_by_step) {
       plan_ = plan_visits(input.log, input.layout, input.node_rank, unit_shift_, ticks_);
       plan_limit_ = plan_.empty() ? 0 : 2U << operand_bits;
@@ -68,12 +71,20 @@ class LogWalker {
   }
 
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
+  [[nodiscard]] const PrivateSecondLevel& second_level() const { return second_level_; }
 
   /// Takes `node` on from its cursor. Without RunAhead it stops after every reference.
   template <bool RunAhead>
   Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
     Tally tally;
-    const Stop stop = walk<RunAhead>(caches_.view(node), cursor, statistics, tally);
+    Stop stop = Stop::hit;
+    do {
+      stop = walk<RunAhead>(caches_.view(node), cursor, statistics, tally);
+      if (stop != Stop::miss || !second_level_.present() || !serve(node, cursor, statistics)) {
+        break;
+      }
+      stop = Stop::hit;
+    } while (RunAhead);
     flush(tally, statistics);
     return stop;
   }
@@ -263,7 +274,7 @@ class LogWalker {
     settle(cursor, line, tests_of_label(label));
     --hits_of(statistics, kind_of_label(label));
     ++misses_of(statistics, kind_of_label(label));
-    if (!local_database_) {
+    if (passes_misses_on_) {
       stop = Stop::miss;
       return false;
     }
@@ -297,7 +308,7 @@ class LogWalker {
         cursor.at = (unit + 1) << unit_shift_;
       } else {
         ++misses_of(statistics, kind);
-        if (!local_database_) {
+        if (passes_misses_on_) {
           stop = Stop::miss;
           return false;
         }
@@ -431,6 +442,19 @@ class LogWalker {
     return true;
   }
 
+  // Serves a miss behind which there is a second level. False when it needs the interconnect.
+  bool serve(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
+    const auto line = static_cast<std::uint32_t>(missed_address(cursor) >> unit_shift_);
+    if (!second_level_.access(node, line, cursor.time, statistics.time)) {
+      if (!local_database_) {
+        return false;
+      }
+      read_local(cursor, statistics, line_bytes_);
+    }
+    pass(cursor);
+    return true;
+  }
+
   void read_local(Cursor& cursor, NodeStatistics& statistics, std::uint32_t bytes) const {
     const std::int64_t width = input_.config.local.width;
     const sim::Ticks transfer = sim::multiply_ticks(local_beat_, (std::int64_t{bytes} + width - 1) / width);
@@ -458,6 +482,8 @@ class LogWalker {
   sim::Ticks local_access_;
   sim::Ticks local_beat_;
   bool local_database_;
+  PrivateSecondLevel second_level_;
+  bool passes_misses_on_;  ///< to the second level or the interconnect
 };
 
 }  // namespace marti::processors

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "memory/tags.h"
+#include "processors/second_level.h"
 #include "sim/error.h"
 
 namespace marti::processors {
@@ -33,7 +34,10 @@ std::uint64_t host_bytes(const MachineConfig& config) {
       tags += tag_bytes(part);
     }
   }
-  // At most 2^24 nodes of four caches of 2^28 lines: this cannot overflow.
+  if (config.l2.sharing == SecondLevel::private_caches) {
+    tags += tag_bytes(second_level_cache(config)) + sizeof(memory::CacheCounters);
+  }
+  // At most 2^24 nodes of five caches of 2^28 lines: this cannot overflow.
   return config.all_nodes() * (bytes_a_node + config.write_buffer * sizeof(sim::Ticks) + tags);
 }
 
@@ -70,6 +74,7 @@ void check(const MachineConfig& config) {
       }
     }
   }
+  check_second_level(config);
 }
 
 }  // namespace marti::processors

@@ -16,6 +16,7 @@
 #include "processors/flow_config.h"
 #include "processors/host.h"
 #include "processors/packets.h"
+#include "processors/second_level_config.h"
 #include "sim/time.h"
 
 namespace marti::processors {
@@ -60,6 +61,7 @@ struct MachineConfig {
   std::uint32_t write_buffer = 4;  ///< posted pixel writes a node may have outstanding, at least 1
   memory::LayoutConfig layout;
   NodeCacheConfig cache;
+  SecondLevelConfig l2;
   Placement placement = Placement::shared;
   LocalMemoryConfig local;
   memory::InterconnectConfig interconnect;

@@ -103,7 +103,7 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   std::vector<memory::Interconnect*> links;
   for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
     interconnects.push_back(memory::make_interconnect(
-        config.interconnect, config.banks,
+        config.interconnect, banks_of(config),
         {engine, nodes->client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * config.nodes,
          config.nodes}));
     links.push_back(interconnects.back().get());
@@ -123,6 +123,13 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   result.nodes = nodes->statistics();
   for (const auto& interconnect : interconnects) {
     result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
+    if (const memory::SharedCacheStatistics* const cache = interconnect->cache_statistics()) {
+      result.l2.caches.push_back(cache->lookups);
+      result.l2.waits.push_back(cache->waits);
+    }
+  }
+  if (config.l2.sharing == SecondLevel::private_caches) {
+    result.l2 = nodes->second_level();
   }
   result.host = host.statistics();
   result.build = nodes->build_result();

@@ -12,6 +12,7 @@
 #include "processors/host.h"
 #include "processors/machine_config.h"
 #include "processors/program/work_log.h"
+#include "processors/second_level.h"
 
 namespace marti::processors {
 
@@ -27,8 +28,9 @@ struct MachineResult {
   std::vector<NodeStatistics> nodes;
   std::vector<ClusterResult> clusters;
   HostStatistics host;
-  BuildResult build;  ///< empty when the tree is given
-  FlowResult flow;    ///< empty with the image scheme
+  BuildResult build;     ///< empty when the tree is given
+  FlowResult flow;       ///< empty with the image scheme
+  SecondLevelResult l2;  ///< empty without a second level
   std::uint64_t packets = 0;
   std::uint64_t database_bytes = 0;  ///< of one copy, as the frame begins
   std::uint64_t copies = 0;          ///< one for each cluster, or for each node when replicated

@@ -10,6 +10,7 @@
 
 #include "sim/error.h"
 #include "studies/build_keys.h"
+#include "studies/cache_detail_keys.h"
 
 namespace marti::studies {
 
@@ -119,6 +120,7 @@ void declare_memory(Schema& schema) {
   schema.integer("cache.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
                  "seed of random replacement");
   cycles(schema, "cache.hit_cycles", 1, "cycles of a reference that hits");
+  declare_second_level_keys(schema);
   schema.section("database", "where the scene database is");
   schema.choice("database.placement", "shared", names(processors::placement_names),
                 "shared: one copy in each cluster's memory; replicated: a copy in every node's own memory");
@@ -323,6 +325,7 @@ processors::MachineConfig read_machine(sim::Config& config) {
   machine.build = read_build(config);
   read_local(config, machine);
   read_interconnect(config, machine);
+  read_second_level(config, machine);
   machine.packets = {count(config, "packets.width"), count(config, "packets.height"),
                      config.choice_as<processors::PacketOrder>("packets.order")};
   machine.host.assignment = config.choice_as<processors::Assignment>("host.assignment");
