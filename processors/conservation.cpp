@@ -63,6 +63,7 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
       config.placement == Placement::shared ? misses_beyond_caches(config, result) - built.local_misses : 0;
   require(reads == misses + built.locks, "every miss and every lock is one read of the interconnect");
   check_second_level_laws(config, result);
+  check_counts(result.counts, result.references(), result.time());
   require(writes == steps.pixels + built.writes,
           "every pixel and every part of the tree is one write of the interconnect");
   // Posted writes wait too, but no node waits with them.

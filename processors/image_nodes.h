@@ -76,6 +76,8 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
 
   SecondLevelResult second_level() const override { return walker_.second_level().result(); }
 
+  CacheCountResult cache_counts() const override { return walker_.cache_counts(); }
+
   std::size_t bytes_per_node() const override { return Base::common_bytes(); }
 
  private:
@@ -109,6 +111,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
     spend(node, service);
     Cursor& cursor = cursors_[node];
     cursor.time = service.done;
+    walker_.note_wait(cursor, service);
     walker_.pass(cursor);
     run(node);
   }

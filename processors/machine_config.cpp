@@ -4,6 +4,7 @@
 #include <string>
 
 #include "memory/tags.h"
+#include "processors/cache_counting.h"
 #include "processors/second_level.h"
 #include "sim/error.h"
 
@@ -75,6 +76,7 @@ void check(const MachineConfig& config) {
     }
   }
   check_second_level(config);
+  check_counting(config);
 }
 
 }  // namespace marti::processors

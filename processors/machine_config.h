@@ -13,6 +13,7 @@
 #include "memory/network.h"
 #include "processors/build_config.h"
 #include "processors/cost_model.h"
+#include "processors/count_config.h"
 #include "processors/flow_config.h"
 #include "processors/host.h"
 #include "processors/packets.h"
@@ -74,6 +75,7 @@ struct MachineConfig {
   MessageConfig messages;         ///< pipeline and space
   PipelineConfig pipeline;
   SpaceConfig space;
+  CountConfig count;
 
   [[nodiscard]] std::uint32_t all_nodes() const { return clusters * nodes; }
 };

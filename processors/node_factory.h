@@ -16,6 +16,10 @@ namespace marti::processors {
 [[nodiscard]] std::unique_ptr<NodeArray> make_dynamic_nodes(const ReplayInput& input, sim::Engine& engine,
                                                             Host& host);
 
+/// For the counts that a run may be asked for beside hits and misses.
+[[nodiscard]] std::unique_ptr<NodeArray> make_counted_nodes(const ReplayInput& input, sim::Engine& engine,
+                                                            Host& host);
+
 template <template <class> class Nodes>
 std::unique_ptr<NodeArray> make_nodes(const ReplayInput& input, sim::Engine& engine, Host& host) {
   const auto make = [&]<class Caches>(Caches caches) -> std::unique_ptr<NodeArray> {

@@ -131,6 +131,7 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   if (config.l2.sharing == SecondLevel::private_caches) {
     result.l2 = nodes->second_level();
   }
+  result.counts = nodes->cache_counts();
   result.host = host.statistics();
   result.build = nodes->build_result();
   result.packets = packets.size();
