@@ -13,9 +13,11 @@
 #include "memory/network.h"
 #include "processors/build_config.h"
 #include "processors/cost_model.h"
+#include "processors/count_config.h"
 #include "processors/flow_config.h"
 #include "processors/host.h"
 #include "processors/packets.h"
+#include "processors/second_level_config.h"
 #include "sim/time.h"
 
 namespace marti::processors {
@@ -67,6 +69,7 @@ struct MachineConfig {
   std::uint32_t write_buffer = 4;  ///< posted pixel writes a node may have outstanding, at least 1
   memory::LayoutConfig layout;
   NodeCacheConfig cache;
+  SecondLevelConfig l2;
   Placement placement = Placement::shared;
   DistributionConfig distribution;
   LocalMemoryConfig local;
@@ -80,6 +83,7 @@ struct MachineConfig {
   MessageConfig messages;         ///< pipeline and space
   PipelineConfig pipeline;
   SpaceConfig space;
+  CountConfig count;
 
   [[nodiscard]] std::uint32_t all_nodes() const { return clusters * nodes; }
 };

@@ -10,10 +10,12 @@
 #include "processors/accounting.h"
 #include "processors/build_result.h"
 #include "processors/build_start.h"
+#include "processors/cache_counting.h"
 #include "processors/flow_result.h"
 #include "processors/host.h"
 #include "processors/machine_config.h"
 #include "processors/program/work_log.h"
+#include "processors/second_level.h"
 
 namespace marti::processors {
 
@@ -39,8 +41,10 @@ struct MachineResult {
   std::vector<NodeStatistics> nodes;
   std::vector<ClusterResult> clusters;
   HostStatistics host;
-  BuildResult build;  ///< empty when the tree is given
-  FlowResult flow;    ///< empty with the image scheme
+  BuildResult build;        ///< empty when the tree is given
+  FlowResult flow;          ///< empty with the image scheme
+  SecondLevelResult l2;     ///< empty without a second level
+  CacheCountResult counts;  ///< what MachineConfig::count asks for
   std::uint64_t packets = 0;
   std::uint64_t database_bytes = 0;  ///< of one copy, as the frame begins
   std::uint64_t copies = 0;          ///< one for each cluster, or for each node when replicated

@@ -61,7 +61,15 @@ MachineResult common_result(const MachineConfig& config, const sim::Engine& engi
     if (const memory::DistributedStatistics* const accesses = interconnect->distribution()) {
       result.clusters.back().distributed = {*accesses, *interconnect->network_statistics()};
     }
+    if (const memory::SharedCacheStatistics* const cache = interconnect->cache_statistics()) {
+      result.l2.caches.push_back(cache->lookups);
+      result.l2.waits.push_back(cache->waits);
+    }
   }
+  if (config.l2.sharing == SecondLevel::private_caches) {
+    result.l2 = nodes.second_level();
+  }
+  result.counts = nodes.cache_counts();
   result.build = nodes.build_result();
   result.database_bytes = layout.database_bytes();
   result.copies = config.placement == Placement::replicated ? config.all_nodes() : config.clusters;

@@ -10,6 +10,7 @@
 
 #include "sim/error.h"
 #include "studies/build_keys.h"
+#include "studies/cache_detail_keys.h"
 #include "studies/flow_keys.h"
 #include "studies/network_keys.h"
 #include "studies/space_keys.h"
@@ -123,6 +124,7 @@ void declare_memory(Schema& schema) {
   schema.integer("cache.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
                  "seed of random replacement");
   cycles(schema, "cache.hit_cycles", 1, "cycles of a reference that hits");
+  declare_second_level_keys(schema);
   schema.section("database", "where the scene database is");
   schema.choice("database.placement", "shared", names(processors::placement_names),
                 "shared: one copy in each cluster's memory; replicated: a copy in every node's own memory; "
@@ -397,6 +399,7 @@ processors::MachineConfig read_machine(sim::Config& config) {
   if (machine.scheme != processors::Scheme::space) {
     read_interconnect(config, machine);
   }
+  read_second_level(config, machine);
   read_flow(config, machine);
   read_messages(config, machine);
   read_space(config, machine);

@@ -7,6 +7,7 @@
 
 #include "sim/units.h"
 #include "studies/build_output.h"
+#include "studies/cache_output.h"
 #include "studies/flow_output.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
@@ -213,6 +214,7 @@ void memory_lines(Lines out, const RunResult& r) {
     line(memory::record_kind_names[kind], references.hits[kind], references.misses[kind]);
   }
   line("all", references.all_hits(), references.all_misses());
+  fmt::format_to(out, "{}", second_level_line(r.machine, r.timed));
 
   const Utilisation used = utilisation_of(r.machine, r.timed);
   memory::WaitStatistics waits;
