@@ -27,6 +27,16 @@ void check_node(const NodeStatistics& node, sim::Ticks end, std::size_t number) 
           "tests of spheres, cylinders and cones are tests");
 }
 
+void check_contexts(const MachineConfig& config, const MachineResult& result) {
+  const sim::Ticks each = config.clock.cycles(config.switch_cycles);
+  for (std::size_t node = 0; node < result.contexts.nodes.size(); ++node) {
+    const ContextCounts& counts = result.contexts.nodes[node];
+    require(part(result.nodes[node].time, Activity::switching) == sim::multiply_ticks(each, counts.switches),
+            "switching is the switches' time");
+    require(counts.useful + counts.useless == counts.issued, "prefetched lines are useful or useless");
+  }
+}
+
 }  // namespace
 
 void check_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result) {
@@ -61,7 +71,8 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
   const BuildCounts built = result.build.counts();
   const std::int64_t misses =
       config.placement == Placement::shared ? references.all_misses() - built.local_misses : 0;
-  require(reads == misses + built.locks, "every miss and every lock is one read of the interconnect");
+  require(reads == misses + built.locks + result.contexts.counts().issued,
+          "every miss, every lock and every prefetch is one read of the interconnect");
   require(writes == steps.pixels + built.writes,
           "every pixel and every part of the tree is one write of the interconnect");
   // Posted writes wait too, but no node waits with them.
@@ -69,6 +80,7 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
   require(part(time, Activity::interconnect_wait) <= interconnect_waits,
           "nodes wait for the interconnect no longer than its transactions do");
   require(part(time, Activity::bank_wait) <= bank_waits, "nodes wait for banks no longer than accesses do");
+  check_contexts(config, result);
   if (result.build.sharing != Sharing::given) {
     check_build(log, config, result.build);
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "processors/accounting.h"
+#include "processors/lines_under_way.h"
 #include "processors/node_caches.h"
 #include "processors/packets.h"
 #include "processors/program/work_log.h"
@@ -37,12 +38,18 @@ struct Cursor {
   std::uint32_t y = 0;
   Packet packet;
   memory::RecordKind kind = memory::RecordKind::node;
+  /// Guarded caches only: the branch whose record was visited last and whose children may be prefetched.
+  std::uint32_t branch = no_branch;
+
+  static constexpr std::uint32_t no_branch = 0xffffffffU;
 };
 
-/// Why a walk stopped: after a hit (only without running ahead), at a miss, or at the end of its words.
-enum class Stop : std::uint8_t { hit, miss, end };
+/// Why a walk stopped: after a hit (only without running ahead), at a miss, or at the end of its words. due,
+/// with guarded caches only: the reference that comes next is of a line that may be under way, or a branch
+/// was read whose children are to be prefetched.
+enum class Stop : std::uint8_t { hit, miss, end, due };
 
-/// `Caches` is one of node_caches.h.
+/// `Caches` is one of node_caches.h, or those guarded (guarded_caches.h).
 template <class Caches>
 class LogWalker {
  public:
@@ -61,13 +68,15 @@ class LogWalker {
         local_access_(input.config.local.clock.cycles(input.config.local.access_cycles)),
         local_beat_(input.config.local.clock.cycles(input.config.local.cycles_per_beat)),
         local_database_(input.config.placement == Placement::replicated) {
-    if (Caches::present && !input.step_by_step) {
+    if (Caches::present && !guarded && !input.step_by_step) {
       plan_ = plan_visits(input.log, input.layout, input.node_rank, unit_shift_, ticks_);
       plan_limit_ = plan_.empty() ? 0 : 2U << operand_bits;
     }
   }
 
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
+  [[nodiscard]] Caches& caches() { return caches_; }
+  [[nodiscard]] const Caches& caches() const { return caches_; }
 
   /// Takes `node` on from its cursor. Without RunAhead it stops after every reference.
   template <bool RunAhead>
@@ -110,6 +119,7 @@ class LogWalker {
 
  private:
   using View = typename Caches::View;
+  static constexpr bool guarded = requires { Caches::guarded; };
 
   // Sums over the planned visits of one walk that are not in the statistics yet.
   struct Tally {
@@ -154,6 +164,9 @@ class LogWalker {
         !finish_leaf<RunAhead>(cache, cursor, statistics, stop)) {
       return stop;
     }
+    if (branch_read(cache, cursor, stop)) {
+      return stop;
+    }
     while (cursor.word != cursor.word_end) {
       if constexpr (RunAhead && Caches::present) {
         if (!visit_planned(cache, cursor, statistics, tally, stop)) {
@@ -163,11 +176,24 @@ class LogWalker {
           break;
         }
       }
-      if (!take_step<RunAhead>(cache, cursor, statistics, *cursor.word++, stop)) {
+      if (!take_step<RunAhead>(cache, cursor, statistics, *cursor.word++, stop) ||
+          branch_read(cache, cursor, stop)) {
         return stop;
       }
     }
     return Stop::end;
+  }
+
+  // A branch's record has been read: true when the node has to stop to prefetch its children.
+  static bool branch_read(View cache, Cursor& cursor, Stop& stop) {
+    if constexpr (guarded) {
+      if (cursor.branch != Cursor::no_branch && cache.wants_children(cursor.branch)) {
+        stop = Stop::due;
+        return true;
+      }
+      cursor.branch = Cursor::no_branch;
+    }
+    return false;
   }
 
   // Takes all planned visits up to the next step that has to be taken record by record, with what it needs
@@ -291,6 +317,12 @@ class LogWalker {
     while (cursor.at < cursor.end) {
       const memory::Address unit = cursor.at >> unit_shift_;
       cursor.kind = kind;
+      if constexpr (guarded) {
+        if (cache.awaits(kind, static_cast<std::uint32_t>(unit), cursor.time) != LinesUnderWay::none) {
+          stop = Stop::due;
+          return false;
+        }
+      }
       if (cache.access(kind, static_cast<std::uint32_t>(unit))) {
         ++hits_of(statistics, kind);
         spend(cursor, ticks_.hit, 1);
@@ -385,6 +417,9 @@ class LogWalker {
       case Step::branch:
         ++steps.branches;
         spend(cursor, ticks_.branch, 1);
+        if constexpr (guarded) {
+          cursor.branch = operand;
+        }
         return refer_node<RunAhead>(cache, cursor, statistics, operand, stop);
       case Step::leaf:
         return take_leaf<RunAhead>(cache, cursor, statistics, operand, topology_[operand].count, nullptr,

@@ -12,6 +12,7 @@
 #include "memory/layout.h"
 #include "memory/network.h"
 #include "processors/build_config.h"
+#include "processors/context_config.h"
 #include "processors/cost_model.h"
 #include "processors/flow_config.h"
 #include "processors/host.h"
@@ -58,6 +59,9 @@ struct MachineConfig {
   OperationCycles operations;
   std::uint32_t word_bytes = 4;    ///< what one load or store moves
   std::uint32_t write_buffer = 4;  ///< posted pixel writes a node may have outstanding, at least 1
+  std::uint32_t contexts = 1;      ///< packets a node works on by turns, 1 to most_contexts
+  std::int64_t switch_cycles = 1;  ///< of the node's clock, to take up another context
+  PrefetchConfig prefetch;
   memory::LayoutConfig layout;
   NodeCacheConfig cache;
   Placement placement = Placement::shared;
@@ -74,6 +78,10 @@ struct MachineConfig {
   SpaceConfig space;
 
   [[nodiscard]] std::uint32_t all_nodes() const { return clusters * nodes; }
+  /// Reads a node may have outstanding: one for each context, then one for each prefetch.
+  [[nodiscard]] std::uint32_t ports_of_node() const {
+    return contexts + (prefetch.on() ? prefetch.outstanding : 0);
+  }
 };
 
 /// The most nodes a machine may have; event keys and node tables are sized by it.
@@ -81,6 +89,9 @@ inline constexpr std::uint32_t most_nodes = 1U << 24U;
 
 /// Host bytes that a replay of the machine takes for its nodes and their tags, roughly.
 [[nodiscard]] std::uint64_t host_bytes(const MachineConfig& config);
+
+/// The part of check() for contexts and prefetching.
+void check_contexts(const MachineConfig& config);
 
 /// Throws UserError with the reason when the machine cannot be built.
 void check(const MachineConfig& config);

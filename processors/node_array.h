@@ -12,6 +12,7 @@
 #include "memory/interconnect.h"
 #include "processors/accounting.h"
 #include "processors/build_result.h"
+#include "processors/context_result.h"
 #include "processors/host.h"
 #include "processors/replay_input.h"
 #include "sim/engine.h"
@@ -39,6 +40,8 @@ class NodeArray : public sim::EventHandler {
   [[nodiscard]] virtual std::vector<NodeStatistics> statistics() const = 0;
   /// After the run: what building the tree took; nothing when it is given.
   [[nodiscard]] virtual BuildResult build_result() const { return {}; }
+  /// After the run: what contexts and prefetches did; nothing where there are none.
+  [[nodiscard]] virtual ContextResult context_result() const { return {}; }
   /// Host bytes per simulated node beside its cache tags.
   [[nodiscard]] virtual std::size_t bytes_per_node() const = 0;
 };

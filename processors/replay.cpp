@@ -85,6 +85,7 @@ TimeDivision MachineResult::time() const {
 
 MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
   check(config);
+  check_prefetch(config.prefetch, log.traversal);
   std::optional<TreePlan> plan = plan_of(log, config, options);
   const memory::Layout layout = layout_of(log, config, plan);
   const PacketList packets(log.width, log.height, config.packets);
@@ -92,20 +93,21 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
                                               ? depth_first_rank(log.topology)
                                               : std::vector<std::uint32_t>{};
   sim::Engine engine;
-  engine.reserve(std::size_t{config.all_nodes()} + 1);
+  engine.reserve(std::size_t{config.all_nodes()} * config.contexts + 1);
   Host host(config.host, packets.size(), config.all_nodes());
   const std::unique_ptr<NodeArray> nodes =
       make_node_array({log, config, layout, packets, rank, options.step_by_step, plan ? &*plan : nullptr,
-                       options.report_built},
+                       options.report_built, options.with_contexts},
                       engine, host);
 
   std::vector<std::unique_ptr<memory::Interconnect>> interconnects;
   std::vector<memory::Interconnect*> links;
+  const std::uint32_t ports = config.nodes * config.ports_of_node();
   for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
-    interconnects.push_back(memory::make_interconnect(
-        config.interconnect, config.banks,
-        {engine, nodes->client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * config.nodes,
-         config.nodes}));
+    interconnects.push_back(
+        memory::make_interconnect(config.interconnect, config.banks,
+                                  {engine, nodes->client(cluster),
+                                   static_cast<std::uint8_t>(EventClass::reply), cluster * ports, ports}));
     links.push_back(interconnects.back().get());
   }
   nodes->connect(links);
@@ -126,6 +128,7 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   }
   result.host = host.statistics();
   result.build = nodes->build_result();
+  result.contexts = nodes->context_result();
   result.packets = packets.size();
   result.database_bytes = layout.database_bytes();
   result.copies = config.placement == Placement::replicated ? config.all_nodes() : config.clusters;

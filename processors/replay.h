@@ -8,6 +8,7 @@
 #include "processors/accounting.h"
 #include "processors/build_result.h"
 #include "processors/build_start.h"
+#include "processors/context_result.h"
 #include "processors/flow_result.h"
 #include "processors/host.h"
 #include "processors/machine_config.h"
@@ -29,6 +30,7 @@ struct MachineResult {
   HostStatistics host;
   BuildResult build;  ///< empty when the tree is given
   FlowResult flow;    ///< empty with the image scheme
+  ContextResult contexts;
   std::uint64_t packets = 0;
   std::uint64_t database_bytes = 0;  ///< of one copy, as the frame begins
   std::uint64_t copies = 0;          ///< one for each cluster, or for each node when replicated
@@ -47,7 +49,9 @@ struct ReplayOptions {
   /// What of the tree is there when the frame begins, one entry a node, instead of what MachineConfig::build
   /// says; its `sharing` must not be `given`, and with `none` no branch may be lazy. Empty: what it says.
   std::vector<BranchStart> starts{};
-  bool report_built = false;  ///< fill BuildResult::built; empty all the same when the tree is given
+  bool report_built = false;   ///< fill BuildResult::built; empty all the same when the tree is given
+  bool with_contexts = false;  ///< with a given tree: nodes that can hold several contexts, even for one;
+                               ///< same result
 };
 
 /// Times `config` on `log`. Deterministic, single-threaded; many replays may share one log. Before it

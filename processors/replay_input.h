@@ -22,6 +22,7 @@ struct ReplayInput {
   bool step_by_step = false;                 ///< an event for every reference
   const TreePlan* tree = nullptr;            ///< how the tree is built; null when it is given
   bool report_built = false;                 ///< say which branches are built at the end
+  bool with_contexts = false;                ///< nodes that can hold several contexts, even for one
 };
 
 }  // namespace marti::processors
