@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "studies/build_output.h"
+#include "studies/context_output.h"
 #include "studies/run_result.h"
 #include "studies/version.h"
 
@@ -227,6 +228,9 @@ std::string json_of(const RunResult& r) {
       {"per_node", nodes_json(timed)}};
   if (timed.build.sharing != processors::Sharing::given) {
     machine["build"] = build_json(timed.build, timed.nodes.size() <= most_listed);
+  }
+  if (!timed.contexts.nodes.empty()) {
+    machine["contexts"] = context_json(r.machine, timed.contexts, timed.nodes.size() <= most_listed);
   }
   const Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
                        {"config", config_json(r)},

@@ -127,7 +127,7 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
       {Limit::imbalance, part({Activity::idle})},
       {Limit::write_buffer, part({Activity::queue_full_wait})},
       {Limit::compute, part({Activity::traversal, Activity::intersection, Activity::shading,
-                             Activity::building, Activity::cache_access})},
+                             Activity::building, Activity::cache_access, Activity::switching})},
   }};
   const auto largest = std::max_element(candidates.begin(), candidates.end(),
                                         [](const auto& a, const auto& b) { return a.second < b.second; });

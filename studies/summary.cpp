@@ -7,6 +7,7 @@
 
 #include "sim/units.h"
 #include "studies/build_output.h"
+#include "studies/context_output.h"
 #include "studies/run_result.h"
 
 namespace marti::studies {
@@ -226,6 +227,7 @@ std::string summary_of(const RunResult& r) {
   machine_lines(out, r);
   time_lines(out, r);
   memory_lines(out, r);
+  text += context_lines(r.machine, r.timed.contexts);
   text += build_lines(r.timed);
   fmt::format_to(out, "\nlimited by    {}\n", r.finding.sentence);
   return text;

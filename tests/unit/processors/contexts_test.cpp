@@ -129,6 +129,19 @@ RC_GTEST_PROP(Contexts, ScalingEveryDurationScalesEveryTimeExactly, (std::uint64
   }
 }
 
+// That the properties above see every kind of event that is counted.
+TEST(Contexts, RandomMachinesDoAllThereIsToDo) {
+  ContextCounts sum;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    test::Random random(seed);
+    const WorkLog log = small_log(random);
+    sim::merge(sum, replay(log, random_contexts(random, log)).contexts.counts());
+  }
+  sim::for_each_counter(sum, [](const sim::Counter<ContextCounts>& counter, std::int64_t value) {
+    EXPECT_GT(value, 100) << counter.name;
+  });
+}
+
 // A tree of one branch over eight empty leaves.
 accel::Topology one_branch() {
   accel::Topology topology;
