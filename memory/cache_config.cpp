@@ -25,6 +25,10 @@ CacheShape shape_of(const CacheConfig& config) {
     throw sim::UserError("a cache of " + std::to_string(lines) + " lines cannot be divided into sets of " +
                          std::to_string(ways) + " ways");
   }
+  if (config.replacement == Replacement::plru && !std::has_single_bit(ways)) {
+    throw sim::UserError("tree-PLRU replacement needs sets of a power of two of ways, not of " +
+                         std::to_string(ways));
+  }
   return {static_cast<std::uint32_t>(lines / ways), static_cast<std::uint32_t>(ways),
           static_cast<std::uint32_t>(std::countr_zero(config.line))};
 }

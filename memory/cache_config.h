@@ -7,8 +7,9 @@
 
 namespace marti::memory {
 
-enum class Replacement : std::uint8_t { lru, fifo, random };
-inline constexpr std::array<std::string_view, 3> replacement_names = {"lru", "fifo", "random"};
+/// plru: tree-PLRU, a tree of bits over the ways of a set (plru_trees.h).
+enum class Replacement : std::uint8_t { lru, fifo, random, plru };
+inline constexpr std::array<std::string_view, 4> replacement_names = {"lru", "fifo", "random", "plru"};
 
 /// The size that means "one set": as many ways as there are lines.
 inline constexpr std::uint32_t full_ways = 0;
@@ -17,7 +18,7 @@ inline constexpr std::uint32_t full_ways = 0;
 struct CacheConfig {
   std::uint64_t size = 16 * 1024;  ///< bytes; a whole number of sets of lines
   std::uint32_t line = 32;         ///< bytes; a power of two
-  std::uint32_t ways = 4;          ///< lines in a set; full_ways for a fully associative cache
+  std::uint32_t ways = 4;  ///< lines in a set; full_ways for a fully associative cache; plru: a power of two
   Replacement replacement = Replacement::lru;
   std::uint64_t seed = 1;  ///< of random replacement
 };

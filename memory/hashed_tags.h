@@ -1,6 +1,6 @@
 // Tags of caches with many ways (up to fully associative): each set has a hash table from line to way
-// and, for LRU and FIFO, a list of its ways from the newest to the oldest. A look-up costs the same
-// whatever the number of ways.
+// and, for LRU and FIFO, a list of its ways from the newest to the oldest, or a tree of bits. A look-up costs
+// the same whatever the number of ways.
 #pragma once
 
 #include <cstdint>
@@ -28,6 +28,9 @@ class HashedTags {
         victims_.emplace_back(seed, set);
       }
     }
+    if constexpr (Policy == Replacement::plru) {
+      trees_ = PlruTrees(state_.size(), shape.ways);
+    }
   }
 
   /// As SetTags::View.
@@ -46,6 +49,15 @@ class HashedTags {
   [[nodiscard]] View view(std::uint32_t cache) { return {*this, cache}; }
 
  private:
+  // A list of the ways says which is the oldest.
+  static constexpr bool listed = Policy == Replacement::lru || Policy == Replacement::fifo;
+
+  void use(std::size_t set, std::uint32_t way) {
+    if constexpr (Policy == Replacement::plru) {
+      trees_.use(set, way);
+    }
+  }
+
   bool access(std::uint32_t cache, std::uint32_t line) {
     const std::size_t set = std::size_t{cache} * sets_ + index_(line);
     Set& state = state_[set];
@@ -55,14 +67,16 @@ class HashedTags {
       if constexpr (Policy == Replacement::lru) {
         move_to_front(state, ways, held);
       }
+      use(set, held);
       return true;
     }
     const std::uint32_t way = free_way(state, ways, table, set);
     ways[way].line = line;
     insert(table, ways, way);
-    if constexpr (Policy != Replacement::random) {
+    if constexpr (listed) {
       push_front(state, ways, way);
     }
+    use(set, way);
     return false;
   }
 
@@ -87,7 +101,7 @@ class HashedTags {
     }
     Set& state = state_[set];
     erase(table, ways, line);
-    if constexpr (Policy != Replacement::random) {
+    if constexpr (listed) {
       unlink(state, ways, way);
     }
     ways[way].line = no_line;
@@ -172,6 +186,8 @@ class HashedTags {
     std::uint32_t victim = state.oldest;
     if constexpr (Policy == Replacement::random) {
       victim = victims_[set].next(ways_);
+    } else if constexpr (Policy == Replacement::plru) {
+      victim = trees_.victim(set);
     } else {
       unlink(state, ways, victim);
     }
@@ -205,6 +221,7 @@ class HashedTags {
   std::vector<std::uint32_t> table_;
   std::vector<Set> state_;
   std::vector<VictimStream> victims_;
+  PlruTrees trees_;
 };
 
 }  // namespace marti::memory

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "memory/cache_config.h"
+#include "memory/plru_trees.h"
 #include "sim/large_pages.h"
 
 namespace marti::memory {
@@ -30,7 +31,7 @@ class SetIndex {
 
 /// `Policy` decides the victim; `Ways` is the number of ways where it is known when compiling, 0 where it
 /// is not. Within a set, LRU and FIFO keep the newest line first (LRU also moves a line there when it
-/// hits), so the victim is always the last; random replacement leaves lines where they are.
+/// hits), so the victim is always the last; random replacement and tree-PLRU leave lines where they are.
 template <Replacement Policy, std::uint32_t Ways>
 class SetTags {
  public:
@@ -45,6 +46,9 @@ class SetTags {
       for (std::uint64_t set = 0; set < all_sets; ++set) {
         victims_.emplace_back(seed, set);
       }
+    }
+    if constexpr (Policy == Replacement::plru) {
+      trees_ = PlruTrees(std::size_t{caches} * shape.sets, shape.ways);
     }
   }
 
@@ -68,22 +72,27 @@ class SetTags {
   [[nodiscard]] View view(std::uint32_t cache) { return {*this, cache}; }
 
  private:
+  // Lines stay in the way that they came into.
+  static constexpr bool stays = Policy == Replacement::random || Policy == Replacement::plru;
+
   bool access(std::uint32_t cache, std::uint32_t line) {
     const std::size_t set = std::size_t{cache} * sets_ + index_(line);
     const std::uint32_t ways = Ways == 0 ? ways_ : Ways;
     std::uint32_t* tags = tags_.data() + set * ways;
     if (tags[0] == line) {
+      use(set, 0);
       return true;
     }
     std::uint32_t at = 1;
     while (at < ways && tags[at] != line) {
       ++at;
     }
-    if constexpr (Policy == Replacement::random) {
+    if constexpr (stays) {
       if (at < ways) {
+        use(set, at);
         return true;
       }
-      replace_at_random(tags, ways, set, line);
+      replace(tags, ways, set, line);
       return false;
     } else {
       const bool hit = at < ways;
@@ -122,7 +131,7 @@ class SetTags {
     if (at == end) {
       return false;
     }
-    if constexpr (Policy == Replacement::random) {
+    if constexpr (stays) {
       *at = no_line;
     } else {
       // Empty ways are the oldest, so they go first.
@@ -132,13 +141,31 @@ class SetTags {
     return true;
   }
 
-  // Empty ways are filled from the first on before a victim is drawn.
-  void replace_at_random(std::uint32_t* tags, std::uint32_t ways, std::size_t set, std::uint32_t line) {
+  void use(std::size_t set, std::uint32_t way) {
+    if constexpr (Policy == Replacement::plru) {
+      trees_.use(set, way);
+    }
+  }
+
+  [[nodiscard]] std::uint32_t victim(std::size_t set, std::uint32_t ways) {
+    if constexpr (Policy == Replacement::plru) {
+      return trees_.victim(set);
+    } else {
+      return victims_[set].next(ways);
+    }
+  }
+
+  // Empty ways are filled from the first on before there is a victim.
+  void replace(std::uint32_t* tags, std::uint32_t ways, std::size_t set, std::uint32_t line) {
     std::uint32_t way = 0;
     while (way < ways && tags[way] != no_line) {
       ++way;
     }
-    tags[way < ways ? way : victims_[set].next(ways)] = line;
+    if (way == ways) {
+      way = victim(set, ways);
+    }
+    tags[way] = line;
+    use(set, way);
   }
 
   SetIndex index_;
@@ -146,6 +173,7 @@ class SetTags {
   std::uint32_t ways_;
   sim::LargeVector<std::uint32_t> tags_;
   std::vector<VictimStream> victims_;
+  PlruTrees trees_;
 };
 
 }  // namespace marti::memory

@@ -23,6 +23,9 @@ decltype(auto) with_tag_store(Replacement replacement, const CacheShape& shape, 
     case Replacement::random:
       return hashed ? use.template operator()<HashedTags<Replacement::random>>()
                     : use.template operator()<SetTags<Replacement::random, 0>>();
+    case Replacement::plru:
+      return hashed ? use.template operator()<HashedTags<Replacement::plru>>()
+                    : use.template operator()<SetTags<Replacement::plru, 0>>();
     case Replacement::lru:
       break;
   }

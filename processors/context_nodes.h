@@ -32,11 +32,14 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
   using Base::host_;
   using Base::input_;
   using Base::interconnect_of;
+  using Base::place_of;
   using Base::port_of;
   using Base::ports_;
   using Base::post;
   using Base::spend;
   using Base::statistics_;
+  using Base::watch;
+  using Base::watch_misses;
   using Base::write_pixel;
 
  public:
@@ -96,6 +99,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
       add_counted_time(walker_.ticks(), node.steps, node.references.all_hits(), node.time);
       node.time[static_cast<std::size_t>(Activity::idle)] = end_ - node.finish;
     }
+    Base::watch_idle();
   }
 
   ContextResult context_result() const override { return {walker_.caches().counts()}; }
@@ -107,6 +111,8 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
 
  private:
   static constexpr std::uint32_t wake_sequence = 1;
+
+  static bool for_pixel(const Cursor& /*cursor*/) { return true; }
 
   // What a context waits for: nothing, its own miss, a line that another transaction brings, the start of its
   // packet, or nothing ever again.
@@ -164,6 +170,9 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
       begin_pixel(cursor);
       context.wait = Wait::host;
       context.ready = grant->start;
+      if (input_.observer != nullptr) {
+        input_.observer->began_packet(node, grant->packet, grant->start);
+      }
     }
     if (core.waiting) {
       expect(node, context.ready);
@@ -176,8 +185,13 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
   void run(std::uint32_t node) {
     Cursor& cursor = cursors_[node];
     NodeStatistics& statistics = statistics_[node];
+    const sim::Ticks from = cursor.time;
     const Stop stop = input_.step_by_step ? walker_.template advance<false>(node, cursor, statistics)
                                           : walker_.template advance<true>(node, cursor, statistics);
+    if (stop == Stop::end) {
+      walker_.finish_pixel(cursor, statistics);
+    }
+    watch(node, NodeState::working, from);
     cores_[node].due = stop == Stop::due;
     switch (stop) {
       case Stop::hit:
@@ -188,7 +202,6 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
         post(EventClass::read, cursor.time, node);
         break;
       case Stop::end:
-        walker_.finish_pixel(cursor, statistics);
         post(EventClass::write, cursor.time, node);
         break;
     }
@@ -276,6 +289,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     const std::uint32_t node = port / ports_;
     const std::uint32_t slot = port % ports_;
     service_of(node, slot) = service;
+    end_ = std::max(end_, service.done);  // nobody may wait for a prefetched line
     if constexpr (Caches::present) {
       walker_.caches().view(node).arrives(slot, service.done);
     }
@@ -328,10 +342,19 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     }
     const std::uint32_t next = next_ready(node, now);
     const Context& context = context_of(node, next);
+    const sim::Ticks since = core.since;
     if (context.wait == Wait::host) {
-      spend(node, Activity::dispatch_wait, now - core.since);
+      spend(node, Activity::dispatch_wait, now - since);
+      if (input_.observer != nullptr && now != since) {
+        input_.observer->spent(node, NodeState::dispatch_wait, since, now, {});
+      }
     } else {
-      add_waiting(service_of(node, context.slot), now - core.since, statistics_[node].time);
+      const memory::Service waited = last_part(service_of(node, context.slot), now - since);
+      spend(node, waited);
+      if (input_.observer != nullptr) {
+        const Cursor& cursor = cursor_of(node, next);
+        spent_reading(*input_.observer, node, waited, since, {cursor.x, cursor.y});
+      }
     }
     core.waiting = false;
     take_up(node, next, now);
@@ -355,20 +378,23 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     Core& core = cores_[node];
     Context& context = context_of(node, number);
     Cursor& cursor = cursors_[node];
-    if (number != core.active) {
+    const bool other = number != core.active;
+    if (other) {
+      watch_misses(node, place_of(node));
       const std::uint32_t writes = cursor.writes;  // the write buffer is the node's
       context_of(node, core.active).cursor = cursor;
       cursor = context.cursor;
       cursor.writes = writes;
       core.active = number;
-      if (!core.fresh) {
-        now = sim::add_ticks(now, switch_);
-        spend(node, Activity::switching, switch_);
-        ++walker_.caches().view(node).counts().switches;
-      }
+    }
+    cursor.time = now;
+    if (other && !core.fresh) {
+      cursor.time = sim::add_ticks(now, switch_);
+      spend(node, Activity::switching, switch_);
+      ++walker_.caches().view(node).counts().switches;
+      watch(node, NodeState::working, now);
     }
     core.fresh = false;
-    cursor.time = now;
     context.ready = never;
     if (std::exchange(context.wait, Wait::none) == Wait::miss) {
       walker_.pass(cursor);

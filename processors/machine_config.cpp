@@ -14,10 +14,23 @@ std::uint64_t tag_bytes(const memory::CacheConfig& cache) {
   const memory::CacheShape shape = memory::shape_of(cache);
   // Hashed sets keep a list entry and two to four table slots for each line.
   const std::uint64_t bytes_a_line = shape.ways > memory::most_searched_ways ? 28 : 6;
-  return shape.lines() * bytes_a_line;
+  const std::uint64_t tree_bytes =
+      cache.replacement == memory::Replacement::plru ? 8 * std::uint64_t{shape.sets} + shape.lines() / 8 : 0;
+  return shape.lines() * bytes_a_line + tree_bytes;
 }
 
 }  // namespace
+
+MachineConfig one_node_of(const MachineConfig& config) {
+  MachineConfig one = config;
+  one.clusters = 1;
+  one.nodes = 1;
+  one.scheme = Scheme::image;
+  if (config.scheme == Scheme::space) {
+    one.placement = Placement::replicated;
+  }
+  return one;
+}
 
 std::uint64_t host_bytes(const MachineConfig& config) {
   constexpr std::uint64_t bytes_a_node = 600;
@@ -48,6 +61,7 @@ void check(const MachineConfig& config) {
     throw sim::UserError("a machine of more than 2^24 nodes");
   }
   check_contexts(config);
+  check_flow(config);
   if (config.write_buffer == 0 || config.word_bytes == 0) {
     throw sim::UserError("the write buffer and the word must not be empty");
   }

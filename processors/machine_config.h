@@ -84,6 +84,11 @@ struct MachineConfig {
   }
 };
 
+/// What a machine's speed-up is measured against: the same with one cluster of one node. A single node has
+/// nobody to send rays to, so it traces packets: a pipeline's with its memory, a space-parallel machine's
+/// with the whole database in its own.
+[[nodiscard]] MachineConfig one_node_of(const MachineConfig& config);
+
 /// The most nodes a machine may have; event keys and node tables are sized by it.
 inline constexpr std::uint32_t most_nodes = 1U << 24U;
 
@@ -92,6 +97,9 @@ inline constexpr std::uint32_t most_nodes = 1U << 24U;
 
 /// The part of check() for contexts and prefetching.
 void check_contexts(const MachineConfig& config);
+
+/// check() for what only schemes other than image have; nothing with the image scheme.
+void check_flow(const MachineConfig& config);
 
 /// Throws UserError with the reason when the machine cannot be built.
 void check(const MachineConfig& config);

@@ -1,26 +1,25 @@
-// Divides the time that a node waited for a transaction.
+// How much of a transaction a node waited for.
 #pragma once
 
 #include <algorithm>
 
 #include "memory/interconnect.h"
-#include "processors/accounting.h"
 
 namespace marti::processors {
 
-/// Adds the last `waited` ticks of a read's course to `time`: its waits for the interconnect, its transfer,
-/// its wait for the bank and the bank's access count as if they came in this order, whole ones last. `waited`
-/// is at most their sum.
-inline void add_waiting(const memory::Service& service, sim::Ticks waited, TimeDivision& time) {
-  const auto take = [&](Activity activity, sim::Ticks phase) {
-    const sim::Ticks part = std::min(phase, waited);
-    time[static_cast<std::size_t>(activity)] += part;
-    waited -= part;
-  };
-  take(Activity::bank_access, service.bank);
-  take(Activity::bank_wait, service.wait_bank);
-  take(Activity::transfer, service.transfer);
-  take(Activity::interconnect_wait, service.wait_interconnect);
+/// The last `waited` ticks of a read's course: its wait for the interconnect, its transfer, its wait for the
+/// bank and the bank's access count as if they came in this order, whole ones last. `waited` is at most their
+/// sum.
+[[nodiscard]] inline memory::Service last_part(const memory::Service& service, sim::Ticks waited) {
+  memory::Service part;
+  part.done = service.done;
+  part.bank = std::min(service.bank, waited);
+  waited -= part.bank;
+  part.wait_bank = std::min(service.wait_bank, waited);
+  waited -= part.wait_bank;
+  part.transfer = std::min(service.transfer, waited);
+  part.wait_interconnect = waited - part.transfer;
+  return part;
 }
 
 }  // namespace marti::processors

@@ -6,6 +6,7 @@
 #include "studies/build_output.h"
 #include "studies/context_output.h"
 #include "studies/run_result.h"
+#include "studies/scaling_output.h"
 #include "studies/version.h"
 
 namespace marti::studies {
@@ -211,6 +212,8 @@ std::string json_of(const RunResult& r) {
       {"speed_up", optional(r.scaling.speed_up)},
       {"efficiency", optional(r.scaling.efficiency)},
       {"karp_flatt_serial_fraction", optional(r.scaling.serial_fraction)},
+      {"speed_up_loss", loss_json(r)},
+      {"bounds", bounds_json(r)},
       {"limit",
        {{"what", name_of(r.finding.limit)}, {"share", r.finding.share}, {"sentence", r.finding.sentence}}},
       {"interconnect_utilisation", optional(used.interconnect)},

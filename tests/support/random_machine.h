@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <random>
 #include <set>
@@ -252,6 +253,14 @@ inline std::vector<processors::BranchStart> random_starts(Random& random, const 
   return starts;
 }
 
+/// Tree-PLRU has ways, and here lines too, by the power of two.
+inline void make_possible(memory::CacheConfig& cache) {
+  if (cache.replacement == memory::Replacement::plru) {
+    cache.ways = std::bit_floor(cache.ways);
+    cache.size = std::bit_floor(cache.size);
+  }
+}
+
 /// Any machine the configuration allows, with at most `most_nodes` nodes.
 inline processors::MachineConfig random_machine(Random& random, std::uint32_t most_nodes = 12) {
   processors::MachineConfig machine;
@@ -269,13 +278,19 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
   machine.cache.organisation = static_cast<processors::CacheOrganisation>(pick(random, 0, 2));
   machine.cache.hit_cycles = pick(random, 0, 2);
   machine.cache.cache.line = 1U << pick(random, 2, 6);
-  machine.cache.cache.replacement = static_cast<memory::Replacement>(pick(random, 0, 2));
+  machine.cache.cache.replacement = static_cast<memory::Replacement>(pick(random, 0, 3));
   machine.cache.cache.ways = static_cast<std::uint32_t>(std::array{0, 1, 2, 3, 4, 8, 24}[random() % 7]);
   const std::uint32_t ways = std::max(1U, machine.cache.cache.ways);
   machine.cache.cache.size =
       std::uint64_t{machine.cache.cache.line} * ways * static_cast<std::uint64_t>(pick(random, 1, 9));
   for (std::uint64_t& size : machine.cache.split_sizes) {
     size = std::uint64_t{machine.cache.cache.line} * ways * static_cast<std::uint64_t>(pick(random, 1, 5));
+  }
+  make_possible(machine.cache.cache);
+  if (machine.cache.cache.replacement == memory::Replacement::plru) {
+    for (std::uint64_t& size : machine.cache.split_sizes) {
+      size = std::bit_floor(size);
+    }
   }
   machine.placement = static_cast<processors::Placement>(pick(random, 0, 3) == 0 ? 1 : 0);
   machine.local.access_cycles = pick(random, 0, 5);

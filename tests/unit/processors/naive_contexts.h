@@ -279,6 +279,7 @@ class NaiveContexts final : public sim::EventHandler {
     const auto flight = node.flights[slot];
     flight->service = service;
     flight->done = service.done;
+    end_ = std::max(end_, service.done);
     for (std::uint32_t c = 0; c < machine_.contexts; ++c) {
       if (node.contexts[c].flight == flight && node.contexts[c].ready == never) {
         set_ready(number, c, service.done);
