@@ -8,6 +8,7 @@
 
 #include "processors/accounting.h"
 #include "processors/cache_counting.h"
+#include "processors/lines_under_way.h"
 #include "processors/local_memory.h"
 #include "processors/node_caches.h"
 #include "processors/packets.h"
@@ -42,12 +43,18 @@ struct Cursor {
   Packet packet;
   memory::RecordKind kind = memory::RecordKind::node;
   Origin origin;  ///< of the current record; kept only where it is counted
+  /// Guarded caches only: the branch whose record was visited last and whose children may be prefetched.
+  std::uint32_t branch = no_branch;
+
+  static constexpr std::uint32_t no_branch = 0xffffffffU;
 };
 
-/// Why a walk stopped: after a hit (only without running ahead), at a miss, or at the end of its words.
-enum class Stop : std::uint8_t { hit, miss, end };
+/// Why a walk stopped: after a hit (only without running ahead), at a miss, or at the end of its words. due,
+/// with guarded caches only: the reference that comes next is of a line that may be under way, or a branch
+/// was read whose children are to be prefetched.
+enum class Stop : std::uint8_t { hit, miss, end, due };
 
-/// `Caches` is one of node_caches.h.
+/// `Caches` is one of node_caches.h, or those guarded (guarded_caches.h).
 template <class Caches>
 class LogWalker {
  public:
@@ -67,7 +74,7 @@ class LogWalker {
         local_database_(input.config.placement == Placement::replicated),
         second_level_(input.config),
         passes_misses_on_(!local_database_ || second_level_.present()) {
-    if (Caches::present && !Caches::counted && !input.step_by_step) {
+    if (Caches::present && !Caches::counted && !guarded && !input.step_by_step) {
       plan_ = plan_visits(input.log, input.layout, input.node_rank, unit_shift_, ticks_);
       plan_limit_ = plan_.empty() ? 0 : 2U << operand_bits;
     }
@@ -75,6 +82,8 @@ class LogWalker {
 
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
   [[nodiscard]] const PrivateSecondLevel& second_level() const { return second_level_; }
+  [[nodiscard]] Caches& caches() { return caches_; }
+  [[nodiscard]] const Caches& caches() const { return caches_; }
 
   /// Takes `node` on from its cursor. Without RunAhead it stops after every reference.
   template <bool RunAhead>
@@ -176,6 +185,7 @@ class LogWalker {
 
  private:
   using View = typename Caches::View;
+  static constexpr bool guarded = requires { Caches::guarded; };
 
   // Sums over the planned visits of one walk that are not in the statistics yet.
   struct Tally {
@@ -221,6 +231,9 @@ class LogWalker {
         !finish_leaf<RunAhead>(cache, cursor, statistics, stop)) {
       return stop;
     }
+    if (branch_read(cache, cursor, stop)) {
+      return stop;
+    }
     while (cursor.word != cursor.word_end) {
       if constexpr (RunAhead && Caches::present) {
         if (!visit_planned(cache, cursor, statistics, tally, stop)) {
@@ -230,11 +243,24 @@ class LogWalker {
           break;
         }
       }
-      if (!take_step<RunAhead>(cache, cursor, statistics, *cursor.word++, stop)) {
+      if (!take_step<RunAhead>(cache, cursor, statistics, *cursor.word++, stop) ||
+          branch_read(cache, cursor, stop)) {
         return stop;
       }
     }
     return Stop::end;
+  }
+
+  // A branch's record has been read: true when the node has to stop to prefetch its children.
+  static bool branch_read(View cache, Cursor& cursor, Stop& stop) {
+    if constexpr (guarded) {
+      if (cursor.branch != Cursor::no_branch && cache.wants_children(cursor.branch)) {
+        stop = Stop::due;
+        return true;
+      }
+      cursor.branch = Cursor::no_branch;
+    }
+    return false;
   }
 
   // Takes all planned visits up to the next step that has to be taken record by record, with what it needs
@@ -369,6 +395,12 @@ class LogWalker {
     while (cursor.at < cursor.end) {
       const memory::Address unit = cursor.at >> unit_shift_;
       cursor.kind = kind;
+      if constexpr (guarded) {
+        if (cache.awaits(kind, static_cast<std::uint32_t>(unit), cursor.time) != LinesUnderWay::none) {
+          stop = Stop::due;
+          return false;
+        }
+      }
       if (access(cache, cursor, static_cast<std::uint32_t>(unit))) {
         ++hits_of(statistics, kind);
         spend(cursor, ticks_.hit, 1);
@@ -466,6 +498,9 @@ class LogWalker {
       case Step::branch:
         ++steps.branches;
         spend(cursor, ticks_.branch, 1);
+        if constexpr (guarded) {
+          cursor.branch = operand;
+        }
         return refer_node<RunAhead>(cache, cursor, statistics, operand, stop);
       case Step::leaf:
         return take_leaf<RunAhead>(cache, cursor, statistics, operand, topology_[operand].count, nullptr,

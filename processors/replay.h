@@ -11,6 +11,7 @@
 #include "processors/build_result.h"
 #include "processors/build_start.h"
 #include "processors/cache_counting.h"
+#include "processors/context_result.h"
 #include "processors/flow_result.h"
 #include "processors/host.h"
 #include "processors/machine_config.h"
@@ -43,6 +44,7 @@ struct MachineResult {
   HostStatistics host;
   BuildResult build;        ///< empty when the tree is given
   FlowResult flow;          ///< empty with the image scheme
+  ContextResult contexts;   ///< empty with one context and no prefetch
   SecondLevelResult l2;     ///< empty without a second level
   CacheCountResult counts;  ///< what MachineConfig::count asks for
   std::uint64_t packets = 0;
@@ -65,6 +67,8 @@ struct ReplayOptions {
   std::vector<BranchStart> starts{};
   bool report_built = false;     ///< fill BuildResult::built; empty all the same when the tree is given
   Observer* observer = nullptr;  ///< watches (processors/observer.h); same result
+  bool with_contexts = false;    ///< with a given tree: nodes that can hold several contexts, even for one;
+                                 ///< same result
 };
 
 /// Times `config` on `log`. Deterministic, single-threaded; many replays may share one log. Before it

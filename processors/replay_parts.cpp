@@ -41,10 +41,11 @@ Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine, s
                              NodeArray& nodes) {
   Interconnects interconnects;
   std::vector<memory::Interconnect*> links;
+  const std::uint32_t ports = config.nodes * config.ports_of_node();
   for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
     interconnects.push_back(make_memory_system(
-        config, {engine, nodes.client(cluster), static_cast<std::uint8_t>(EventClass::reply),
-                 cluster * config.nodes, config.nodes, memory_class}));
+        config, {engine, nodes.client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * ports,
+                 ports, memory_class}));
     links.push_back(interconnects.back().get());
   }
   nodes.connect(links);
@@ -71,6 +72,7 @@ MachineResult common_result(const MachineConfig& config, const sim::Engine& engi
   }
   result.counts = nodes.cache_counts();
   result.build = nodes.build_result();
+  result.contexts = nodes.context_result();
   result.database_bytes = layout.database_bytes();
   result.copies = config.placement == Placement::replicated ? config.all_nodes() : config.clusters;
   result.events = engine.events();

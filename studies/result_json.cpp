@@ -5,6 +5,7 @@
 
 #include "studies/build_output.h"
 #include "studies/cache_output.h"
+#include "studies/context_output.h"
 #include "studies/flow_output.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
@@ -247,6 +248,9 @@ std::string json_of(const RunResult& r) {
   }
   if (r.machine.l2.sharing != processors::SecondLevel::none) {
     machine["l2"] = second_level_json(r.machine, timed, timed.l2.caches.size() <= most_listed);
+  }
+  if (!timed.contexts.nodes.empty()) {
+    machine["contexts"] = context_json(r.machine, timed.contexts, timed.nodes.size() <= most_listed);
   }
   const Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
                        {"config", config_json(r)},

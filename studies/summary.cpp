@@ -8,6 +8,7 @@
 #include "sim/units.h"
 #include "studies/build_output.h"
 #include "studies/cache_output.h"
+#include "studies/context_output.h"
 #include "studies/flow_output.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
@@ -255,6 +256,7 @@ std::string summary_of(const RunResult& r) {
   text += loss_lines(r);
   time_lines(out, r);
   memory_lines(out, r);
+  text += context_lines(r.machine, r.timed.contexts);
   text += build_lines(r.timed);
   text += flow_lines(r.machine, r.timed);
   text += bound_lines(r);
