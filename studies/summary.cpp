@@ -180,6 +180,9 @@ void memory_lines(Lines out, const RunResult& r) {
     line(memory::record_kind_names[kind], references.hits[kind], references.misses[kind]);
   }
   line("all", references.all_hits(), references.all_misses());
+  if (r.machine.scheme == processors::Scheme::space) {
+    return;  // nodes share no memory
+  }
 
   const Utilisation used = utilisation_of(r.machine, r.timed);
   memory::WaitStatistics waits;
