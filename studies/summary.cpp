@@ -216,6 +216,9 @@ void memory_lines(Lines out, const RunResult& r) {
   }
   line("all", references.all_hits(), references.all_misses());
   fmt::format_to(out, "{}", second_level_line(r.machine, r.timed));
+  if (r.machine.scheme == processors::Scheme::space) {
+    return;  // nodes share no memory
+  }
 
   const Utilisation used = utilisation_of(r.machine, r.timed);
   memory::WaitStatistics waits;
