@@ -28,6 +28,24 @@ void check_node(const NodeStatistics& node, sim::Ticks end, std::size_t number) 
           "tests of spheres, cylinders and cones are tests");
 }
 
+void check_distributed(const ClusterResult& cluster) {
+  if (!cluster.distributed) {
+    return;
+  }
+  const auto& [accesses, network] = *cluster.distributed;
+  const memory::InterconnectStatistics& traffic = cluster.interconnect;
+  require(traffic.reads == accesses.local_reads + accesses.remote_reads &&
+              traffic.writes == accesses.local_writes + accesses.remote_writes,
+          "every access of a distributed memory is of the node's own or of another's");
+  require(network.messages == 2 * accesses.remote_reads + accesses.remote_writes,
+          "a read of another node's memory is two messages, a write one");
+  std::int64_t served = 0;
+  for (const memory::BankStatistics& bank : cluster.banks) {
+    served += bank.accesses;
+  }
+  require(served == traffic.reads + traffic.writes, "every access is served by one memory");
+}
+
 }  // namespace
 
 void check_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result) {
@@ -61,11 +79,12 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
     for (const memory::BankStatistics& bank : cluster.banks) {
       bank_waits += bank.waits.sum;
     }
+    check_distributed(cluster);
   }
   const ReferenceCounts references = result.references();
   const BuildCounts built = result.build.counts();
-  const std::int64_t misses =
-      config.placement == Placement::shared ? references.all_misses() - built.local_misses : 0;
+  const bool own_memories = config.placement == Placement::replicated || config.scheme == Scheme::space;
+  const std::int64_t misses = own_memories ? 0 : references.all_misses() - built.local_misses;
   require(reads == misses + built.locks, "every miss and every lock is one read of the interconnect");
   require(writes == steps.pixels + built.writes,
           "every pixel and every part of the tree is one write of the interconnect");

@@ -21,9 +21,16 @@
 namespace marti::processors {
 
 /// Where the database is. shared: one copy in the cluster's memory behind its interconnect. replicated: a
-/// full copy in every node's own memory; only pixels cross the interconnect.
-enum class Placement : std::uint8_t { shared, replicated };
-inline constexpr std::array<std::string_view, 2> placement_names = {"shared", "replicated"};
+/// full copy in every node's own memory; only pixels cross the interconnect. distributed: one copy, frame
+/// buffer included, spread over the memories of the cluster's nodes and reached over their network.
+enum class Placement : std::uint8_t { shared, replicated, distributed };
+inline constexpr std::array<std::string_view, 3> placement_names = {"shared", "replicated", "distributed"};
+
+/// How a distributed database is spread and asked for. Times are those of LocalMemoryConfig.
+struct DistributionConfig {
+  std::uint32_t interleave = 32;   ///< bytes in a row at one node; a power of two, at least a line
+  std::uint32_t header_bytes = 8;  ///< of each message; a request is nothing else
+};
 
 /// none: every reference goes to memory. unified: one cache for all records. split: one for nodes, one for
 /// object lists, one for primitives, one for materials and texels, each with its own size.
@@ -43,7 +50,7 @@ struct NodeCacheConfig {
 };
 
 /// The memory of a replicated database or of private trees: no contention, one line after `access_cycles`
-/// plus its beats.
+/// plus its beats. Of a distributed database: the same, one access after the other.
 struct LocalMemoryConfig {
   sim::Clock clock = sim::Clock::from_hertz(33e6);
   std::uint32_t width = 8;  ///< bytes a beat
@@ -61,6 +68,7 @@ struct MachineConfig {
   memory::LayoutConfig layout;
   NodeCacheConfig cache;
   Placement placement = Placement::shared;
+  DistributionConfig distribution;
   LocalMemoryConfig local;
   memory::InterconnectConfig interconnect;
   memory::BankConfig banks;
@@ -68,7 +76,7 @@ struct MachineConfig {
   HostConfig host;
   BuildConfig build;
   Scheme scheme = Scheme::image;
-  memory::NetworkConfig network;  ///< pipeline and space
+  memory::NetworkConfig network;  ///< pipeline, space and a distributed database
   MessageConfig messages;         ///< pipeline and space
   PipelineConfig pipeline;
   SpaceConfig space;

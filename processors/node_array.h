@@ -20,7 +20,8 @@ namespace marti::processors {
 
 /// Event classes. At equal times local progress comes before requests to the host, replies before new
 /// requests (an interconnect's data do not wait for an address of the same instant), reads before writes.
-enum class EventClass : std::uint8_t { step, dispatch, reply, read, write };
+/// `memory` is last: what the memory system does by itself when all requests of the instant are made.
+enum class EventClass : std::uint8_t { step, dispatch, reply, read, write, memory };
 
 /// The nodes of all clusters as one event handler; node n is port n % nodes of cluster n / nodes.
 class NodeArray : public sim::EventHandler {

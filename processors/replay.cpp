@@ -10,6 +10,7 @@
 #include "processors/packets.h"
 #include "processors/pipeline.h"
 #include "processors/replay_parts.h"
+#include "processors/space.h"
 #include "sim/engine.h"
 #include "sim/error.h"
 
@@ -72,7 +73,7 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
     case Scheme::pipeline:
       return replay_pipeline(log, config, options);
     case Scheme::space:
-      throw sim::UserError("machine.scheme: \"space\" cannot be timed");
+      return replay_space(log, config, options);
   }
   std::optional<TreePlan> plan = plan_of(log, config, options);
   const memory::Layout layout = layout_of(log, config, plan);
@@ -94,9 +95,10 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
     options.observer->begin(input);
   }
   const std::unique_ptr<NodeArray> nodes = make_node_array(input, engine, host);
-  const Interconnects interconnects = connect_memory(config, engine, *nodes);
-  for (const EventClass c :
-       {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read, EventClass::write}) {
+  const Interconnects interconnects =
+      connect_memory(config, engine, static_cast<std::uint8_t>(EventClass::memory), *nodes);
+  for (const EventClass c : {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read,
+                             EventClass::write, EventClass::memory}) {
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
   }
   nodes->start(options.start_seed);

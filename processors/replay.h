@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "memory/distributed.h"
 #include "memory/interconnect.h"
 #include "processors/accounting.h"
 #include "processors/build_result.h"
@@ -17,10 +19,18 @@ namespace marti::processors {
 
 class Observer;
 
-/// What one cluster's interconnect and banks counted.
+/// What a cluster's distributed memory counted beside what every interconnect does.
+struct DistributedResult {
+  memory::DistributedStatistics accesses;
+  memory::NetworkStatistics network;
+};
+
+/// What one cluster's interconnect and banks counted. Of a distributed memory: its network and each node's
+/// memory.
 struct ClusterResult {
   memory::InterconnectStatistics interconnect;
   std::vector<memory::BankStatistics> banks;
+  std::optional<DistributedResult> distributed{};
 };
 
 /// A timed frame. All figures are integers; ratios are left to whoever prints them.

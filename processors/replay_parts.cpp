@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "memory/set_tags.h"
+#include "processors/memory_system.h"
 #include "processors/node_order.h"
 #include "sim/error.h"
 
@@ -36,14 +37,14 @@ std::vector<std::uint32_t> node_ranks(const WorkLog& log, const MachineConfig& c
                                                                     : std::vector<std::uint32_t>{};
 }
 
-Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine, NodeArray& nodes) {
+Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine, std::uint8_t memory_class,
+                             NodeArray& nodes) {
   Interconnects interconnects;
   std::vector<memory::Interconnect*> links;
   for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
-    interconnects.push_back(memory::make_interconnect(
-        config.interconnect, config.banks,
-        {engine, nodes.client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * config.nodes,
-         config.nodes}));
+    interconnects.push_back(make_memory_system(
+        config, {engine, nodes.client(cluster), static_cast<std::uint8_t>(EventClass::reply),
+                 cluster * config.nodes, config.nodes, memory_class}));
     links.push_back(interconnects.back().get());
   }
   nodes.connect(links);
@@ -57,6 +58,9 @@ MachineResult common_result(const MachineConfig& config, const sim::Engine& engi
   result.nodes = nodes.statistics();
   for (const auto& interconnect : interconnects) {
     result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
+    if (const memory::DistributedStatistics* const accesses = interconnect->distribution()) {
+      result.clusters.back().distributed = {*accesses, *interconnect->network_statistics()};
+    }
   }
   result.build = nodes.build_result();
   result.database_bytes = layout.database_bytes();

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "studies/build_output.h"
+#include "studies/flow_output.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
 #include "studies/version.h"
@@ -170,12 +171,21 @@ Json clusters_json(const processors::MachineResult& result) {
   for (const processors::ClusterResult& cluster : result.clusters) {
     Json interconnect = counters_json(cluster.interconnect);
     interconnect["waits"] = wait_json(cluster.interconnect.waits);
-    Json banks = Json::array();
-    for (const memory::BankStatistics& bank : cluster.banks) {
-      banks.push_back(counters_json(bank));
-      banks.back()["waits"] = wait_json(bank.waits);
+    Json banks = nullptr;
+    if (cluster.banks.size() <= most_listed) {
+      banks = Json::array();
+      for (const memory::BankStatistics& bank : cluster.banks) {
+        banks.push_back(counters_json(bank));
+        banks.back()["waits"] = wait_json(bank.waits);
+      }
     }
     clusters.push_back({{"interconnect", interconnect}, {"banks", banks}});
+    if (cluster.distributed) {
+      Json network = counters_json(cluster.distributed->network);
+      network["waits"] = wait_json(cluster.distributed->network.waits);
+      clusters.back()["distributed"] = counters_json(cluster.distributed->accesses);
+      clusters.back()["distributed"]["network"] = network;
+    }
   }
   return clusters;
 }
@@ -202,7 +212,7 @@ std::string json_of(const RunResult& r) {
   const processors::MachineResult& timed = r.timed;
   const Utilisation used = utilisation_of(r.machine, timed);
   Json machine = {
-      {"scheme", "image"},
+      {"scheme", processors::scheme_names[static_cast<std::size_t>(r.machine.scheme)]},
       {"clusters", r.machine.clusters},
       {"nodes", r.machine.nodes},
       {"frame_time_ps", timed.end},
@@ -230,6 +240,9 @@ std::string json_of(const RunResult& r) {
       {"per_node", nodes_json(timed)}};
   if (timed.build.sharing != processors::Sharing::given) {
     machine["build"] = build_json(timed.build, timed.nodes.size() <= most_listed);
+  }
+  if (r.machine.scheme != processors::Scheme::image) {
+    machine["flow"] = flow_json(r.machine, timed, timed.nodes.size() <= most_listed);
   }
   const Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
                        {"config", config_json(r)},

@@ -9,15 +9,14 @@
 
 namespace marti::studies {
 
-namespace {
-
-void refuse_beyond_memory(const sim::Config& config, const RunResult& result) {
-  const std::uint64_t bytes = processors::host_bytes(result.machine);
-  if (bytes > static_cast<std::uint64_t>(result.frame_config.memory_limit)) {
-    config.fail("machine.nodes", "simulating these nodes and their caches takes about " +
-                                     sim::print_size(static_cast<std::int64_t>(bytes >> 20U << 20U)) +
-                                     ", more than host_machine.memory_limit = " +
-                                     sim::print_size(result.frame_config.memory_limit));
+void refuse_beyond_memory(const sim::Config& config, const FrameConfig& frame,
+                          const processors::MachineConfig& machine) {
+  const std::uint64_t bytes = processors::host_bytes(machine);
+  if (bytes > static_cast<std::uint64_t>(frame.memory_limit)) {
+    config.fail("machine.nodes",
+                "simulating these nodes and their caches takes about " +
+                    sim::print_size(static_cast<std::int64_t>(bytes >> 20U << 20U)) +
+                    ", more than host_machine.memory_limit = " + sim::print_size(frame.memory_limit));
   }
 }
 
@@ -29,6 +28,8 @@ void refuse_several_frames(const sim::Config& config, const FrameRange& frames) 
                                     "use `marti study frames`");
   }
 }
+
+namespace {
 
 // Times the machine, watched by what is asked for.
 processors::MachineResult watched_replay(const RecordConfig& record, const std::filesystem::path& directory,
@@ -65,7 +66,7 @@ RunResult run(sim::Config& config, const std::filesystem::path& directory) {
   result.machine = read_machine(config);
   const RecordConfig record = read_record(config, !directory.empty());
   config.refuse_unused();
-  refuse_beyond_memory(config, result);
+  refuse_beyond_memory(config, result.frame_config, result.machine);
   result.values = config.effective_values();
 
   result.functional = run_functional(result.frame_config);
