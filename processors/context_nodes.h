@@ -126,6 +126,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
   struct Context {
     Cursor cursor;             // while another context is worked on
     sim::Ticks ready = never;  // when it can go on, as far as that is known
+    std::uint64_t packet = 0;  // the host's number of it
     std::uint32_t slot = 0;    // of the transaction it waits for
     Wait wait = Wait::none;
   };
@@ -175,9 +176,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
       begin_pixel(cursor);
       context.wait = Wait::host;
       context.ready = grant->start;
-      if (input_.observer != nullptr) {
-        input_.observer->began_packet(node, grant->packet, grant->start);
-      }
+      context.packet = grant->packet;
     }
     if (core.waiting) {
       expect(node, context.ready);
@@ -357,6 +356,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
       const memory::Service waited = last_part(service_of(node, context.slot), now - since);
       spend(node, waited);
       if (input_.observer != nullptr) {
+        resume_packet(node, next);
         const Cursor& cursor = cursor_of(node, next);
         spent_reading(*input_.observer, node, waited, since, {cursor.x, cursor.y});
       }
@@ -392,6 +392,9 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
       cursor.writes = writes;
       core.active = number;
     }
+    if (context.wait != Wait::host) {
+      resume_packet(node, number);
+    }
     cursor.time = now;
     if (other && !core.fresh) {
       cursor.time = sim::add_ticks(now, switch_);
@@ -401,10 +404,19 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     }
     core.fresh = false;
     context.ready = never;
-    if (std::exchange(context.wait, Wait::none) == Wait::miss) {
+    const Wait waited = std::exchange(context.wait, Wait::none);
+    if (waited == Wait::miss) {
       walker_.pass(cursor);
+    } else if (waited == Wait::host && input_.observer != nullptr) {
+      input_.observer->began_packet(node, context.packet, cursor.time);
     }
     run(node);
+  }
+
+  void resume_packet(std::uint32_t node, std::uint32_t number) {
+    if (input_.observer != nullptr) {
+      input_.observer->resumed_packet(node, context_of(node, number).packet);
+    }
   }
 
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();

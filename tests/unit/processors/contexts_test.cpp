@@ -4,7 +4,10 @@
 #include <rapidcheck/gtest.h>
 
 #include <array>
+#include <set>
+#include <utility>
 
+#include "processors/observer.h"
 #include "processors/replay.h"
 #include "sim/error.h"
 #include "tests/support/random_machine.h"
@@ -127,6 +130,66 @@ RC_GTEST_PROP(Contexts, ScalingEveryDurationScalesEveryTimeExactly, (std::uint64
       RC_ASSERT(scaled.nodes[n].time[i] == base.nodes[n].time[i] * 1'000'000);
     }
   }
+}
+
+/// Adds up what it is told; pieces must follow each other.
+struct Watcher final : Observer {
+  explicit Watcher(std::uint32_t nodes) : told(nodes), time(nodes), misses(nodes), packet(nodes) {}
+
+  void begin(const ReplayInput& input) override { packets = &input.packets; }
+  void spent(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to, PixelPlace pixel) override {
+    EXPECT_EQ(from, told[node]);
+    EXPECT_LE(from, to);
+    told[node] = to;
+    time[node][static_cast<std::size_t>(state)] += to - from;
+    if (!pixel.none() && state != NodeState::working) {
+      const Packet at = (*packets)[packet[node]];
+      EXPECT_TRUE(pixel.x >= at.x0 && pixel.x < at.x1 && pixel.y >= at.y0 && pixel.y < at.y1);
+    }
+  }
+  void missed(std::uint32_t node, std::int64_t count, PixelPlace pixel) override {
+    EXPECT_FALSE(pixel.none());
+    misses[node] += count;
+  }
+  void began_packet(std::uint32_t node, std::uint64_t number, sim::Ticks start) override {
+    EXPECT_EQ(start, told[node]);
+    EXPECT_TRUE(begun.insert(number).second);
+    packet[node] = number;
+  }
+  void resumed_packet(std::uint32_t node, std::uint64_t number) override { packet[node] = number; }
+  void end(sim::Ticks at) override {
+    EXPECT_EQ(std::set<sim::Ticks>(told.begin(), told.end()), std::set{at});
+  }
+
+  const PacketList* packets = nullptr;
+  std::set<std::uint64_t> begun;
+  std::vector<sim::Ticks> told;
+  std::vector<std::array<sim::Ticks, node_states>> time;
+  std::vector<std::int64_t> misses;
+  std::vector<std::uint64_t> packet;
+};
+
+RC_GTEST_PROP(Contexts, WhoWatchesIsToldAllOfIt, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = small_log(random);
+  const MachineConfig machine = random_contexts(random, log);
+  Watcher watcher(machine.all_nodes());
+  const MachineResult result = replay(log, machine, {.observer = &watcher, .with_contexts = true});
+  expect_equal(result, replay(log, machine, {.with_contexts = true}));
+  RC_ASSERT(watcher.begun.size() == result.packets);
+  for (std::size_t n = 0; n < result.nodes.size(); ++n) {
+    RC_ASSERT(watcher.misses[n] == result.nodes[n].references.all_misses());
+    const TimeDivision& time = result.nodes[n].time;
+    for (const auto& [state, activity] :
+         {std::pair{NodeState::interconnect_wait, Activity::interconnect_wait},
+          {NodeState::bank_wait, Activity::bank_wait},
+          {NodeState::queue_full_wait, Activity::queue_full_wait},
+          {NodeState::dispatch_wait, Activity::dispatch_wait},
+          {NodeState::idle, Activity::idle}}) {
+      RC_ASSERT(watcher.time[n][static_cast<std::size_t>(state)] == time[static_cast<std::size_t>(activity)]);
+    }
+  }
+  RC_ASSERT(!::testing::Test::HasFailure());
 }
 
 // That the properties above see every kind of event that is counted.
