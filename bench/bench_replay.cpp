@@ -54,7 +54,9 @@ Timing time_replay(const processors::WorkLog& log, const processors::MachineConf
     best.references = static_cast<double>(result.references().references());
     best.misses = static_cast<double>(result.references().all_misses());
     best.events = static_cast<double>(result.events);
-    best.bus = static_cast<double>(result.clusters[0].interconnect.busy) / static_cast<double>(result.end);
+    const memory::InterconnectStatistics& links = result.clusters[0].interconnect;
+    best.bus =
+        static_cast<double>(links.busy) / static_cast<double>(result.end) / static_cast<double>(links.links);
     best.bytes_per_node = result.host_bytes_per_node;
   }
   return best;
@@ -100,6 +102,15 @@ void run(std::uint32_t size, int repeats) {
   print("64 nodes, shared building", time_replay(*frame.log, dynamic, repeats), render, 0.0);
   dynamic.build.sharing = processors::Sharing::private_trees;
   print("64 nodes, private building", time_replay(*frame.log, dynamic, repeats), render, 0.0);
+  processors::MachineConfig turns = machine_of(64, 8);
+  turns.interconnect.arbitration = memory::Arbitration::round_robin;
+  print("64 nodes, round robin", time_replay(*frame.log, turns, repeats), render, 0.0);
+  for (const std::uint32_t nodes : {64U, 65536U}) {
+    processors::MachineConfig spread = machine_of(nodes, nodes == 64 ? 8 : 2);
+    spread.placement = processors::Placement::distributed;
+    print(nodes == 64 ? "64 nodes, distributed" : "65,536 nodes, distributed",
+          time_replay(*frame.log, spread, repeats), render, 0.0);
+  }
   print("1 node, 8x8 packets", time_replay(*frame.log, machine_of(1, 8), repeats), render, per_reference);
   print("1,024 nodes, 8x8 packets", time_replay(*frame.log, machine_of(1024, 8), repeats), render,
         per_reference);

@@ -45,8 +45,8 @@ std::string describe(Limit limit, double part, const Utilisation& used,
     case Limit::memory_latency:
       return fmt::format(
           "memory latency: nodes spend {:.1f} % of their time on transfers and bank accesses that meet no "
-          "queue; fewer misses or faster memory would help",
-          percent);
+          "queue; fewer misses or {} would help",
+          percent, distributed ? "a faster network" : "faster memory");
     case Limit::dispatch:
       return fmt::format(
           "the host: nodes spend {:.1f} % of their time waiting for packets; larger packets would help",

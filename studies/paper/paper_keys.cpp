@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "processors/memory_system.h"
 #include "studies/machine_keys.h"
 #include "studies/run_result.h"
 
@@ -103,6 +104,10 @@ PaperConfig read_paper(sim::Config& config) {
   paper.machine = read_machine(config);
   if (paper.machine.placement != processors::Placement::shared) {
     config.fail("database.placement", "the study builds one tree that all nodes share");
+  }
+  if (processors::writes_done_later(paper.machine)) {
+    config.fail("interconnect.arbitration",
+                "the study builds one tree that all nodes share: it must be fifo");
   }
   paper.scenes = config.texts("paper.scenes");
   if (paper.scenes.empty()) {

@@ -156,6 +156,30 @@ TEST(Command, TheImageDoesNotDependOnHowTheTreeIsBuilt) {
   }
 }
 
+TEST(Command, ADistributedDatabaseReportsItsMessagesAndMemories) {
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "distributed.toml";
+  for (const char* kind : {"mesh", "ideal"}) {
+    const std::string options = small + std::string(" --set network.kind=") + kind;
+    const Outcome outcome = marti("run --json " + quoted(config) + options);
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    const nlohmann::json machine = nlohmann::json::parse(outcome.output)["machine"];
+    const nlohmann::json& cluster = machine["per_cluster"][0];
+    const nlohmann::json& distributed = cluster["distributed"];
+    const auto count = [&](const char* name) { return distributed[name].get<std::int64_t>(); };
+    EXPECT_EQ(cluster["banks"].size(), 16U);
+    EXPECT_EQ(cluster["interconnect"]["reads"].get<std::int64_t>(),
+              count("local_reads") + count("remote_reads"));
+    EXPECT_EQ(count("local_writes") + count("remote_writes"), 24 * 16);
+    EXPECT_EQ(distributed["network"]["messages"].get<std::int64_t>(),
+              2 * count("remote_reads") + count("remote_writes"));
+    EXPECT_EQ(machine["interconnect_utilisation"].is_null(), kind == std::string("ideal"));
+    EXPECT_EQ(machine["database_copies"].get<std::int64_t>(), 1);
+    const Outcome summary = marti("run " + quoted(config) + options);
+    EXPECT_NE(summary.output.find("spread over 16 nodes"), std::string::npos) << summary.output;
+    EXPECT_NE(summary.output.find("\nmemories "), std::string::npos) << summary.output;
+  }
+}
+
 struct Wrong {
   const char* text;
   std::vector<std::string> complaint;  // parts of the message

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <random>
 #include <set>
+#include <tuple>
 #include <vector>
 
 #include "memory/interconnect.h"
@@ -310,46 +310,90 @@ RC_GTEST_PROP(Arbitration, KeepsTheBusAsBusyInAnyOrder, (std::uint64_t seed)) {
   }
 }
 
-// The grants worked out once more: whenever the bus is free, look through a list of all that wait.
-RC_GTEST_PROP(Arbitration, WritesAreGrantedAsALongListSays, (std::uint64_t seed)) {
-  Traffic traffic = random_traffic(seed, true);
+// What waits for the bus, in one long list.
+struct Waiting {
+  sim::Ticks at = 0;
+  Transaction transaction;
+  bool write = false;
+  bool data = false;
+  sim::Ticks waited = 0;  // data: what its address waited for the bus, and for the bank
+  sim::Ticks bank_wait = 0;
+};
+
+// The grants worked out once more: whenever the bus is free, look through the list of all that wait.
+RC_GTEST_PROP(Arbitration, GrantsAreThoseThatALongListSays, (std::uint64_t seed)) {
+  Traffic traffic = random_traffic(seed, false);
+  const sim::Clock& clock = traffic.config.clock;
+  const sim::Ticks address = clock.cycles(traffic.config.address_cycles);
+  const sim::Ticks access = traffic.banks.clock.cycles(traffic.banks.access_cycles);
   for (const Arbitration arbitration : arbitrated) {
     traffic.config.arbitration = arbitration;
     const Ports ports(traffic.config, traffic.banks, traffic.issues);
-    std::vector<Issue> waiting = traffic.issues;
+    std::vector<Waiting> waiting;
+    for (const Issue& issue : traffic.issues) {
+      waiting.push_back({issue.at, issue.transaction, issue.write});
+    }
     std::vector<sim::Ticks> bank_free(traffic.banks.count);
     std::vector<std::vector<sim::Ticks>> written(64);
     sim::Ticks free = 0;
+    sim::Ticks busy = 0;
     std::uint32_t last = 63;
     while (!waiting.empty()) {
       sim::Ticks now = waiting[0].at;
-      for (const Issue& issue : waiting) {
-        now = std::min(now, issue.at);
+      for (const Waiting& one : waiting) {
+        now = std::min(now, one.at);
       }
       now = std::max(now, free);
+      // By priority, and among equals the first of the list, which is in the order of asking.
       std::size_t best = waiting.size();
-      std::uint32_t best_rank = 64;
+      std::tuple<bool, std::uint32_t, bool> best_rank;
       for (std::size_t i = 0; i < waiting.size(); ++i) {
         const std::uint32_t port = waiting[i].transaction.port;
-        const std::uint32_t rank =
-            arbitration == Arbitration::fixed_priority ? port : (port + 64 - (last + 1) % 64) % 64;
-        if (waiting[i].at <= now && rank < best_rank) {
+        const bool data = waiting[i].data;
+        const std::tuple<bool, std::uint32_t, bool> rank =
+            arbitration == Arbitration::fixed_priority
+                ? std::tuple(!data, port, false)
+                : std::tuple(false, (port + 64 - (last + 1) % 64) % 64, !data);
+        if (waiting[i].at <= now && (best == waiting.size() || rank < best_rank)) {
           best = i;
           best_rank = rank;
         }
       }
-      const Transaction& granted = waiting[best].transaction;
-      const std::int64_t beats = (granted.bytes + traffic.config.width - 1) / traffic.config.width;
-      free = now + traffic.config.clock.cycles(traffic.config.address_cycles +
-                                               beats * traffic.config.cycles_per_beat);
-      sim::Ticks& bank = bank_free[granted.address / traffic.banks.interleave % traffic.banks.count];
-      const sim::Ticks start = std::max(free, bank);
-      bank = start + traffic.banks.clock.cycles(traffic.banks.busy_cycles);
-      written[granted.port].push_back(start + traffic.banks.clock.cycles(traffic.banks.access_cycles));
-      last = granted.port;
+      const Waiting granted = waiting[best];
       waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(best));
+      const auto& [port, at, bytes] = granted.transaction;
+      last = port;
+      const std::int64_t width = traffic.config.width;
+      const sim::Ticks beats = clock.cycles((bytes + width - 1) / width * traffic.config.cycles_per_beat);
+      if (granted.data) {
+        free = now + beats;
+        busy += beats;
+        const Service& got = ports.services[port].at(0);
+        RC_ASSERT(got.done == free);
+        RC_ASSERT(got.wait_interconnect == granted.waited + now - granted.at);
+        RC_ASSERT(got.wait_bank == granted.bank_wait);
+        continue;
+      }
+      const sim::Ticks sent = now + address + (granted.write ? beats : 0);
+      sim::Ticks& bank = bank_free[at / traffic.banks.interleave % traffic.banks.count];
+      const sim::Ticks start = std::max(sent, bank);
+      bank = start + traffic.banks.clock.cycles(traffic.banks.busy_cycles);
+      free = sent;
+      if (granted.write) {
+        written[port].push_back(start + access);
+      } else if (traffic.config.mode == BusMode::split) {
+        waiting.push_back({start + access, granted.transaction, false, true, now - granted.at, start - sent});
+      } else {
+        free = start + access + beats;
+        const Service& got = ports.services[port].at(0);
+        RC_ASSERT(got.done == free);
+        RC_ASSERT(got.wait_interconnect == now - granted.at);
+        RC_ASSERT(got.wait_bank == start - sent);
+      }
+      busy += free - now;
     }
     RC_ASSERT(ports.written == written);
+    RC_ASSERT(ports.interconnect->statistics().busy == busy);
   }
 }
 

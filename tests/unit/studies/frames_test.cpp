@@ -124,6 +124,7 @@ TEST(Frames, TreesAreSharedUnlessToldOtherwise) {
   EXPECT_EQ(sharing("[build]\nrule_k = 3.0\n").rule_k, 3.0);
   EXPECT_EQ(sharing("[build]\nsharing = \"private\"\n").sharing, processors::Sharing::private_trees);
   EXPECT_EQ(sharing("[database]\nplacement = \"replicated\"\n").sharing, processors::Sharing::private_trees);
+  EXPECT_EQ(sharing("[database]\nplacement = \"distributed\"\n").sharing, processors::Sharing::private_trees);
 }
 
 struct Wrong {
@@ -144,6 +145,7 @@ TEST(Frames, WrongConfigurationsAreRefused) {
       {"[build]\ninitial_level = \"full\"\nrule_k = 3.0\n", {"frames.toml:3", "build.rule_k"}},
       {"[build]\nsharing = \"shared\"\n[database]\nplacement = \"replicated\"\n",
        {"frames.toml:2", "build.sharing", "private"}},
+      {"[interconnect]\narbitration = \"round_robin\"\n", {"interconnect.arbitration", "fifo", "private"}},
       {"[image]\nvoxel_cut = 1.0\nvoxel_cut_reference = true\n",
        {"frames.toml:3", "image.voxel_cut_reference"}},
       {"[machine]\nnodes = 65536\n[cache]\nsize = \"16 MiB\"\n", {"frames.toml:2", "machine.nodes"}},
