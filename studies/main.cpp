@@ -24,6 +24,7 @@
 #include "studies/paper/paper.h"
 #include "studies/paper/paper_keys.h"
 #include "studies/run_result.h"
+#include "studies/signals_held.h"
 #include "studies/trace/trace.h"
 #include "studies/version.h"
 
@@ -269,6 +270,7 @@ int parse_and_run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // A reader that goes away is an error of writing like a full disk.
   std::signal(SIGPIPE, SIG_IGN);
+  marti::studies::end_cleanly_on_signals();
   try {
     return parse_and_run(argc, argv);
   } catch (const marti::sim::UserError& error) {

@@ -84,8 +84,9 @@ RunResult run(sim::Config& config, const std::filesystem::path& directory) {
   result.functional = run_functional(result.frame_config);
   const processors::WorkLog& log = *result.functional.frame.log;
   result.timed = watched_replay(record, directory, result);
-  result.one_node = result.timed;
-  if (result.machine.all_nodes() > 1) {
+  if (result.machine.all_nodes() == 1) {
+    result.one_node = result.timed;
+  } else {
     processors::MachineConfig one = result.machine;
     one.clusters = 1;
     one.nodes = 1;
