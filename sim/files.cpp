@@ -6,6 +6,8 @@
 
 #include <atomic>
 #include <cerrno>
+#include <mutex>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -46,6 +48,17 @@ std::filesystem::path temporary_name(const std::filesystem::path& target) {
   name += ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(counter++);
   name += target.extension();
   return target.parent_path() / name;
+}
+
+/// The temporary names that are in use. Never destroyed: a program may end while another thread looks.
+struct PendingNames {
+  std::mutex lock;
+  std::set<std::filesystem::path> names;
+};
+
+PendingNames& pending_names() {
+  static auto& pending = *new PendingNames;  // NOLINT(cppcoreguidelines-owning-memory)
+  return pending;
 }
 
 void write_all(const std::filesystem::path& file, int descriptor, std::string_view content) {
@@ -152,19 +165,31 @@ PendingFile::PendingFile(std::filesystem::path target)
   if (!target_.has_filename() || std::filesystem::is_directory(target_, ignored)) {
     fail(target_, "cannot be written", EISDIR);
   }
+  const std::lock_guard guard(pending_names().lock);
+  pending_names().names.insert(temporary_);
 }
 
 PendingFile::~PendingFile() {
+  const std::lock_guard guard(pending_names().lock);
+  pending_names().names.erase(temporary_);
   if (!committed_) {
     ::unlink(temporary_.c_str());
   }
 }
 
 void PendingFile::commit() {
+  const std::lock_guard guard(pending_names().lock);
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
     fail(target_, "cannot be written", errno);
   }
   committed_ = true;
+}
+
+void abandon_pending_files() {
+  pending_names().lock.lock();  // for good
+  for (const std::filesystem::path& name : pending_names().names) {
+    ::unlink(name.c_str());
+  }
 }
 
 }  // namespace marti::sim

@@ -46,4 +46,8 @@ class PendingFile {
   bool committed_ = false;
 };
 
+/// Removes the temporary files of every PendingFile, and lets no other be made or committed: for a program
+/// that is about to end itself because of a signal. Not for signal handlers.
+void abandon_pending_files();
+
 }  // namespace marti::sim

@@ -26,6 +26,7 @@
 #include "studies/run_result.h"
 #include "studies/schemes/schemes.h"
 #include "studies/schemes/schemes_keys.h"
+#include "studies/signals_held.h"
 #include "studies/trace/trace.h"
 #include "studies/version.h"
 
@@ -275,6 +276,7 @@ int parse_and_run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // A reader that goes away is an error of writing like a full disk.
   std::signal(SIGPIPE, SIG_IGN);
+  marti::studies::end_cleanly_on_signals();
   try {
     return parse_and_run(argc, argv);
   } catch (const marti::sim::UserError& error) {

@@ -84,8 +84,9 @@ RunResult run(sim::Config& config, const std::filesystem::path& directory) {
   result.functional = run_functional(result.frame_config);
   const processors::WorkLog& log = *result.functional.frame.log;
   result.timed = watched_replay(record, directory, result);
-  result.one_node = result.timed;
-  if (result.machine.all_nodes() > 1 || result.machine.scheme != processors::Scheme::image) {
+  if (result.machine.all_nodes() == 1 && result.machine.scheme == processors::Scheme::image) {
+    result.one_node = result.timed;
+  } else {
     result.one_node = processors::replay(log, processors::one_node_of(result.machine));
   }
   result.scaling = scaling_of(result.one_node.end, result.timed.end, result.machine.all_nodes());

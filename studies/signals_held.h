@@ -1,26 +1,22 @@
-// Keeps an interrupt from splitting a set of files into old and new ones.
+// Signals that end the program: what it leaves behind then.
 #pragma once
 
-#include <csignal>
+#include <mutex>
 
 namespace marti::studies {
 
-/// While it lives, SIGINT and SIGTERM wait.
+/// To be called by main() before it starts any thread. From then on SIGINT, SIGTERM and SIGHUP, unless they
+/// are ignored, end the program as they always do, but first the temporary files of unfinished output are
+/// removed, and while a SignalsHeld lives they wait.
+void end_cleanly_on_signals();
+
+/// Keeps such a signal from splitting a set of files into old and new ones.
 class SignalsHeld {
  public:
-  SignalsHeld() {
-    sigset_t held;
-    sigemptyset(&held);
-    sigaddset(&held, SIGINT);
-    sigaddset(&held, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &held, &before_);
-  }
-  ~SignalsHeld() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  SignalsHeld(const SignalsHeld&) = delete;
-  SignalsHeld& operator=(const SignalsHeld&) = delete;
+  SignalsHeld();
 
  private:
-  sigset_t before_{};
+  std::unique_lock<std::recursive_mutex> lock_;
 };
 
 }  // namespace marti::studies

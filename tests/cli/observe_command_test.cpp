@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -152,6 +153,29 @@ TEST(TraceCommand, SaysWhyItCannotAndLeavesNothing) {
   EXPECT_EQ(full.status, 2) << full.output;
   EXPECT_NE(full.output.find("cannot be written"), std::string::npos) << full.output;
   EXPECT_TRUE(fs::is_empty(directory.path() / "out"));
+}
+
+// A timeline and a trace are written while they grow. (A shell lets its background ignore SIGINT.)
+TEST(ObserveCommand, InterruptedItLeavesNoFile) {
+  const TemporaryDirectory directory;
+  const fs::path out = directory.path() / "out";
+  const std::string config = quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") + " -o " + quoted(out);
+  struct Case {
+    const char* command;
+    const char* signal;
+    int number;
+  };
+  for (const Case& c :
+       {Case{"run --set record.timeline=true --set record.timeline_events=1000000000 ", "TERM", SIGTERM},
+        Case{"trace ", "HUP", SIGHUP}}) {
+    const std::string grown = "[ -n \"$(find " + quoted(out) + " -size +64k 2>/dev/null)\" ]";
+    const Outcome outcome = shell(quoted(MARTI_PROGRAM) + " " + c.command + config + " & i=0; until " +
+                                  grown + " || [ $i -ge 600 ]; do sleep 0.05; i=$((i + 1)); done; kill -" +
+                                  c.signal + " $!; wait $!; echo status $?");
+    EXPECT_NE(outcome.output.find("status " + std::to_string(128 + c.number)), std::string::npos)
+        << c.command << outcome.output;
+    EXPECT_TRUE(fs::is_empty(out)) << c.command;
+  }
 }
 
 TEST(Command, AReaderThatGoesAwayIsAnErrorOfWriting) {

@@ -1,0 +1,49 @@
+#include "studies/signals_held.h"
+
+#include <csignal>
+#include <thread>
+
+#include "sim/files.h"
+
+namespace marti::studies {
+
+namespace {
+
+// Never destroyed: the watching thread outlives main().
+std::recursive_mutex& held() {
+  static auto& mutex = *new std::recursive_mutex;  // NOLINT(cppcoreguidelines-owning-memory)
+  return mutex;
+}
+
+// Every thread blocks the signals, because each inherits the mask of the one that starts it; so they come
+// here.
+void watch(const sigset_t& signals) {
+  int signal = 0;
+  if (sigwait(&signals, &signal) != 0) {
+    return;
+  }
+  held().lock();  // for good: nothing else is to begin
+  sim::abandon_pending_files();
+  std::signal(signal, SIG_DFL);
+  sigset_t mine;
+  sigemptyset(&mine);
+  sigaddset(&mine, signal);
+  pthread_sigmask(SIG_UNBLOCK, &mine, nullptr);
+  std::raise(signal);
+}
+
+}  // namespace
+
+void end_cleanly_on_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    sigaddset(&signals, signal);
+  }
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::thread(watch, signals).detach();
+}
+
+SignalsHeld::SignalsHeld() : lock_(held()) {}
+
+}  // namespace marti::studies
