@@ -1,5 +1,8 @@
 // Which machines the SystemC model is one of. The bindings name every member of every part of a
 // configuration, so that a new one does not compile before somebody has modelled it or refused it here.
+#include <algorithm>
+#include <initializer_list>
+
 #include "sim/error.h"
 #include "tests/validation/systemc/machine.h"
 
@@ -26,11 +29,13 @@ void refuse(const processors::NodeCacheConfig& config) {
 void refuse(const memory::InterconnectConfig& config) {
   using memory::BusMode;
   using memory::InterconnectKind;
-  [[maybe_unused]] const auto& [kind, mode, clock, width, cycles_per_beat, address_cycles, latency_cycles] =
-      config;
+  [[maybe_unused]] const auto& [kind, mode, arbitration, clock, width, cycles_per_beat, address_cycles,
+                                latency_cycles] = config;
   ensure_one_of(kind, {InterconnectKind::ideal, InterconnectKind::bus, InterconnectKind::crossbar},
                 "the SystemC model has no such interconnect");
   ensure_one_of(mode, {BusMode::held, BusMode::split}, "the SystemC model has no such bus");
+  sim::ensure(arbitration == memory::Arbitration::fifo || kind != InterconnectKind::bus,
+              "the SystemC model's bus is granted by fifo");
 }
 
 void refuse(const processors::PacketConfig& packets, const processors::HostConfig& host) {
@@ -59,10 +64,11 @@ void refuse(const memory::LayoutConfig& layout, const memory::BankConfig& banks,
 
 void refuse_what_is_not_modelled(const processors::MachineConfig& config) {
   using processors::Placement;
-  // network, messages, pipeline and space have a meaning only in schemes that are refused.
+  // network, messages, pipeline and space have a meaning only in schemes that are refused; distribution and
+  // network only with a placement that is.
   [[maybe_unused]] const auto& [clusters, nodes, clock, operations, word_bytes, write_buffer, layout, cache,
-                                placement, local, interconnect, banks, packets, host, build, scheme, network,
-                                messages, pipeline, space] = config;
+                                placement, distribution, local, interconnect, banks, packets, host, build,
+                                scheme, network, messages, pipeline, space] = config;
   sim::ensure(scheme == processors::Scheme::image, "the SystemC model has the image scheme only");
   sim::ensure(build.sharing == processors::Sharing::given, "the SystemC model's tree is given");
   ensure_one_of(placement, {Placement::shared, Placement::replicated},
