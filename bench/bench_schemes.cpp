@@ -25,7 +25,7 @@ using namespace marti;
 using processors::Scheme;
 
 // Every scheme, so that a new one is measured too.
-constexpr std::array schemes = {Scheme::image, Scheme::pipeline};
+constexpr std::array schemes = {Scheme::image, Scheme::pipeline, Scheme::space};
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();

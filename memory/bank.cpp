@@ -17,6 +17,18 @@ Banks::Banks(const BankConfig& config)
   if (config.count == 0 || !std::has_single_bit(config.interleave)) {
     throw sim::UserError("memory needs at least one bank and an interleave that is a power of two");
   }
+  if (config.cache) {
+    cache_.emplace(*config.cache);
+  }
+}
+
+BankAccess Banks::read_cached(Address address, sim::Ticks arrival) {
+  if (const std::optional<SharedCache::Hit> hit = cache_->read(address, arrival)) {
+    return {hit->start, hit->ready};
+  }
+  const BankAccess filled = access(bank_of(address), arrival);
+  cache_->fill(filled.ready);
+  return filled;
 }
 
 BankAccess Banks::access(std::uint32_t bank, sim::Ticks arrival) {

@@ -1,10 +1,13 @@
-// Memory banks: interleaved by line, each serves one access at a time in order of arrival.
+// Memory banks: interleaved by line, each serves one access at a time in order of arrival; with or without a
+// cache before them.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "memory/record_kind.h"
+#include "memory/shared_cache.h"
 #include "memory/wait_statistics.h"
 #include "sim/time.h"
 
@@ -18,6 +21,7 @@ struct BankConfig {
   sim::Clock clock = sim::Clock::from_hertz(33e6);
   std::int64_t access_cycles = 4;
   std::int64_t busy_cycles = 6;
+  std::optional<SharedCacheConfig> cache{};  ///< before the banks; nothing: there is none
 };
 
 struct BankStatistics {
@@ -46,19 +50,34 @@ class Banks {
     const Address unit = address >> interleave_shift_;
     return static_cast<std::uint32_t>((count_ & (count_ - 1)) == 0 ? unit & (count_ - 1) : unit % count_);
   }
-  /// Queues an access that arrives at `arrival`. Accesses to one bank must come in order of arrival.
+  /// A read or write whose address arrives at `arrival`: of the cache, if there is one, or of its bank. They
+  /// must come in order of arrival.
+  BankAccess read(Address address, sim::Ticks arrival) {
+    return cache_ ? read_cached(address, arrival) : access(bank_of(address), arrival);
+  }
+  BankAccess write(Address address, sim::Ticks arrival) { return access(bank_of(address), arrival); }
+
+  /// Queues an access that arrives at `arrival`, past the cache. Accesses to one bank must come in order of
+  /// arrival.
   BankAccess access(std::uint32_t bank, sim::Ticks arrival);
 
   [[nodiscard]] std::uint32_t count() const { return count_; }
   [[nodiscard]] const std::vector<BankStatistics>& statistics() const { return statistics_; }
+  /// Of the cache; null where there is none.
+  [[nodiscard]] const SharedCacheStatistics* cache_statistics() const {
+    return cache_ ? &cache_->statistics() : nullptr;
+  }
 
  private:
+  BankAccess read_cached(Address address, sim::Ticks arrival);
+
   std::uint32_t count_;
   std::uint32_t interleave_shift_;
   sim::Ticks access_ticks_;
   sim::Ticks busy_ticks_;
   std::vector<sim::Ticks> free_at_;
   std::vector<BankStatistics> statistics_;
+  std::optional<SharedCache> cache_;
 };
 
 }  // namespace marti::memory

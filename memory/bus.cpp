@@ -36,7 +36,7 @@ void Bus::read(const Transaction& transaction) {
   if (mode_ == BusMode::split) {
     const Ticks start = take(address_);
     const Ticks sent = add_ticks(start, address_);
-    const BankAccess access = banks_.access(banks_.bank_of(transaction.address), sent);
+    const BankAccess access = banks_.read(transaction.address, sent);
     pending_[transaction.port] = {
         {0, start - now, address_, access.start - sent, access.ready - access.start}, transaction.bytes};
     site_.engine.post(
@@ -45,7 +45,7 @@ void Bus::read(const Transaction& transaction) {
   }
   const Ticks start = link_.begin(now);
   const Ticks sent = add_ticks(start, address_);
-  const BankAccess access = banks_.access(banks_.bank_of(transaction.address), sent);
+  const BankAccess access = banks_.read(transaction.address, sent);
   const Ticks data = beats_(transaction.bytes);
   const Ticks done = add_ticks(access.ready, data);
   take(done - start);
@@ -69,7 +69,7 @@ void Bus::write(const Transaction& transaction) {
   statistics_.bytes += transaction.bytes;
   const Ticks length = add_ticks(address_, beats_(transaction.bytes));
   const Ticks sent = add_ticks(take(length), length);
-  const BankAccess access = banks_.access(banks_.bank_of(transaction.address), sent);
+  const BankAccess access = banks_.write(transaction.address, sent);
   site_.client.write_done(transaction.port, access.ready);
 }
 

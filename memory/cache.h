@@ -3,10 +3,10 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 
 #include "memory/cache_config.h"
 #include "memory/record_kind.h"
+#include "memory/tag_array.h"
 #include "sim/statistics.h"
 
 namespace marti::memory {
@@ -36,11 +36,6 @@ class Cache {
  public:
   /// Throws UserError when the configuration describes no cache.
   explicit Cache(const CacheConfig& config);
-  ~Cache();
-  Cache(Cache&&) noexcept;
-  Cache& operator=(Cache&&) noexcept;
-  Cache(const Cache&) = delete;
-  Cache& operator=(const Cache&) = delete;
 
   /// Reads `bytes` (at least 1) from `address`, line by line; returns the number of lines that missed.
   /// Addresses reach up to 2^32 - 1 lines; beyond that it throws UserError.
@@ -53,9 +48,6 @@ class Cache {
   [[nodiscard]] const CacheCounters& counters() const { return counters_; }
   [[nodiscard]] const CacheShape& shape() const { return shape_; }
 
-  /// The look-up behind the interface; defined in cache.cpp.
-  struct TagStore;
-
  private:
   struct Lines {
     Address first;
@@ -65,7 +57,7 @@ class Cache {
 
   CacheShape shape_;
   CacheCounters counters_;
-  std::unique_ptr<TagStore> tags_;
+  TagArray tags_;
 };
 
 }  // namespace marti::memory

@@ -24,7 +24,7 @@ void Crossbar::read(const Transaction& transaction) {
   statistics_.bytes += transaction.bytes;
   const std::uint32_t bank = banks_.bank_of(transaction.address);
   const Ticks arrival = add_ticks(site_.engine.now(), latency_);
-  const BankAccess access = banks_.access(bank, arrival);
+  const BankAccess access = banks_.read(transaction.address, arrival);
   const Ticks data = beats_(transaction.bytes);
   const Ticks start = links_[bank].begin(access.ready);
   const Ticks sent = add_ticks(start, data);
@@ -42,7 +42,7 @@ void Crossbar::write(const Transaction& transaction) {
   statistics_.bytes += transaction.bytes;
   statistics_.waits.add(0);
   const Ticks arrival = add_ticks(site_.engine.now(), latency_);
-  const BankAccess access = banks_.access(banks_.bank_of(transaction.address), arrival);
+  const BankAccess access = banks_.write(transaction.address, arrival);
   site_.client.write_done(transaction.port, add_ticks(access.ready, beats_(transaction.bytes)));
 }
 

@@ -7,9 +7,9 @@
 namespace marti::memory {
 
 /// A request reaches its bank's queue `latency_cycles` after it is issued. The bank serves it, the data
-/// leave over the bank's own link, and arrive `latency_cycles` after their last beat. A write takes its
-/// place in the bank's queue when its address arrives; its data follow after the bank's access over a path of
-/// their own that is never the bottleneck and is not counted as a link.
+/// leave over the bank's own link in the order of the requests, and arrive `latency_cycles` after their last
+/// beat. A write takes its place in the bank's queue when its address arrives; its data follow after the
+/// bank's access over a path of their own that is never the bottleneck and is not counted as a link.
 class Crossbar final : public Interconnect {
  public:
   Crossbar(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site);
@@ -19,6 +19,9 @@ class Crossbar final : public Interconnect {
   [[nodiscard]] const InterconnectStatistics& statistics() const override { return statistics_; }
   [[nodiscard]] const std::vector<BankStatistics>& bank_statistics() const override {
     return banks_.statistics();
+  }
+  [[nodiscard]] const SharedCacheStatistics* cache_statistics() const override {
+    return banks_.cache_statistics();
   }
   [[nodiscard]] sim::Ticks unloaded_read(std::uint32_t bytes) const override;
 

@@ -21,6 +21,10 @@ std::unique_ptr<Interconnect> make_interconnect(const InterconnectConfig& config
   if (config.width == 0) {
     throw sim::UserError("an interconnect must be at least one byte wide");
   }
+  if (config.kind == InterconnectKind::ideal && banks.cache) {
+    throw sim::UserError(
+        "an ideal interconnect has no memory behind it that a shared cache could stand before");
+  }
   switch (config.kind) {
     case InterconnectKind::ideal:
       return std::make_unique<Ideal>(config, site);

@@ -114,6 +114,8 @@ class Interconnect {
   /// Of a distributed memory, where the accesses went, and what its network carried; else null.
   [[nodiscard]] virtual const DistributedStatistics* distribution() const { return nullptr; }
   [[nodiscard]] virtual const NetworkStatistics* network_statistics() const { return nullptr; }
+  /// Statistics of the cache before them; null where there is none.
+  [[nodiscard]] virtual const SharedCacheStatistics* cache_statistics() const { return nullptr; }
   /// Time of a read of `bytes` that meets no other transaction.
   [[nodiscard]] virtual sim::Ticks unloaded_read(std::uint32_t bytes) const = 0;
 };

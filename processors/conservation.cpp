@@ -1,6 +1,7 @@
 #include <string>
 
 #include "processors/build_report.h"
+#include "processors/cache_laws.h"
 #include "processors/flow_conservation.h"
 #include "processors/replay.h"
 #include "sim/error.h"
@@ -46,6 +47,16 @@ void check_distributed(const ClusterResult& cluster) {
   require(served == traffic.reads + traffic.writes, "every access is served by one memory");
 }
 
+void check_contexts(const MachineConfig& config, const MachineResult& result) {
+  const sim::Ticks each = config.clock.cycles(config.switch_cycles);
+  for (std::size_t node = 0; node < result.contexts.nodes.size(); ++node) {
+    const ContextCounts& counts = result.contexts.nodes[node];
+    require(part(result.nodes[node].time, Activity::switching) == sim::multiply_ticks(each, counts.switches),
+            "switching is the switches' time");
+    require(counts.useful + counts.useless == counts.issued, "prefetched lines are useful or useless");
+  }
+}
+
 }  // namespace
 
 void check_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result) {
@@ -81,18 +92,24 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
     }
     check_distributed(cluster);
   }
-  const ReferenceCounts references = result.references();
   const BuildCounts built = result.build.counts();
   const bool own_memories = config.placement == Placement::replicated || config.scheme == Scheme::space;
-  const std::int64_t misses = own_memories ? 0 : references.all_misses() - built.local_misses;
-  require(reads == misses + built.locks, "every miss and every lock is one read of the interconnect");
+  const std::int64_t misses = own_memories ? 0 : misses_beyond_caches(config, result) - built.local_misses;
+  require(reads == misses + built.locks + result.contexts.counts().issued,
+          "every miss, every lock and every prefetch is one read of the interconnect");
+  check_second_level_laws(config, result);
+  check_counts(result.counts, result.references(), result.time());
   require(writes == steps.pixels + built.writes,
           "every pixel and every part of the tree is one write of the interconnect");
   // Posted writes wait too, but no node waits with them.
   const TimeDivision time = result.time();
+  for (const memory::WaitStatistics& waits : result.l2.waits) {
+    bank_waits += waits.sum;
+  }
   require(part(time, Activity::interconnect_wait) <= interconnect_waits,
           "nodes wait for the interconnect no longer than its transactions do");
   require(part(time, Activity::bank_wait) <= bank_waits, "nodes wait for banks no longer than accesses do");
+  check_contexts(config, result);
   if (result.build.sharing != Sharing::given) {
     check_build(log, config, result.build);
   }

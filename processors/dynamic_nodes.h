@@ -91,6 +91,8 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
     Base::watch_idle();
   }
 
+  SecondLevelResult second_level() const override { return walker_.second_level().result(); }
+
   BuildResult build_result() const override {
     BuildResult result = report_build(input_, walker_.copies());
     result.start_up = start_up_;
@@ -169,7 +171,10 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
 
   void read(std::uint32_t node) {
     DynamicCursor& cursor = cursors_[node];
-    walker_.miss(node, cursor, statistics_[node]);
+    if (!walker_.miss(node, cursor, statistics_[node])) {
+      run(node);
+      return;
+    }
     interconnect_of(node).read({port_of(node), walker_.address(cursor), walker_.bytes(cursor)});
   }
 
@@ -263,7 +268,7 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
     const std::uint32_t first = node - port_of(node);
     for (std::uint32_t other = first; other < first + input_.config.nodes; ++other) {
       if (other != node) {
-        built_[node].invalidations += walker_.caches().view(other).remove(line);
+        built_[node].invalidations += walker_.take_out(other, line);
       }
     }
   }

@@ -21,6 +21,7 @@
 #include "processors/node_caches.h"
 #include "processors/program/work_log.h"
 #include "processors/replay_input.h"
+#include "processors/second_level.h"
 #include "processors/step_time.h"
 #include "processors/tree_addresses.h"
 #include "processors/tree_copies.h"
@@ -45,6 +46,7 @@ class DynamicWalker {
         ticks_(step_ticks(input.config, input.log)),
         build_ticks_(build_ticks(input.config)),
         local_(input.config.local),
+        second_level_(input.config),
         local_base_(input.config.placement == Placement::replicated ? 0
                     : private_()                                    ? plan_.lower_base()
                                                                     : ~memory::Address{0}) {
@@ -61,7 +63,11 @@ class DynamicWalker {
   [[nodiscard]] const BuildTicks& times() const { return build_ticks_; }
   [[nodiscard]] TreeCopies& copies() { return copies_; }
   [[nodiscard]] const TreeCopies& copies() const { return copies_; }
-  [[nodiscard]] Caches& caches() { return caches_; }
+  [[nodiscard]] const PrivateSecondLevel& second_level() const { return second_level_; }
+  /// Takes a line out of a node's caches; how many copies there were.
+  [[nodiscard]] std::int64_t take_out(std::uint32_t node, std::uint32_t line) {
+    return caches_.view(node).remove(line) + second_level_.remove(node, line);
+  }
 
   /// Takes `node` on from its cursor. Without RunAhead it stops before every reference.
   template <bool RunAhead>
@@ -78,7 +84,7 @@ class DynamicWalker {
           }
           write_local(copy, cursor, statistics, built);
         } else if (DynamicStop stop = DynamicStop::due;
-                   !refer<RunAhead>(copy, lines, cache, cursor, statistics, built, stop)) {
+                   !refer<RunAhead>(node, copy, lines, cache, cursor, statistics, built, stop)) {
           return stop;
         }
       }
@@ -120,7 +126,7 @@ class DynamicWalker {
             }
           }
           begin_test(cursor, statistics.steps, *cursor.entry);
-          read_primitive(cursor);
+          read_one(cursor, memory::RecordKind::primitive, *cursor.entry++);
           break;
         case Todo::branch:
           if (cursor.seen) {
@@ -195,8 +201,8 @@ class DynamicWalker {
     return addresses_.record(copies_.copy_of(node), cursor.node);
   }
 
-  /// The time of the miss has come: its line is brought in.
-  void miss(std::uint32_t node, DynamicCursor& cursor, NodeStatistics& statistics) {
+  /// The time of the miss has come: its line is brought in. False when the second level has served it.
+  bool miss(std::uint32_t node, DynamicCursor& cursor, NodeStatistics& statistics) {
     const std::uint32_t copy = copies_.copy_of(node);
     const auto line = static_cast<std::uint32_t>(cursor.at >> unit_shift_);
     (void)caches_.view(node).access(cursor.kind, line);
@@ -205,6 +211,11 @@ class DynamicWalker {
       copies_.note_cached(copy, line);
     }
     look(copy, cursor);
+    if (second_level_.access(node, line, cursor.time, statistics.time)) {
+      pass(cursor);
+      return false;
+    }
+    return true;
   }
   /// The transaction has been made.
   void pass(DynamicCursor& cursor) const { cursor.at = ((cursor.at >> unit_shift_) + 1) << unit_shift_; }
@@ -243,10 +254,8 @@ class DynamicWalker {
     cursor.todo = todo;
     read(cursor, memory::RecordKind::node, addresses_.record(copy, tree_node), node_bytes());
   }
-  void read_primitive(DynamicCursor& cursor) const {
-    const std::uint32_t primitive = *cursor.entry++;
-    read(cursor, memory::RecordKind::primitive, layout_.address(memory::RecordKind::primitive, primitive),
-         layout_.record_bytes(memory::RecordKind::primitive, primitive));
+  void read_one(DynamicCursor& cursor, memory::RecordKind kind, std::uint64_t index) const {
+    read(cursor, kind, layout_.address(kind, index), layout_.record_bytes(kind, index));
   }
 
   // A test's computing, at its price.
@@ -302,8 +311,8 @@ class DynamicWalker {
 
   // Reads the next part. False when the node has to stop.
   template <bool RunAhead>
-  bool refer(std::uint32_t copy, const LineStates& lines, View cache, DynamicCursor& cursor,
-             NodeStatistics& statistics, BuildCounts& built, DynamicStop& stop) {
+  bool refer(std::uint32_t node, std::uint32_t copy, const LineStates& lines, View cache,
+             DynamicCursor& cursor, NodeStatistics& statistics, BuildCounts& built, DynamicStop& stop) {
     const auto line = static_cast<std::uint32_t>(cursor.at >> unit_shift_);
     if ((!RunAhead || (Caches::present && !lines.settled(line))) && !cursor.due) {
       stop = DynamicStop::due;
@@ -319,8 +328,10 @@ class DynamicWalker {
       return false;
     } else {
       ++statistics.references.misses[static_cast<std::size_t>(cursor.kind)];
-      ++built.local_misses;
-      use_local(cursor, statistics, Caches::present ? line_bytes_ : part(cursor));
+      if (!second_level_.access(node, line, cursor.time, statistics.time)) {
+        ++built.local_misses;
+        use_local(cursor, statistics, Caches::present ? line_bytes_ : part(cursor));
+      }
     }
     look(copy, cursor);
     pass(cursor);
@@ -363,7 +374,7 @@ class DynamicWalker {
   void sort_next(DynamicCursor& cursor, BuildCounts& built) {
     if (cursor.entry != cursor.entry_end) {
       spend(cursor, build_ticks_.listed, 1);
-      read_primitive(cursor);
+      read_one(cursor, memory::RecordKind::primitive, *cursor.entry++);
       return;
     }
     // What the branch listed and no leaf does is classified too; then come the overlap tests.
@@ -438,8 +449,7 @@ class DynamicWalker {
       case Step::shade:
         ++steps.shades;
         spend(cursor, ticks_.shade, 1);
-        read(cursor, memory::RecordKind::material, layout_.address(memory::RecordKind::material, operand),
-             layout_.record_bytes(memory::RecordKind::material));
+        read_one(cursor, memory::RecordKind::material, operand);
         break;
       case Step::cut:
         ++steps.cuts;
@@ -449,8 +459,7 @@ class DynamicWalker {
       case Step::pass:
         ++steps.passes;
         spend(cursor, ticks_.pass, 1);
-        read(cursor, memory::RecordKind::material, layout_.address(memory::RecordKind::material, operand),
-             layout_.record_bytes(memory::RecordKind::material));
+        read_one(cursor, memory::RecordKind::material, operand);
         break;
       case Step::light:
         ++steps.lights;
@@ -459,9 +468,7 @@ class DynamicWalker {
       case Step::texel:
         ++steps.texels;
         spend(cursor, ticks_.texel, 1);
-        read(cursor, memory::RecordKind::texel,
-             layout_.address(memory::RecordKind::texel, input_.log.texture_begin[operand] + *cursor.word++),
-             layout_.record_bytes(memory::RecordKind::texel));
+        read_one(cursor, memory::RecordKind::texel, input_.log.texture_begin[operand] + *cursor.word++);
         break;
     }
   }
@@ -481,6 +488,7 @@ class DynamicWalker {
   StepTicks ticks_;
   BuildTicks build_ticks_;
   LocalMemory local_;
+  PrivateSecondLevel second_level_;
   memory::Address local_base_;  ///< from here on addresses are those of a node's own memory
 };
 

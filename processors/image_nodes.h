@@ -80,6 +80,10 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
     Base::watch_idle();
   }
 
+  SecondLevelResult second_level() const override { return walker_.second_level().result(); }
+
+  CacheCountResult cache_counts() const override { return walker_.cache_counts(); }
+
   std::size_t bytes_per_node() const override { return Base::common_bytes(); }
 
  private:
@@ -118,6 +122,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
     watch_read(node, service);
     Cursor& cursor = cursors_[node];
     cursor.time = service.done;
+    walker_.note_wait(cursor, service);
     walker_.pass(cursor);
     run(node);
   }

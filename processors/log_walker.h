@@ -7,10 +7,14 @@
 #include <utility>
 
 #include "processors/accounting.h"
+#include "processors/cache_counting.h"
+#include "processors/lines_under_way.h"
+#include "processors/local_memory.h"
 #include "processors/node_caches.h"
 #include "processors/packets.h"
 #include "processors/program/work_log.h"
 #include "processors/replay_input.h"
+#include "processors/second_level.h"
 #include "processors/stages.h"
 #include "processors/step_time.h"
 #include "processors/visit_plan.h"
@@ -38,12 +42,19 @@ struct Cursor {
   std::uint32_t y = 0;
   Packet packet;
   memory::RecordKind kind = memory::RecordKind::node;
+  Origin origin;  ///< of the current record; kept only where it is counted
+  /// Guarded caches only: the branch whose record was visited last and whose children may be prefetched.
+  std::uint32_t branch = no_branch;
+
+  static constexpr std::uint32_t no_branch = 0xffffffffU;
 };
 
-/// Why a walk stopped: after a hit (only without running ahead), at a miss, or at the end of its words.
-enum class Stop : std::uint8_t { hit, miss, end };
+/// Why a walk stopped: after a hit (only without running ahead), at a miss, or at the end of its words. due,
+/// with guarded caches only: the reference that comes next is of a line that may be under way, or a branch
+/// was read whose children are to be prefetched.
+enum class Stop : std::uint8_t { hit, miss, end, due };
 
-/// `Caches` is one of node_caches.h.
+/// `Caches` is one of node_caches.h, or those guarded (guarded_caches.h).
 template <class Caches>
 class LogWalker {
  public:
@@ -59,22 +70,33 @@ class LogWalker {
         unit_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
         ticks_(step_ticks(input.config, input.log)),
         mailboxes_(input.log.mailboxes),
-        local_access_(input.config.local.clock.cycles(input.config.local.access_cycles)),
-        local_beat_(input.config.local.clock.cycles(input.config.local.cycles_per_beat)),
-        local_database_(input.config.placement == Placement::replicated) {
-    if (Caches::present && !input.step_by_step) {
+        local_(input.config.local),
+        local_database_(input.config.placement == Placement::replicated),
+        second_level_(input.config),
+        passes_misses_on_(!local_database_ || second_level_.present()) {
+    if (Caches::present && !Caches::counted && !guarded && !input.step_by_step) {
       plan_ = plan_visits(input.log, input.layout, input.node_rank, unit_shift_, ticks_);
       plan_limit_ = plan_.empty() ? 0 : 2U << operand_bits;
     }
   }
 
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
+  [[nodiscard]] const PrivateSecondLevel& second_level() const { return second_level_; }
+  [[nodiscard]] Caches& caches() { return caches_; }
+  [[nodiscard]] const Caches& caches() const { return caches_; }
 
   /// Takes `node` on from its cursor. Without RunAhead it stops after every reference.
   template <bool RunAhead>
   Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
     Tally tally;
-    const Stop stop = walk<RunAhead>(caches_.view(node), cursor, statistics, tally);
+    Stop stop = Stop::hit;
+    do {
+      stop = walk<RunAhead>(caches_.view(node), cursor, statistics, tally);
+      if (stop != Stop::miss || !second_level_.present() || !serve(node, cursor, statistics)) {
+        break;
+      }
+      stop = Stop::hit;
+    } while (RunAhead);
     flush(tally, statistics);
     return stop;
   }
@@ -139,6 +161,19 @@ class LogWalker {
     const memory::Address next = ((cursor.at >> unit_shift_) + 1) << unit_shift_;
     return static_cast<std::uint32_t>(std::min(cursor.end, next) - cursor.at);
   }
+  /// What the wait for the reference that missed was for, where that is counted.
+  void note_wait(const Cursor& cursor, const memory::Service& service) const {
+    if constexpr (Caches::counted) {
+      caches_.counting().wait(cursor.kind, cursor.origin, service);
+    }
+  }
+  [[nodiscard]] CacheCountResult cache_counts() const {
+    if constexpr (Caches::counted) {
+      return caches_.counting().result();
+    } else {
+      return {};
+    }
+  }
   /// The reference that missed has been served.
   void pass(Cursor& cursor) const {
     if (in_visit(cursor)) {
@@ -150,6 +185,7 @@ class LogWalker {
 
  private:
   using View = typename Caches::View;
+  static constexpr bool guarded = requires { Caches::guarded; };
 
   // Sums over the planned visits of one walk that are not in the statistics yet.
   struct Tally {
@@ -174,20 +210,7 @@ class LogWalker {
   }
 
   void flush(Tally& tally, NodeStatistics& statistics) const {
-    const auto of = [&](VisitCount what) { return std::int64_t{tally.counts.of(what)}; };
-    StepCounts& steps = statistics.steps;
-    steps.branches += tally.visits - of(VisitCount::leaf);
-    steps.leaves += of(VisitCount::leaf);
-    steps.lists += of(VisitCount::list);
-    steps.tests += of(VisitCount::test) + of(VisitCount::sphere_test) + of(VisitCount::cone_test);
-    steps.sphere_tests += of(VisitCount::sphere_test);
-    steps.cone_tests += of(VisitCount::cone_test);
-    if (mailboxes_) {
-      steps.lookups += of(VisitCount::test) + of(VisitCount::sphere_test) + of(VisitCount::cone_test);
-    }
-    hits_of(statistics, memory::RecordKind::node) += of(VisitCount::node_line);
-    hits_of(statistics, memory::RecordKind::list) += of(VisitCount::list_line);
-    hits_of(statistics, memory::RecordKind::primitive) += of(VisitCount::primitive_line);
+    add_visits(tally.counts, tally.visits, mailboxes_, statistics);
     tally = {};
   }
   static std::int64_t& hits_of(NodeStatistics& statistics, memory::RecordKind kind) {
@@ -208,6 +231,9 @@ class LogWalker {
         !finish_leaf<RunAhead>(cache, cursor, statistics, stop)) {
       return stop;
     }
+    if (branch_read(cache, cursor, stop)) {
+      return stop;
+    }
     while (cursor.word != cursor.word_end) {
       if constexpr (RunAhead && Caches::present) {
         if (!visit_planned(cache, cursor, statistics, tally, stop)) {
@@ -217,11 +243,24 @@ class LogWalker {
           break;
         }
       }
-      if (!take_step<RunAhead>(cache, cursor, statistics, *cursor.word++, stop)) {
+      if (!take_step<RunAhead>(cache, cursor, statistics, *cursor.word++, stop) ||
+          branch_read(cache, cursor, stop)) {
         return stop;
       }
     }
     return Stop::end;
+  }
+
+  // A branch's record has been read: true when the node has to stop to prefetch its children.
+  static bool branch_read(View cache, Cursor& cursor, Stop& stop) {
+    if constexpr (guarded) {
+      if (cursor.branch != Cursor::no_branch && cache.wants_children(cursor.branch)) {
+        stop = Stop::due;
+        return true;
+      }
+      cursor.branch = Cursor::no_branch;
+    }
+    return false;
   }
 
   // Takes all planned visits up to the next step that has to be taken record by record, with what it needs
@@ -317,7 +356,7 @@ class LogWalker {
     settle(cursor, line, tests_of_label(label));
     --hits_of(statistics, kind_of_label(label));
     ++misses_of(statistics, kind_of_label(label));
-    if (!local_database_) {
+    if (passes_misses_on_) {
       stop = Stop::miss;
       return false;
     }
@@ -336,7 +375,18 @@ class LogWalker {
              std::uint64_t index, std::uint64_t bytes, Stop& stop) {
     cursor.at = input_.layout.address(kind, index);
     cursor.end = cursor.at + bytes;
+    if (Caches::counted && (kind == memory::RecordKind::material || kind == memory::RecordKind::texel)) {
+      cursor.origin.level = 0;
+    }
     return touch<RunAhead>(cache, cursor, statistics, kind, stop);
+  }
+
+  static bool access(View cache, const Cursor& cursor, std::uint32_t line) {
+    if constexpr (Caches::counted) {
+      return cache.access(cursor.kind, line, cursor.origin);
+    } else {
+      return cache.access(cursor.kind, line);
+    }
   }
 
   // Reads what is left of the current record, unit by unit. False when the node has to stop.
@@ -345,13 +395,19 @@ class LogWalker {
     while (cursor.at < cursor.end) {
       const memory::Address unit = cursor.at >> unit_shift_;
       cursor.kind = kind;
-      if (cache.access(kind, static_cast<std::uint32_t>(unit))) {
+      if constexpr (guarded) {
+        if (cache.awaits(kind, static_cast<std::uint32_t>(unit), cursor.time) != LinesUnderWay::none) {
+          stop = Stop::due;
+          return false;
+        }
+      }
+      if (access(cache, cursor, static_cast<std::uint32_t>(unit))) {
         ++hits_of(statistics, kind);
         spend(cursor, ticks_.hit, 1);
         cursor.at = (unit + 1) << unit_shift_;
       } else {
         ++misses_of(statistics, kind);
-        if (!local_database_) {
+        if (passes_misses_on_) {
           stop = Stop::miss;
           return false;
         }
@@ -411,6 +467,9 @@ class LogWalker {
   template <bool RunAhead>
   bool refer_node(View cache, Cursor& cursor, NodeStatistics& statistics, std::uint32_t tree_node,
                   Stop& stop) {
+    if (Caches::counted) {
+      cursor.origin.level = topology_[tree_node].level;
+    }
     const std::uint32_t record = rank_ == nullptr ? tree_node : rank_[tree_node];
     return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::node, record, node_bytes_, stop);
   }
@@ -439,6 +498,9 @@ class LogWalker {
       case Step::branch:
         ++steps.branches;
         spend(cursor, ticks_.branch, 1);
+        if constexpr (guarded) {
+          cursor.branch = operand;
+        }
         return refer_node<RunAhead>(cache, cursor, statistics, operand, stop);
       case Step::leaf:
         return take_leaf<RunAhead>(cache, cursor, statistics, operand, topology_[operand].count, nullptr,
@@ -454,6 +516,9 @@ class LogWalker {
         return take_leaf<RunAhead>(cache, cursor, statistics, operand, entries, tested, stop);
       }
       case Step::ray:
+        if (Caches::counted) {
+          cursor.origin.begin_ray(operand);
+        }
         ++(steps.*ray_counters[operand & 3U]);
         spend(cursor, ticks_.ray[operand & 3U], 1);
         return true;
@@ -485,12 +550,27 @@ class LogWalker {
     return true;
   }
 
+  // Serves a miss behind which there is a second level. False when it needs the interconnect.
+  bool serve(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
+    const auto line = static_cast<std::uint32_t>(missed_address(cursor) >> unit_shift_);
+    if (!second_level_.access(node, line, cursor.time, statistics.time)) {
+      if (!local_database_) {
+        return false;
+      }
+      read_local(cursor, statistics, line_bytes_);
+    } else if constexpr (Caches::counted) {
+      caches_.counting().second_level_hit(cursor.kind, cursor.origin);
+    }
+    pass(cursor);
+    return true;
+  }
+
   void read_local(Cursor& cursor, NodeStatistics& statistics, std::uint32_t bytes) const {
-    const std::int64_t width = input_.config.local.width;
-    const sim::Ticks transfer = sim::multiply_ticks(local_beat_, (std::int64_t{bytes} + width - 1) / width);
-    statistics.time[static_cast<std::size_t>(Activity::transfer)] += transfer;
-    statistics.time[static_cast<std::size_t>(Activity::bank_access)] += local_access_;
-    cursor.time = sim::add_ticks(cursor.time, sim::add_ticks(transfer, local_access_));
+    const memory::Service service = local_.read(bytes, cursor.time);
+    statistics.time[static_cast<std::size_t>(Activity::transfer)] += service.transfer;
+    statistics.time[static_cast<std::size_t>(Activity::bank_access)] += service.bank;
+    cursor.time = service.done;
+    note_wait(cursor, service);
   }
 
   ReplayInput input_;
@@ -509,9 +589,10 @@ class LogWalker {
   unsigned unit_shift_;
   StepTicks ticks_;
   bool mailboxes_;
-  sim::Ticks local_access_;
-  sim::Ticks local_beat_;
+  LocalMemory local_;
   bool local_database_;
+  PrivateSecondLevel second_level_;
+  bool passes_misses_on_;  ///< to the second level or the interconnect
 };
 
 }  // namespace marti::processors

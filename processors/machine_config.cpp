@@ -4,7 +4,9 @@
 #include <string>
 
 #include "memory/tags.h"
+#include "processors/cache_counting.h"
 #include "processors/memory_system.h"
+#include "processors/second_level.h"
 #include "sim/error.h"
 
 namespace marti::processors {
@@ -85,6 +87,9 @@ std::uint64_t host_bytes(const MachineConfig& config) {
       tags += tag_bytes(part);
     }
   }
+  if (config.l2.sharing == SecondLevel::private_caches) {
+    tags += tag_bytes(second_level_cache(config)) + sizeof(memory::CacheCounters);
+  }
   std::uint64_t homes = 0;
   if (config.placement == Placement::distributed) {
     constexpr std::uint64_t bytes_a_home = 900;
@@ -96,8 +101,14 @@ std::uint64_t host_bytes(const MachineConfig& config) {
     homes += config.clusters * memory::network_bytes(config.network, config.nodes) +
              config.all_nodes() * bytes_a_ray * (1 + std::uint64_t{config.pipeline.queue});
   }
-  // At most 2^24 nodes of four caches of 2^28 lines: this cannot overflow.
-  return homes + config.all_nodes() * (bytes_a_node + config.write_buffer * sizeof(sim::Ticks) + tags);
+  constexpr std::uint64_t bytes_a_context = 200;
+  constexpr std::uint64_t bytes_a_port = 80;
+  const std::uint64_t contexts =
+      config.ports_of_node() == 1 ? 0
+                                  : config.contexts * bytes_a_context + config.ports_of_node() * bytes_a_port;
+  // At most 2^24 nodes of five caches of 2^28 lines: this cannot overflow.
+  return homes +
+         config.all_nodes() * (bytes_a_node + contexts + config.write_buffer * sizeof(sim::Ticks) + tags);
 }
 
 void check(const MachineConfig& config) {
@@ -107,6 +118,7 @@ void check(const MachineConfig& config) {
   if (std::uint64_t{config.clusters} * config.nodes > most_nodes) {
     throw sim::UserError("a machine of more than 2^24 nodes");
   }
+  check_contexts(config);
   check_flow(config);
   if (config.write_buffer == 0 || config.word_bytes == 0) {
     throw sim::UserError("the write buffer and the word must not be empty");
@@ -139,6 +151,8 @@ void check(const MachineConfig& config) {
       }
     }
   }
+  check_second_level(config);
+  check_counting(config);
 }
 
 }  // namespace marti::processors

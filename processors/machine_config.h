@@ -12,10 +12,13 @@
 #include "memory/layout.h"
 #include "memory/network.h"
 #include "processors/build_config.h"
+#include "processors/context_config.h"
 #include "processors/cost_model.h"
+#include "processors/count_config.h"
 #include "processors/flow_config.h"
 #include "processors/host.h"
 #include "processors/packets.h"
+#include "processors/second_level_config.h"
 #include "sim/time.h"
 
 namespace marti::processors {
@@ -65,8 +68,12 @@ struct MachineConfig {
   OperationCycles operations;
   std::uint32_t word_bytes = 4;    ///< what one load or store moves
   std::uint32_t write_buffer = 4;  ///< posted pixel writes a node may have outstanding, at least 1
+  std::uint32_t contexts = 1;      ///< packets a node works on by turns, 1 to most_contexts
+  std::int64_t switch_cycles = 1;  ///< of the node's clock, to take up another context
+  PrefetchConfig prefetch;
   memory::LayoutConfig layout;
   NodeCacheConfig cache;
+  SecondLevelConfig l2;
   Placement placement = Placement::shared;
   DistributionConfig distribution;
   LocalMemoryConfig local;
@@ -80,13 +87,18 @@ struct MachineConfig {
   MessageConfig messages;         ///< pipeline and space
   PipelineConfig pipeline;
   SpaceConfig space;
+  CountConfig count;
 
   [[nodiscard]] std::uint32_t all_nodes() const { return clusters * nodes; }
+  /// Reads a node may have outstanding: one for each context, then one for each prefetch.
+  [[nodiscard]] std::uint32_t ports_of_node() const {
+    return contexts + (prefetch.on() ? prefetch.outstanding : 0);
+  }
 };
 
 /// What a machine's speed-up is measured against: the same with one cluster of one node. A single node has
-/// nobody to send rays to, so it traces packets: a pipeline's with its memory, a space-parallel machine's with
-/// the whole database in its own.
+/// nobody to send rays to, so it traces packets: a pipeline's with its memory, a space-parallel machine's
+/// with the whole database in its own.
 [[nodiscard]] MachineConfig one_node_of(const MachineConfig& config);
 
 /// The most nodes a machine may have; event keys and node tables are sized by it.
@@ -94,6 +106,9 @@ inline constexpr std::uint32_t most_nodes = 1U << 24U;
 
 /// Host bytes that a replay of the machine takes for its nodes and their tags, roughly.
 [[nodiscard]] std::uint64_t host_bytes(const MachineConfig& config);
+
+/// The part of check() for contexts and prefetching.
+void check_contexts(const MachineConfig& config);
 
 /// check() for what only schemes other than image have; nothing with the image scheme.
 void check_flow(const MachineConfig& config);

@@ -1,5 +1,7 @@
 #include "processors/memory_system.h"
 
+#include "processors/second_level.h"
+
 namespace marti::processors {
 
 memory::DistributedConfig distributed_config(const MachineConfig& config) {
@@ -18,7 +20,7 @@ std::unique_ptr<memory::Interconnect> make_memory_system(const MachineConfig& co
   if (config.placement == Placement::distributed) {
     return std::make_unique<memory::Distributed>(distributed_config(config), site);
   }
-  return memory::make_interconnect(config.interconnect, config.banks, site);
+  return memory::make_interconnect(config.interconnect, banks_of(config), site);
 }
 
 bool writes_done_later(const MachineConfig& config) {

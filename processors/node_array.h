@@ -12,8 +12,11 @@
 #include "memory/interconnect.h"
 #include "processors/accounting.h"
 #include "processors/build_result.h"
+#include "processors/cache_counting.h"
+#include "processors/context_result.h"
 #include "processors/host.h"
 #include "processors/replay_input.h"
+#include "processors/second_level.h"
 #include "sim/engine.h"
 
 namespace marti::processors {
@@ -40,6 +43,12 @@ class NodeArray : public sim::EventHandler {
   [[nodiscard]] virtual std::vector<NodeStatistics> statistics() const = 0;
   /// After the run: what building the tree took; nothing when it is given.
   [[nodiscard]] virtual BuildResult build_result() const { return {}; }
+  /// After the run: what private second-level caches counted; nothing when there are none.
+  [[nodiscard]] virtual SecondLevelResult second_level() const { return {}; }
+  /// After the run: what was asked to be counted beside hits and misses.
+  [[nodiscard]] virtual CacheCountResult cache_counts() const { return {}; }
+  /// After the run: what contexts and prefetches did; nothing where there are none.
+  [[nodiscard]] virtual ContextResult context_result() const { return {}; }
   /// Host bytes per simulated node beside its cache tags.
   [[nodiscard]] virtual std::size_t bytes_per_node() const = 0;
 };

@@ -20,6 +20,7 @@ class UnifiedCaches {
  public:
   static constexpr bool present = true;
   static constexpr bool by_kind = false;  ///< the record kind does not matter
+  static constexpr bool counted = false;  ///< only hits and misses are
   UnifiedCaches(const MachineConfig& config, const memory::CacheShape& shape)
       : tags_(shape, config.all_nodes(), config.cache.cache.seed) {}
   class View {
@@ -31,6 +32,10 @@ class UnifiedCaches {
     /// The same, but a line that is not there is not brought in.
     [[gnu::always_inline]] bool touch(memory::RecordKind /*kind*/, std::uint32_t line) const {
       return tags_.touch(line);
+    }
+    /// Whether a line is there; changes nothing.
+    [[nodiscard]] bool holds(memory::RecordKind /*kind*/, std::uint32_t line) const {
+      return tags_.holds(line);
     }
     /// Takes a line out, whatever kinds of record it holds; how many copies there were.
     [[nodiscard]] std::int64_t remove(std::uint32_t line) const { return tags_.remove(line) ? 1 : 0; }
@@ -50,6 +55,7 @@ class SplitCaches {
  public:
   static constexpr bool present = true;
   static constexpr bool by_kind = true;
+  static constexpr bool counted = false;
   SplitCaches(const MachineConfig& config, const std::array<memory::CacheShape, split_caches>& shapes) {
     tags_.reserve(split_caches);
     for (const memory::CacheShape& shape : shapes) {
@@ -64,6 +70,9 @@ class SplitCaches {
     }
     bool touch(memory::RecordKind kind, std::uint32_t line) const {
       return tags_[split_cache_of[static_cast<std::size_t>(kind)]].view(node_).touch(line);
+    }
+    [[nodiscard]] bool holds(memory::RecordKind kind, std::uint32_t line) const {
+      return tags_[split_cache_of[static_cast<std::size_t>(kind)]].view(node_).holds(line);
     }
     [[nodiscard]] std::int64_t remove(std::uint32_t line) const {
       std::int64_t removed = 0;
@@ -87,9 +96,11 @@ class SplitCaches {
 struct NoCaches {
   static constexpr bool present = false;
   static constexpr bool by_kind = false;
+  static constexpr bool counted = false;
   struct View {
     static bool access(memory::RecordKind /*kind*/, std::uint32_t /*line*/) { return false; }
     static bool touch(memory::RecordKind /*kind*/, std::uint32_t /*line*/) { return false; }
+    static bool holds(memory::RecordKind /*kind*/, std::uint32_t /*line*/) { return false; }
     static std::int64_t remove(std::uint32_t /*line*/) { return 0; }
   };
   [[nodiscard]] static View view(std::uint32_t /*node*/) { return {}; }

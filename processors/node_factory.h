@@ -13,7 +13,13 @@ namespace marti::processors {
 
 [[nodiscard]] std::unique_ptr<NodeArray> make_image_nodes(const ReplayInput& input, sim::Engine& engine,
                                                           Host& host);
+[[nodiscard]] std::unique_ptr<NodeArray> make_context_nodes(const ReplayInput& input, sim::Engine& engine,
+                                                            Host& host);
 [[nodiscard]] std::unique_ptr<NodeArray> make_dynamic_nodes(const ReplayInput& input, sim::Engine& engine,
+                                                            Host& host);
+
+/// For the counts that a run may be asked for beside hits and misses.
+[[nodiscard]] std::unique_ptr<NodeArray> make_counted_nodes(const ReplayInput& input, sim::Engine& engine,
                                                             Host& host);
 
 /// make(caches) with the caches of `config`, one of node_caches.h.

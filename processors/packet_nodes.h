@@ -20,7 +20,8 @@ namespace marti::processors {
 
 /// `Derived` has run(node), which lets a node work until it needs something shared, read_done(node, service),
 /// and for_pixel(cursor), whether what the node does now is for the pixel at its cursor. `Cursor` has time,
-/// word, word_end, writes, x, y and packet.
+/// word, word_end, writes, x, y and packet. Where a node has several ports (MachineConfig::ports_of_node),
+/// read_done gets the port, counted through all clusters.
 template <class Derived, class Cursor>
 class PacketNodes : public NodeArray {
  public:
@@ -38,11 +39,12 @@ class PacketNodes : public NodeArray {
         host_(host),
         cursors_(input.config.all_nodes()),
         statistics_(input.config.all_nodes()),
+        ports_(input.config.ports_of_node()),
         writes_(std::size_t{input.config.all_nodes()} * input.config.write_buffer),
         late_(writes_done_later(input.config) ? input.config.all_nodes() : 0) {
     clients_.reserve(input.config.clusters);
     for (std::uint32_t cluster = 0; cluster < input.config.clusters; ++cluster) {
-      clients_.emplace_back(derived(), cluster * input.config.nodes);
+      clients_.emplace_back(derived(), cluster * input.config.nodes * ports_, ports_);
     }
   }
 
@@ -60,7 +62,10 @@ class PacketNodes : public NodeArray {
   std::uint32_t cluster_of(std::uint32_t node) const {
     return interconnects_.size() == 1 ? 0 : node / input_.config.nodes;
   }
-  std::uint32_t port_of(std::uint32_t node) const { return node - cluster_of(node) * input_.config.nodes; }
+  // The first of the node's ports, which posts its writes.
+  std::uint32_t port_of(std::uint32_t node) const {
+    return (node - cluster_of(node) * input_.config.nodes) * ports_;
+  }
   memory::Interconnect& interconnect_of(std::uint32_t node) { return *interconnects_[cluster_of(node)]; }
   void post(EventClass event_class, sim::Ticks time, std::uint32_t node) {
     engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(event_class), node));
@@ -111,6 +116,14 @@ class PacketNodes : public NodeArray {
   [[nodiscard]] std::size_t common_bytes() const {
     return sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(sim::Event) +
            input_.config.write_buffer * sizeof(sim::Ticks) + (late_.empty() ? 0 : sizeof(LateWrites));
+  }
+
+  [[nodiscard]] PixelPlace place_of(std::uint32_t node) const { return {cursors_[node].x, cursors_[node].y}; }
+
+  void begin_pixel(Cursor& cursor) const {
+    const std::span<const std::uint32_t> words = input_.log.pixel(cursor.x, cursor.y);
+    cursor.word = words.data();
+    cursor.word_end = words.data() + words.size();
   }
 
   // Gives the node its next packet, or ends it.
@@ -192,33 +205,29 @@ class PacketNodes : public NodeArray {
   sim::LargeVector<NodeStatistics> statistics_;
   sim::Ticks end_ = 0;
   sim::Ticks last_write_done_ = 0;  // of the write posted last
+  std::uint32_t ports_;             // of each node
 
  private:
   // One cluster's ports, with port numbers turned into node numbers.
   class Client final : public memory::InterconnectClient {
    public:
-    Client(Derived& nodes, std::uint32_t first) : nodes_(nodes), first_(first) {}
+    Client(Derived& nodes, std::uint32_t first, std::uint32_t ports)
+        : nodes_(nodes), first_(first), ports_(ports) {}
     void read_done(std::uint32_t port, const memory::Service& service) override {
       nodes_.read_done(first_ + port, service);
     }
     void write_done(std::uint32_t port, sim::Ticks done) override {
-      static_cast<PacketNodes&>(nodes_).write_done(first_ + port, done);
+      const std::uint32_t all = first_ + port;
+      static_cast<PacketNodes&>(nodes_).write_done(ports_ == 1 ? all : all / ports_, done);
     }
 
    private:
     Derived& nodes_;
     std::uint32_t first_;
+    std::uint32_t ports_;
   };
 
   Derived& derived() { return static_cast<Derived&>(*this); }
-
-  [[nodiscard]] PixelPlace place_of(std::uint32_t node) const { return {cursors_[node].x, cursors_[node].y}; }
-
-  void begin_pixel(Cursor& cursor) const {
-    const std::span<const std::uint32_t> words = input_.log.pixel(cursor.x, cursor.y);
-    cursor.word = words.data();
-    cursor.word_end = words.data() + words.size();
-  }
 
   void wait_for_room(std::uint32_t node, sim::Ticks room_at) {
     Cursor& cursor = cursors_[node];

@@ -67,6 +67,7 @@ TimeDivision MachineResult::time() const {
 
 MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
   check(config);
+  check_prefetch(config.prefetch, log.traversal);
   switch (config.scheme) {
     case Scheme::image:
       break;
@@ -80,7 +81,7 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   const PacketList packets(log.width, log.height, config.packets);
   const std::vector<std::uint32_t> rank = node_ranks(log, config);
   sim::Engine engine;
-  engine.reserve(std::size_t{config.all_nodes()} + 1);
+  engine.reserve(std::size_t{config.all_nodes()} * config.contexts + 1);
   Host host(config.host, packets.size(), config.all_nodes());
   const ReplayInput input = {log,
                              config,
@@ -90,7 +91,8 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
                              options.step_by_step,
                              plan ? &*plan : nullptr,
                              options.report_built,
-                             options.observer};
+                             options.observer,
+                             options.with_contexts};
   if (options.observer != nullptr) {
     options.observer->begin(input);
   }

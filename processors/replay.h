@@ -10,10 +10,13 @@
 #include "processors/accounting.h"
 #include "processors/build_result.h"
 #include "processors/build_start.h"
+#include "processors/cache_counting.h"
+#include "processors/context_result.h"
 #include "processors/flow_result.h"
 #include "processors/host.h"
 #include "processors/machine_config.h"
 #include "processors/program/work_log.h"
+#include "processors/second_level.h"
 
 namespace marti::processors {
 
@@ -39,8 +42,11 @@ struct MachineResult {
   std::vector<NodeStatistics> nodes;
   std::vector<ClusterResult> clusters;
   HostStatistics host;
-  BuildResult build;  ///< empty when the tree is given
-  FlowResult flow;    ///< empty with the image scheme
+  BuildResult build;        ///< empty when the tree is given
+  FlowResult flow;          ///< empty with the image scheme
+  ContextResult contexts;   ///< empty with one context and no prefetch
+  SecondLevelResult l2;     ///< empty without a second level
+  CacheCountResult counts;  ///< what MachineConfig::count asks for
   std::uint64_t packets = 0;
   std::uint64_t database_bytes = 0;  ///< of one copy, as the frame begins
   std::uint64_t copies = 0;          ///< one for each cluster, or for each node when replicated
@@ -61,6 +67,8 @@ struct ReplayOptions {
   std::vector<BranchStart> starts{};
   bool report_built = false;     ///< fill BuildResult::built; empty all the same when the tree is given
   Observer* observer = nullptr;  ///< watches (processors/observer.h); same result
+  bool with_contexts = false;    ///< with a given tree: nodes that can hold several contexts, even for one;
+                                 ///< same result
 };
 
 /// Times `config` on `log`. Deterministic, single-threaded; many replays may share one log. Before it

@@ -41,10 +41,11 @@ Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine, s
                              NodeArray& nodes) {
   Interconnects interconnects;
   std::vector<memory::Interconnect*> links;
+  const std::uint32_t ports = config.nodes * config.ports_of_node();
   for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
     interconnects.push_back(make_memory_system(
-        config, {engine, nodes.client(cluster), static_cast<std::uint8_t>(EventClass::reply),
-                 cluster * config.nodes, config.nodes, memory_class}));
+        config, {engine, nodes.client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * ports,
+                 ports, memory_class}));
     links.push_back(interconnects.back().get());
   }
   nodes.connect(links);
@@ -61,8 +62,17 @@ MachineResult common_result(const MachineConfig& config, const sim::Engine& engi
     if (const memory::DistributedStatistics* const accesses = interconnect->distribution()) {
       result.clusters.back().distributed = {*accesses, *interconnect->network_statistics()};
     }
+    if (const memory::SharedCacheStatistics* const cache = interconnect->cache_statistics()) {
+      result.l2.caches.push_back(cache->lookups);
+      result.l2.waits.push_back(cache->waits);
+    }
   }
+  if (config.l2.sharing == SecondLevel::private_caches) {
+    result.l2 = nodes.second_level();
+  }
+  result.counts = nodes.cache_counts();
   result.build = nodes.build_result();
+  result.contexts = nodes.context_result();
   result.database_bytes = layout.database_bytes();
   result.copies = config.placement == Placement::replicated ? config.all_nodes() : config.clusters;
   result.events = engine.events();

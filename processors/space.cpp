@@ -22,6 +22,7 @@ MachineResult replay_space(const WorkLog& log, const MachineConfig& config, cons
   // Each node reads its own memory, as it does where the database is replicated.
   MachineConfig own_memories = config;
   own_memories.placement = Placement::replicated;
+  own_memories.interconnect.kind = memory::InterconnectKind::ideal;  // there is nothing behind it
   SpacePlan plan;
   const auto make = [&](const FlowParts& parts) {
     plan = plan_space(log, own_memories, parts.input.layout);

@@ -100,6 +100,8 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     result.sampling_work = plan_.sampling_work;
   }
 
+  SecondLevelResult second_level() const override { return walker_.second_level().result(); }
+
   std::size_t bytes_per_node() const override {
     return sizeof(Node) + sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(FlowCounts) + sizeof(sim::Event) +
            rays_.bytes() / nodes_.size();

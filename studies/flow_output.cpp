@@ -116,6 +116,7 @@ nlohmann::ordered_json flow_json(const MachineConfig& machine, const MachineResu
     object["regions"] = flow.regions;
     object["top_nodes"] = flow.top_nodes;
     object["duplicated_primitives"] = flow.duplicated_primitives;
+    object["sampling_work_ps"] = flow.sampling_work;
   }
   object["networks"] = networks_json(flow);
   object["per_node"] = nodes;
@@ -149,6 +150,10 @@ std::string flow_lines(const MachineConfig& machine, const MachineResult& result
   if (machine.scheme == Scheme::space) {
     fmt::format_to(out, "  regions     {}, below {} nodes that all have; {} primitives more than once\n",
                    flow.regions, flow.top_nodes, flow.duplicated_primitives);
+    if (machine.space.policy == processors::RegionPolicy::sampled) {
+      fmt::format_to(out, "  pre-pass    {} of one node's computing before the frame\n",
+                     seconds(static_cast<double>(flow.sampling_work)));
+    }
   }
   fmt::format_to(out, "network       {}",
                  memory::network_kind_names[static_cast<std::size_t>(machine.network.kind)]);

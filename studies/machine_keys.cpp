@@ -10,6 +10,8 @@
 
 #include "sim/error.h"
 #include "studies/build_keys.h"
+#include "studies/cache_detail_keys.h"
+#include "studies/context_keys.h"
 #include "studies/flow_keys.h"
 #include "studies/network_keys.h"
 #include "studies/space_keys.h"
@@ -70,11 +72,13 @@ void declare_node(Schema& schema) {
   schema.integer("machine.clusters", 1, {1, processors::most_nodes}, "",
                  "clusters, each with a copy of the database in its own shared memory");
   schema.integer("machine.nodes", 16, {1, processors::most_nodes}, "", "processor nodes in each cluster");
-  schema.section("node", "one processor node; it works in order and stalls on a miss");
+  schema.section("node",
+                 "one processor node; it works in order and stalls on a miss, unless it has other contexts");
   clock(schema, "node.clock", "clock of the node and its cache");
   schema.size("node.word", "4 B", {"1 B", "64 B"}, "what one load or store moves");
   schema.integer("node.write_buffer", 4, {1, 4096}, "",
                  "posted pixel writes a node may have outstanding before it stalls");
+  declare_context_keys(schema);
   schema.section("costs", "cycles of one operation; steps are priced by counted operation mixes");
   std::vector<std::string> presets;
   for (const std::string_view preset : processors::cost_presets()) {
@@ -123,6 +127,8 @@ void declare_memory(Schema& schema) {
   schema.integer("cache.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
                  "seed of random replacement");
   cycles(schema, "cache.hit_cycles", 1, "cycles of a reference that hits");
+  declare_second_level_keys(schema);
+  declare_prefetch_keys(schema);
   schema.section("database", "where the scene database is");
   schema.choice("database.placement", "shared", names(processors::placement_names),
                 "shared: one copy in each cluster's memory; replicated: a copy in every node's own memory; "
@@ -394,9 +400,11 @@ processors::MachineConfig read_machine(sim::Config& config) {
   read_cache(config, machine.cache);
   machine.build = read_build(config);
   read_local(config, machine);
+  read_contexts(config, machine);
   if (machine.scheme != processors::Scheme::space) {
     read_interconnect(config, machine);
   }
+  read_second_level(config, machine);
   read_flow(config, machine);
   read_messages(config, machine);
   read_space(config, machine);

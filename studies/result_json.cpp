@@ -4,6 +4,8 @@
 #include <optional>
 
 #include "studies/build_output.h"
+#include "studies/cache_output.h"
+#include "studies/context_output.h"
 #include "studies/flow_output.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
@@ -243,6 +245,12 @@ std::string json_of(const RunResult& r) {
   }
   if (r.machine.scheme != processors::Scheme::image) {
     machine["flow"] = flow_json(r.machine, timed, timed.nodes.size() <= most_listed);
+  }
+  if (r.machine.l2.sharing != processors::SecondLevel::none) {
+    machine["l2"] = second_level_json(r.machine, timed, timed.l2.caches.size() <= most_listed);
+  }
+  if (!timed.contexts.nodes.empty()) {
+    machine["contexts"] = context_json(r.machine, timed.contexts, timed.nodes.size() <= most_listed);
   }
   const Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
                        {"config", config_json(r)},

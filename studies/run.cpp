@@ -31,6 +31,17 @@ void refuse_several_frames(const sim::Config& config, const FrameRange& frames) 
 
 namespace {
 
+void refuse_maps_beyond_memory(const sim::Config& config, const RecordConfig& record,
+                               const FrameConfig& frame) {
+  const std::uint64_t bytes = HeatMap::host_bytes(std::uint64_t{frame.render.width} * frame.render.height);
+  if (record.heat_maps && bytes > static_cast<std::uint64_t>(frame.memory_limit)) {
+    config.fail("record.heat_maps",
+                "maps of this image take about " +
+                    sim::print_size(static_cast<std::int64_t>(bytes >> 20U << 20U)) +
+                    ", more than host_machine.memory_limit = " + sim::print_size(frame.memory_limit));
+  }
+}
+
 // Times the machine, watched by what is asked for.
 processors::MachineResult watched_replay(const RecordConfig& record, const std::filesystem::path& directory,
                                          RunResult& result) {
@@ -67,6 +78,7 @@ RunResult run(sim::Config& config, const std::filesystem::path& directory) {
   const RecordConfig record = read_record(config, !directory.empty());
   config.refuse_unused();
   refuse_beyond_memory(config, result.frame_config, result.machine);
+  refuse_maps_beyond_memory(config, record, result.frame_config);
   result.values = config.effective_values();
 
   result.functional = run_functional(result.frame_config);

@@ -7,6 +7,8 @@
 
 #include "sim/units.h"
 #include "studies/build_output.h"
+#include "studies/cache_output.h"
+#include "studies/context_output.h"
 #include "studies/flow_output.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
@@ -213,6 +215,10 @@ void memory_lines(Lines out, const RunResult& r) {
     line(memory::record_kind_names[kind], references.hits[kind], references.misses[kind]);
   }
   line("all", references.all_hits(), references.all_misses());
+  fmt::format_to(out, "{}", second_level_line(r.machine, r.timed));
+  if (r.machine.scheme == processors::Scheme::space) {
+    return;  // nodes share no memory
+  }
 
   const Utilisation used = utilisation_of(r.machine, r.timed);
   memory::WaitStatistics waits;
@@ -253,6 +259,7 @@ std::string summary_of(const RunResult& r) {
   text += loss_lines(r);
   time_lines(out, r);
   memory_lines(out, r);
+  text += context_lines(r.machine, r.timed.contexts);
   text += build_lines(r.timed);
   text += flow_lines(r.machine, r.timed);
   text += bound_lines(r);

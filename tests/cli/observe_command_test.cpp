@@ -69,6 +69,10 @@ TEST(ObserveCommand, RecordingChangesNoResultAndNeedsADirectory) {
   const Outcome unused = marti("run " + machine + " --set record.timeline_events=5 -o " + quoted(plain));
   EXPECT_EQ(unused.status, 2);
   EXPECT_NE(unused.output.find("record.timeline = false"), std::string::npos) << unused.output;
+  const Outcome large = marti("run " + machine + " --set record.heat_maps=true --set image.width=32768" +
+                              " --set image.height=32768 -o " + quoted(plain));
+  EXPECT_EQ(large.status, 2);
+  EXPECT_NE(large.output.find("maps of this image take about 64 GiB"), std::string::npos) << large.output;
   const Outcome backwards = marti("run " + machine +
                                   " --set record.timeline=true --set record.timeline_from=2ms"
                                   " --set record.timeline_to=1ms -o " +

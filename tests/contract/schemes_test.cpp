@@ -229,7 +229,8 @@ TEST_P(Schemes, MoreNodesThanRaysAndImagesOfOnePixelOrNone) {
 
 INSTANTIATE_TEST_SUITE_P(All, Schemes,
                          ::testing::Values(SchemeCase{Scheme::image, keep_image},
-                                           SchemeCase{Scheme::pipeline, test::make_random_pipeline}),
+                                           SchemeCase{Scheme::pipeline, test::make_random_pipeline},
+                                           SchemeCase{Scheme::space, test::make_random_space}),
                          [](const auto& a_case) { return ::testing::PrintToString(a_case.param); });
 
 }  // namespace

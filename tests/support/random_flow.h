@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
 #include "tests/support/random_machine.h"
 
@@ -36,6 +37,18 @@ inline void make_random_pipeline(Random& random, processors::MachineConfig& mach
   pipeline.queue = static_cast<std::uint32_t>(pick(random, 1, 3));
   pipeline.in_flight =
       pick(random, 0, 2) == 0 ? 0 : static_cast<std::uint32_t>(pick(random, 1, most_in_flight(pipeline)));
+}
+
+/// Any division of space, small queues and any number of rays in flight.
+inline void make_random_space(Random& random, processors::MachineConfig& machine) {
+  add_random_messages(random, machine);
+  machine.scheme = processors::Scheme::space;
+  processors::SpaceConfig& space = machine.space;
+  space.policy = static_cast<processors::RegionPolicy>(pick(random, 0, 3));
+  space.level = static_cast<std::uint32_t>(pick(random, 1, 6));
+  space.queue = static_cast<std::uint32_t>(pick(random, 0, 1) == 0 ? 1 : pick(random, 1, 9));
+  space.in_flight = static_cast<std::uint32_t>(std::array{0, 1, 2, 30}[random() % 4]);
+  space.sample_step = static_cast<std::uint32_t>(pick(random, 1, 4));
 }
 
 /// A log whose pixels have trees of up to `most_rays` rays, up to `deepest` bounces deep, each with a short

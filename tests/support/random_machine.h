@@ -261,6 +261,27 @@ inline void make_possible(memory::CacheConfig& cache) {
   }
 }
 
+/// Any second level that the machine can have.
+inline void add_random_second_level(Random& random, processors::MachineConfig& machine) {
+  using processors::SecondLevel;
+  machine.l2.sharing = static_cast<SecondLevel>(pick(random, 0, 2));
+  machine.l2.hit_cycles = pick(random, 0, 3);
+  memory::CacheConfig& cache = machine.l2.cache;
+  const bool none = machine.cache.organisation == processors::CacheOrganisation::none;
+  cache.line = none ? machine.banks.interleave : machine.cache.cache.line;
+  cache.replacement = static_cast<memory::Replacement>(pick(random, 0, 3));
+  cache.ways = static_cast<std::uint32_t>(std::array{0, 1, 2, 4, 6, 8, 32}[random() % 7]);
+  cache.size =
+      std::uint64_t{cache.line} * std::max(1U, cache.ways) * static_cast<std::uint64_t>(pick(random, 1, 12));
+  make_possible(cache);
+  const bool shared_reads = machine.placement == processors::Placement::shared &&
+                            machine.interconnect.kind != memory::InterconnectKind::ideal;
+  if ((machine.l2.sharing == SecondLevel::private_caches && none) ||
+      (machine.l2.sharing == SecondLevel::shared && !shared_reads)) {
+    machine.l2.sharing = SecondLevel::none;
+  }
+}
+
 /// Any machine the configuration allows, with at most `most_nodes` nodes.
 inline processors::MachineConfig random_machine(Random& random, std::uint32_t most_nodes = 12) {
   processors::MachineConfig machine;

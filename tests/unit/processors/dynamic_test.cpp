@@ -42,6 +42,10 @@ void expect_equal(const MachineResult& a, const MachineResult& b) {
       expect_equal_counters(a.clusters[c].banks[i].waits, b.clusters[c].banks[i].waits);
     }
   }
+  ASSERT_EQ(a.l2.caches.size(), b.l2.caches.size());
+  for (std::size_t i = 0; i < a.l2.caches.size(); ++i) {
+    expect_equal_counters(a.l2.caches[i], b.l2.caches[i]);
+  }
   ASSERT_EQ(a.build.start_up, b.build.start_up);
   ASSERT_EQ(a.build.nodes.size(), b.build.nodes.size());
   for (std::size_t n = 0; n < a.build.nodes.size(); ++n) {
@@ -74,6 +78,7 @@ Case random_case(test::Random& random) {
   if (c.machine.build.sharing == Sharing::shared) {
     share_in_order(c.machine);
   }
+  test::add_random_second_level(random, c.machine);
   if (random() % 3 == 0) {
     c.options.starts = test::random_starts(random, c.log.topology, c.machine.build.sharing != Sharing::none);
   }

@@ -82,9 +82,7 @@ RC_GTEST_PROP(ReferenceTraces, GiveAnotherCacheTheSameHitsAndMisses, (std::uint6
   const WorkLog log = test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 12)),
                                        static_cast<std::uint32_t>(test::pick(random, 1, 12)));
   MachineConfig machine = test::random_machine(random);
-  if (machine.cache.cache.replacement == memory::Replacement::random) {
-    machine.cache.cache.replacement = memory::Replacement::lru;
-  }
+  machine.cache.cache.replacement = random() % 2 == 0 ? memory::Replacement::lru : memory::Replacement::fifo;
   ReferenceTrace trace;
   ReplayOptions options;
   options.observer = &trace;

@@ -35,13 +35,19 @@ void expect_equal(const MachineResult& a, const MachineResult& b) {
       ASSERT_EQ(a.clusters[c].banks[i].accesses, b.clusters[c].banks[i].accesses);
     }
   }
+  ASSERT_EQ(a.l2.caches.size(), b.l2.caches.size());
+  for (std::size_t i = 0; i < a.l2.caches.size(); ++i) {
+    ASSERT_EQ(a.l2.caches[i].hits, b.l2.caches[i].hits);
+    ASSERT_EQ(a.l2.caches[i].misses, b.l2.caches[i].misses);
+  }
 }
 
 RC_GTEST_PROP(Replay, RunningAheadEqualsAnEventForEveryReference, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 12)),
                                        static_cast<std::uint32_t>(test::pick(random, 1, 12)));
-  const MachineConfig machine = test::random_machine(random);
+  MachineConfig machine = test::random_machine(random);
+  test::add_random_second_level(random, machine);
   const MachineResult ahead = replay(log, machine);
   const MachineResult stepped = replay(log, machine, {.step_by_step = true});
   expect_equal(ahead, stepped);
@@ -52,7 +58,8 @@ RC_GTEST_PROP(Replay, RunningAheadEqualsAnEventForEveryReference, (std::uint64_t
 RC_GTEST_PROP(Replay, TheOrderOfTheFirstEventsDoesNotMatter, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_log(random, 9, 7);
-  const MachineConfig machine = test::random_machine(random);
+  MachineConfig machine = test::random_machine(random);
+  test::add_random_second_level(random, machine);
   expect_equal(replay(log, machine), replay(log, machine, {.start_seed = random() | 1U}));
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
@@ -61,6 +68,7 @@ RC_GTEST_PROP(Replay, ScalingEveryDurationScalesEveryTimeExactly, (std::uint64_t
   test::Random random(seed);
   const WorkLog log = test::random_log(random, 8, 8);
   MachineConfig machine = test::random_machine(random);
+  test::add_random_second_level(random, machine);
   const MachineResult base = replay(log, machine);
   for (std::int64_t scale = 10; scale <= 1'000'000'000; scale *= 10) {
     MachineConfig slow = machine;

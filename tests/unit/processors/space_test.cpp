@@ -9,7 +9,7 @@
 #include "processors/step_time.h"
 #include "sim/error.h"
 #include "tests/support/naive_space.h"
-#include "tests/support/random_machine.h"
+#include "tests/support/random_flow.h"
 #include "tests/support/user_error.h"
 
 namespace marti::processors {
@@ -17,22 +17,7 @@ namespace {
 
 MachineConfig random_space(test::Random& random) {
   MachineConfig machine = test::random_machine(random, 9);
-  machine.scheme = Scheme::space;
-  machine.network.kind = static_cast<memory::NetworkKind>(test::pick(random, 0, 4));
-  machine.network.clock = sim::Clock::from_period(test::pick(random, 1, 40));
-  machine.network.width = static_cast<std::uint32_t>(test::pick(random, 1, 64));
-  machine.network.cycles_per_beat = test::pick(random, 0, 2);
-  machine.network.hop_cycles = test::pick(random, 0, 3);
-  machine.messages.ray_bytes = static_cast<std::uint32_t>(test::pick(random, 1, 80));
-  machine.messages.contribution_bytes = static_cast<std::uint32_t>(test::pick(random, 1, 20));
-  machine.messages.send_cycles = test::pick(random, 0, 6);
-  machine.messages.receive_cycles = test::pick(random, 0, 6);
-  machine.space.policy = static_cast<RegionPolicy>(test::pick(random, 0, 3));
-  machine.space.level = static_cast<std::uint32_t>(test::pick(random, 1, 6));
-  machine.space.queue =
-      static_cast<std::uint32_t>(test::pick(random, 0, 1) == 0 ? 1 : test::pick(random, 1, 9));
-  machine.space.in_flight = static_cast<std::uint32_t>(std::array{0, 1, 2, 30}[random() % 4]);
-  machine.space.sample_step = static_cast<std::uint32_t>(test::pick(random, 1, 4));
+  test::make_random_space(random, machine);
   if (random() % 8 == 0) {
     // Nothing takes any time: all events are at the same tick.
     machine.operations = {0, 0, 0, 0, 0, 0, 0, 0};
@@ -47,8 +32,14 @@ MachineConfig random_space(test::Random& random) {
 WorkLog random_frame(test::Random& random) {
   const auto width = static_cast<std::uint32_t>(test::pick(random, 1, 9));
   const auto height = static_cast<std::uint32_t>(test::pick(random, 1, 9));
-  return random() % 2 == 0 ? test::random_log(random, width, height)
-                           : test::random_tree_log(random, width, height);
+  switch (test::pick(random, 0, 2)) {
+    case 0:
+      return test::random_log(random, width, height);
+    case 1:
+      return test::random_tree_log(random, width, height);
+    default:
+      return test::random_ray_trees(random, width, height, 12, 4);
+  }
 }
 
 template <class T>

@@ -1,0 +1,24 @@
+#include "memory/miss_classes.h"
+
+namespace marti::memory {
+
+MissClassifier::MissClassifier(std::uint64_t lines, std::uint32_t caches)
+    : full_({.size = lines, .line = 1, .ways = full_ways}, caches), had_(caches), taken_(caches) {}
+
+MissClass MissClassifier::miss(std::uint32_t cache, std::uint32_t line) {
+  const bool in_full = full_.access(cache, line);
+  if (had_[cache].insert(line)) {
+    return MissClass::compulsory;
+  }
+  if (taken_[cache].erase(line)) {
+    return MissClass::invalidation;
+  }
+  return in_full ? MissClass::conflict : MissClass::capacity;
+}
+
+void MissClassifier::taken_out(std::uint32_t cache, std::uint32_t line) {
+  (void)full_.remove(cache, line);
+  taken_[cache].insert(line);
+}
+
+}  // namespace marti::memory

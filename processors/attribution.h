@@ -1,0 +1,81 @@
+// References, misses and waits by what they were for: record kind, tree level, ray kind and bounce.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "memory/interconnect.h"
+#include "memory/record_kind.h"
+#include "processors/program/work_log.h"
+#include "sim/statistics.h"
+
+namespace marti::processors {
+
+/// What a reference was for: a work log's `ray` operand (RayKind | bounce << 2, the bounce at most
+/// Origin::most_bounces), and the level of the tree node whose record, list or primitives were read; 0 for
+/// materials and texels.
+struct Origin {
+  static constexpr std::uint32_t most_bounces = 255;
+
+  std::uint16_t ray = 0;
+  std::uint8_t level = 0;
+
+  void begin_ray(std::uint32_t operand) {
+    const std::uint32_t bounce = operand >> 2U;
+    ray =
+        static_cast<std::uint16_t>((operand & 3U) | ((bounce < most_bounces ? bounce : most_bounces) << 2U));
+  }
+};
+
+struct AttributionCounts {
+  std::int64_t references = 0;
+  std::int64_t misses = 0;
+  std::int64_t second_level_hits = 0;
+  std::int64_t interconnect_wait = 0;
+  std::int64_t transfer = 0;
+  std::int64_t bank_wait = 0;
+  std::int64_t bank_access = 0;
+
+  [[nodiscard]] std::int64_t waited() const { return interconnect_wait + transfer + bank_wait + bank_access; }
+
+  static constexpr auto counters() {
+    using C = sim::Counter<AttributionCounts>;
+    return std::array{
+        C{"references", "1", "lines asked for in the first level", &AttributionCounts::references},
+        C{"misses", "1", "of these, misses of the first level", &AttributionCounts::misses},
+        C{"second_level_hits", "1", "of these, hits of a private second level",
+          &AttributionCounts::second_level_hits},
+        C{"interconnect_wait", "ps", "waiting for the interconnect", &AttributionCounts::interconnect_wait},
+        C{"transfer", "ps", "transfers", &AttributionCounts::transfer},
+        C{"bank_wait", "ps", "waiting for banks", &AttributionCounts::bank_wait},
+        C{"bank_access", "ps", "accesses of banks", &AttributionCounts::bank_access}};
+  }
+};
+static_assert(sim::declares_every_member<AttributionCounts>());
+
+/// One cell that is not empty.
+struct AttributionRow {
+  memory::RecordKind record = memory::RecordKind::node;
+  std::uint32_t level = 0;
+  RayKind ray = RayKind::camera;
+  std::uint32_t bounce = 0;
+  AttributionCounts counts;
+};
+
+class Attribution {
+ public:
+  AttributionCounts& at(memory::RecordKind record, Origin origin);
+  void wait(memory::RecordKind record, Origin origin, const memory::Service& service);
+
+  /// Ascending by bounce, ray kind, level, record kind.
+  [[nodiscard]] std::vector<AttributionRow> rows() const;
+
+ private:
+  static constexpr std::uint32_t levels = 64;  ///< the deepest tree, a BSP tree, has 61
+
+  std::vector<AttributionCounts> cells_;  // by origin's ray, level and record
+};
+
+}  // namespace marti::processors

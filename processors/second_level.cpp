@@ -1,0 +1,70 @@
+#include "processors/second_level.h"
+
+#include <string>
+
+#include "sim/error.h"
+
+namespace marti::processors {
+
+memory::CacheConfig second_level_cache(const MachineConfig& config) {
+  memory::CacheConfig cache = config.l2.cache;
+  cache.line = config.cache.organisation == CacheOrganisation::none ? config.banks.interleave
+                                                                    : config.cache.cache.line;
+  return cache;
+}
+
+void check_second_level(const MachineConfig& config) {
+  if (config.l2.sharing == SecondLevel::none) {
+    return;
+  }
+  if (config.l2.sharing == SecondLevel::private_caches &&
+      config.cache.organisation == CacheOrganisation::none) {
+    throw sim::UserError(
+        "a private second level needs a first one to stand behind (cache.organisation = "
+        "\"none\")");
+  }
+  if (config.l2.sharing == SecondLevel::shared) {
+    if (config.interconnect.kind == memory::InterconnectKind::ideal) {
+      throw sim::UserError(
+          "an ideal interconnect (interconnect.kind) has no memory behind it that a shared second "
+          "level could stand before");
+    }
+    if (config.placement != Placement::shared || config.scheme == Scheme::space) {
+      throw sim::UserError(
+          "nodes read nothing from a shared memory with database.placement = \"replicated\" or "
+          "\"distributed\" or with machine.scheme = \"space\"; use \"private\" or \"none\"");
+    }
+  }
+  try {
+    (void)memory::shape_of(second_level_cache(config));
+  } catch (const sim::UserError& error) {
+    throw sim::UserError("the second-level cache: " + std::string(error.what()));
+  }
+}
+
+memory::BankConfig banks_of(const MachineConfig& config) {
+  memory::BankConfig banks = config.banks;
+  if (config.l2.sharing == SecondLevel::shared) {
+    banks.cache =
+        memory::SharedCacheConfig{second_level_cache(config), config.banks.clock, config.l2.hit_cycles};
+  }
+  return banks;
+}
+
+memory::CacheCounters SecondLevelResult::counters() const {
+  memory::CacheCounters sum;
+  for (const memory::CacheCounters& cache : caches) {
+    sim::merge(sum, cache);
+  }
+  return sum;
+}
+
+PrivateSecondLevel::PrivateSecondLevel(const MachineConfig& config)
+    : hit_ticks_(config.clock.cycles(config.l2.hit_cycles)) {
+  if (config.l2.sharing == SecondLevel::private_caches) {
+    tags_.emplace(second_level_cache(config), config.all_nodes());
+    counters_.resize(config.all_nodes());
+  }
+}
+
+}  // namespace marti::processors

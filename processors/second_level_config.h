@@ -1,0 +1,24 @@
+// The second-level cache of a machine, as values.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "memory/cache_config.h"
+
+namespace marti::processors {
+
+/// private_caches: each node has one behind its first-level cache or caches. shared: each cluster has one on
+/// the memory's side of the interconnect.
+enum class SecondLevel : std::uint8_t { none, private_caches, shared };
+inline constexpr std::array<std::string_view, 3> second_level_names = {"none", "private", "shared"};
+
+struct SecondLevelConfig {
+  SecondLevel sharing = SecondLevel::none;
+  /// Its line does not count: it is the first level's; of a shared one without a first level the interleave.
+  memory::CacheConfig cache{.size = 256 * 1024, .line = 32, .ways = 8};
+  std::int64_t hit_cycles = 4;  ///< private: of the node's clock; shared: of the banks' clock
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,56 @@
+#include "studies/cache_detail_keys.h"
+
+#include <limits>
+
+#include "processors/second_level.h"
+#include "sim/error.h"
+
+namespace marti::studies {
+
+void declare_second_level_keys(sim::Schema& schema) {
+  schema.section("l2", "a second level of caches; its line is the first level's");
+  schema.choice("l2.sharing", "none",
+                {processors::second_level_names.begin(), processors::second_level_names.end()},
+                "none; private: one behind the first-level cache of each node; shared: one for each cluster, "
+                "before the "
+                "banks of its memory");
+  schema.size("l2.size", "256 KiB", {"1 B", "4 GiB"}, "size of each second-level cache");
+  schema.integer("l2.ways", 8, {0, std::numeric_limits<std::int32_t>::max()}, "",
+                 "lines of a set; 0: fully associative");
+  schema.choice("l2.replacement", "lru", {memory::replacement_names.begin(), memory::replacement_names.end()},
+                "which line of a full set makes room");
+  schema.integer("l2.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
+                 "seed of random replacement");
+  schema.integer("l2.hit_cycles", 4, {0, 1'000'000'000'000}, "cycles",
+                 "cycles of a look-up that hits: private: of the node's clock; shared: of the banks' clock");
+}
+
+void read_second_level(sim::Config& config, processors::MachineConfig& machine) {
+  using processors::SecondLevel;
+  processors::SecondLevelConfig& l2 = machine.l2;
+  l2.sharing = config.choice_as<SecondLevel>("l2.sharing");
+  if (l2.sharing == SecondLevel::none) {
+    config.mark_unused_reason("l2", "it has no effect with l2.sharing = \"none\"", "l2.sharing");
+    return;
+  }
+  l2.cache.size = static_cast<std::uint64_t>(config.size("l2.size"));
+  l2.cache.ways = static_cast<std::uint32_t>(config.integer("l2.ways"));
+  l2.cache.replacement = config.choice_as<memory::Replacement>("l2.replacement");
+  l2.hit_cycles = config.integer("l2.hit_cycles");
+  if (l2.cache.replacement == memory::Replacement::random) {
+    l2.cache.seed = static_cast<std::uint64_t>(config.integer("l2.seed"));
+  }
+  config.mark_unused_reason("l2.seed", "only l2.replacement = \"random\" draws numbers", "l2.replacement");
+  try {
+    (void)memory::shape_of(processors::second_level_cache(machine));
+  } catch (const sim::UserError& error) {
+    config.fail("l2.size", error.what());
+  }
+  try {
+    processors::check_second_level(machine);
+  } catch (const sim::UserError& error) {
+    config.fail("l2.sharing", error.what());
+  }
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,16 @@
+// The configuration keys of the second-level cache, and of what is counted about caches when asked.
+#pragma once
+
+#include "processors/machine_config.h"
+#include "sim/config.h"
+#include "sim/schema.h"
+
+namespace marti::studies {
+
+void declare_second_level_keys(sim::Schema& schema);
+
+/// Reads the keys into `machine`, whose caches, database and interconnect are known, and marks those without
+/// effect. Throws UserError naming file, line and key.
+void read_second_level(sim::Config& config, processors::MachineConfig& machine);
+
+}  // namespace marti::studies

@@ -1,0 +1,21 @@
+// What is said about the second level of caches: in the summary and in result.json.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "processors/machine_config.h"
+#include "processors/replay.h"
+
+namespace marti::studies {
+
+/// The field machine.l2, as docs/result-schema.md describes it; the caches one by one when `per_cache`.
+[[nodiscard]] nlohmann::ordered_json second_level_json(const processors::MachineConfig& machine,
+                                                       const processors::MachineResult& result,
+                                                       bool per_cache);
+
+/// A line of the summary; empty without a second level.
+[[nodiscard]] std::string second_level_line(const processors::MachineConfig& machine,
+                                            const processors::MachineResult& result);
+
+}  // namespace marti::studies
