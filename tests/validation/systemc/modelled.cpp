@@ -54,8 +54,9 @@ void refuse(const memory::LayoutConfig& layout, const memory::BankConfig& banks,
   using memory::NodeOrder;
   [[maybe_unused]] const auto& [node, entry, primitive, quadric, material, texel, pixel, record_alignment,
                                 section_alignment, order] = layout;
-  [[maybe_unused]] const auto& [count, interleave, clock, access_cycles, busy_cycles] = banks;
+  [[maybe_unused]] const auto& [count, interleave, clock, access_cycles, busy_cycles, shared_cache] = banks;
   [[maybe_unused]] const auto& [local_clock, width, local_access_cycles, cycles_per_beat] = local;
+  sim::ensure(!shared_cache, "the SystemC model has no cache before the banks");
   ensure_one_of(order, {NodeOrder::breadth_first, NodeOrder::depth_first},
                 "the SystemC model has no such order of nodes");
 }
