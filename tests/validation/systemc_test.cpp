@@ -158,7 +158,10 @@ TEST(SystemC, TheMachinesDoWhatTheModelCanDo) {
 
 TEST(SystemC, RefusesWhatItDoesNotModel) {
   EXPECT_NO_THROW(refuse_what_is_not_modelled({}));
-  const std::array<std::function<void(MachineConfig&)>, 5> changes = {
+  const std::array<std::function<void(MachineConfig&)>, 8> changes = {
+      [](MachineConfig& c) { c.contexts = 2; },
+      [](MachineConfig& c) { c.l2.sharing = processors::SecondLevel::shared; },
+      [](MachineConfig& c) { c.interconnect.arbitration = memory::Arbitration::round_robin; },
       [](MachineConfig& c) { c.build.sharing = processors::Sharing::shared; },
       [](MachineConfig& c) { c.scheme = processors::Scheme::space; },
       [](MachineConfig& c) { c.placement = static_cast<processors::Placement>(99); },

@@ -1,5 +1,8 @@
 // Which machines the SystemC model is one of. The bindings name every member of every part of a
 // configuration, so that a new one does not compile before somebody has modelled it or refused it here.
+#include <algorithm>
+#include <initializer_list>
+
 #include "sim/error.h"
 #include "tests/validation/systemc/machine.h"
 
@@ -26,11 +29,13 @@ void refuse(const processors::NodeCacheConfig& config) {
 void refuse(const memory::InterconnectConfig& config) {
   using memory::BusMode;
   using memory::InterconnectKind;
-  [[maybe_unused]] const auto& [kind, mode, clock, width, cycles_per_beat, address_cycles, latency_cycles] =
-      config;
+  [[maybe_unused]] const auto& [kind, mode, arbitration, clock, width, cycles_per_beat, address_cycles,
+                                latency_cycles] = config;
   ensure_one_of(kind, {InterconnectKind::ideal, InterconnectKind::bus, InterconnectKind::crossbar},
                 "the SystemC model has no such interconnect");
   ensure_one_of(mode, {BusMode::held, BusMode::split}, "the SystemC model has no such bus");
+  sim::ensure(arbitration == memory::Arbitration::fifo || kind != InterconnectKind::bus,
+              "the SystemC model's bus is granted by fifo");
 }
 
 void refuse(const processors::PacketConfig& packets, const processors::HostConfig& host) {
@@ -49,8 +54,9 @@ void refuse(const memory::LayoutConfig& layout, const memory::BankConfig& banks,
   using memory::NodeOrder;
   [[maybe_unused]] const auto& [node, entry, primitive, quadric, material, texel, pixel, record_alignment,
                                 section_alignment, order] = layout;
-  [[maybe_unused]] const auto& [count, interleave, clock, access_cycles, busy_cycles] = banks;
+  [[maybe_unused]] const auto& [count, interleave, clock, access_cycles, busy_cycles, shared_cache] = banks;
   [[maybe_unused]] const auto& [local_clock, width, local_access_cycles, cycles_per_beat] = local;
+  sim::ensure(!shared_cache, "the SystemC model has no cache before the banks");
   ensure_one_of(order, {NodeOrder::breadth_first, NodeOrder::depth_first},
                 "the SystemC model has no such order of nodes");
 }
@@ -59,10 +65,15 @@ void refuse(const memory::LayoutConfig& layout, const memory::BankConfig& banks,
 
 void refuse_what_is_not_modelled(const processors::MachineConfig& config) {
   using processors::Placement;
-  // network, messages, pipeline and space have a meaning only in schemes that are refused.
-  [[maybe_unused]] const auto& [clusters, nodes, clock, operations, word_bytes, write_buffer, layout, cache,
-                                placement, local, interconnect, banks, packets, host, build, scheme, network,
-                                messages, pipeline, space] = config;
+  // network, messages, pipeline and space have a meaning only in schemes that are refused; distribution and
+  // network only with a placement that is; switch_cycles only with more than one context.
+  [[maybe_unused]] const auto& [clusters, nodes, clock, operations, word_bytes, write_buffer, contexts,
+                                switch_cycles, prefetch, layout, cache, l2, placement, distribution, local,
+                                interconnect, banks, packets, host, build, scheme, network, messages,
+                                pipeline, space, count] = config;
+  sim::ensure(contexts == 1 && !prefetch.on(), "a node of the SystemC model has one context and no prefetch");
+  sim::ensure(l2.sharing == processors::SecondLevel::none, "the SystemC model has no second-level caches");
+  sim::ensure(!count.any(), "the SystemC model does not classify misses");
   sim::ensure(scheme == processors::Scheme::image, "the SystemC model has the image scheme only");
   sim::ensure(build.sharing == processors::Sharing::given, "the SystemC model's tree is given");
   ensure_one_of(placement, {Placement::shared, Placement::replicated},
