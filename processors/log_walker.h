@@ -310,7 +310,9 @@ class LogWalker {
   }
 
   [[gnu::always_inline]] bool look_up(View cache, const std::uint32_t* line) const {
-    if constexpr (Caches::by_kind) {
+    if constexpr (Caches::counted) {
+      return cache.access(kind_of_label(label_of(line)), *line, Origin{});  // never: nothing is planned then
+    } else if constexpr (Caches::by_kind) {
       return cache.access(kind_of_label(label_of(line)), *line);
     } else {
       return cache.access(memory::RecordKind::node, *line);  // such caches do not look at the kind
