@@ -107,6 +107,8 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     Base::watch_idle();
   }
 
+  SecondLevelResult second_level() const override { return walker_.second_level().result(); }
+
   ContextResult context_result() const override { return {walker_.caches().counts()}; }
 
   std::size_t bytes_per_node() const override {

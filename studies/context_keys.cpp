@@ -54,6 +54,13 @@ void declare_prefetch_keys(sim::Schema& schema) {
 }
 
 void read_contexts(sim::Config& config, processors::MachineConfig& machine) {
+  if (machine.scheme != processors::Scheme::image) {
+    const std::string reason = "only the image scheme's nodes have contexts and prefetch";
+    for (const char* const key : {"node.contexts", "node.switch_cycles", "prefetch"}) {
+      config.mark_unused_reason(key, reason, "machine.scheme");
+    }
+    return;
+  }
   machine.contexts = static_cast<std::uint32_t>(config.integer("node.contexts"));
   if (machine.contexts > 1) {
     if (machine.build.sharing != processors::Sharing::given) {

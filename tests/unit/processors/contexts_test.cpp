@@ -52,6 +52,13 @@ void expect_equal(const MachineResult& a, const MachineResult& b) {
 }
 
 void add_contexts(test::Random& random, bool tree, MachineConfig& machine) {
+  if (machine.placement == Placement::distributed) {
+    machine.placement = Placement::shared;
+  }
+  test::add_random_second_level(random, machine);
+  if (machine.l2.sharing == SecondLevel::private_caches) {
+    machine.l2.sharing = SecondLevel::none;
+  }
   machine.contexts = static_cast<std::uint32_t>(test::pick(random, 1, 5));
   machine.switch_cycles = test::pick(random, 0, 6);
   if (machine.placement == Placement::shared && machine.cache.organisation != CacheOrganisation::none) {
@@ -457,6 +464,13 @@ TEST(Contexts, RefusesWhatCannotBe) {
   machine = {};
   machine.prefetch.next_line = true;
   machine.cache.organisation = CacheOrganisation::none;
+  refused(machine);
+  machine = {};
+  machine.contexts = 2;
+  machine.placement = Placement::distributed;
+  refused(machine);
+  machine.placement = Placement::shared;
+  machine.l2.sharing = SecondLevel::private_caches;
   refused(machine);
   machine = {};
   machine.prefetch.next_line = true;

@@ -11,9 +11,10 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
-#include "memory/interconnect.h"
+#include "processors/memory_system.h"
 #include "processors/replay.h"
 #include "tests/unit/processors/naive_program.h"
 
@@ -36,7 +37,7 @@ class NaiveContexts final : public sim::EventHandler {
       node.flights.resize(ports_);
       node.buffer.assign(machine.write_buffer, 0);
     }
-    for (std::uint8_t c = 0; c < 5; ++c) {
+    for (std::uint8_t c = 0; c < 6; ++c) {
       engine_.attach(c, *this);
     }
     clients_.resize(machine.clusters);
@@ -44,8 +45,8 @@ class NaiveContexts final : public sim::EventHandler {
       clients_[cluster].all = this;
       clients_[cluster].first = cluster * machine.nodes;
       const std::uint32_t ports = machine.nodes * ports_;
-      interconnects_.push_back(memory::make_interconnect(
-          machine.interconnect, machine.banks, {engine_, clients_[cluster], 2, cluster * ports, ports}));
+      interconnects_.push_back(
+          make_memory_system(machine, {engine_, clients_[cluster], 2, cluster * ports, ports, 5}));
     }
   }
 
@@ -91,8 +92,11 @@ class NaiveContexts final : public sim::EventHandler {
       case 3:
         refer(component);
         break;
-      default:
+      case 4:
         write(component);
+        break;
+      default:
+        interconnect_of(component / ports_).proceed(component % (machine_.nodes * ports_), event.sequence());
     }
   }
 
@@ -116,6 +120,7 @@ class NaiveContexts final : public sim::EventHandler {
     std::vector<Context> contexts;
     std::optional<std::uint32_t> last;  // context worked on last
     bool waiting = true;
+    bool stalled = false;  // for a write of which it is not known when it is done
     sim::Ticks since = 0;
     sim::Ticks time = 0;
     std::uint32_t finished = 0;
@@ -135,9 +140,12 @@ class NaiveContexts final : public sim::EventHandler {
     }
     void write_done(std::uint32_t port, sim::Ticks done) override {
       Node& node = all->nodes_[first + port / all->ports_];
-      node.buffer.pop_front();
-      node.buffer.push_back(done);
       all->end_ = std::max(all->end_, done);
+      const auto oldest = std::find(node.buffer.begin(), node.buffer.end(), never);
+      *oldest = done;
+      if (std::exchange(node.stalled, false)) {
+        all->write(first + port / all->ports_);
+      }
     }
   };
 
@@ -355,6 +363,10 @@ class NaiveContexts final : public sim::EventHandler {
 
   void write(std::uint32_t number) {
     Node& node = nodes_[number];
+    if (node.buffer.front() == never) {
+      node.stalled = true;
+      return;
+    }
     if (node.buffer.front() > node.time) {
       spend(node, Activity::queue_full_wait, node.buffer.front() - node.time);
       node.time = node.buffer.front();
@@ -363,6 +375,8 @@ class NaiveContexts final : public sim::EventHandler {
     }
     Context& context = node.contexts[*node.last];
     ++node.statistics.writes;
+    node.buffer.pop_front();
+    node.buffer.push_back(never);
     interconnect_of(number).write({number % machine_.nodes * ports_, context.actions[context.next].address,
                                    machine_.layout.pixel_bytes});
     go_on(number, Activity::shading, 0);
