@@ -1,8 +1,14 @@
 // The network that carries messages between the nodes of a cluster, and to and from the host.
 //
 // A message is sent whole: `send` grants it, in order of sending, every link of its way and says at once when
-// its last byte arrives. Links are first come first served by the time of sending; a message cuts through, so
-// each hop adds its latency and waits for its link, and the data take their beats once.
+// its last byte arrives. Links are first come first served by the time of sending; a message cuts through
+// (Kermani, Kleinrock, Virtual cut-through, Computer Networks 3, 1979): its head waits for each link in turn
+// and crosses it in the latency of a hop, each link is held for the beats of the data, and the last byte
+// arrives these beats after the head. Routers have room for whatever waits in them.
+//
+// Ports 0 .. nodes - 1 are the nodes, port `nodes` is the host. In a mesh and a hypercube each node has a
+// router, which it reaches without a link, and the host hangs on node 0's router by a link of its own each
+// way: so the host makes neither of them larger.
 #pragma once
 
 #include <array>
@@ -16,9 +22,8 @@
 
 namespace marti::memory {
 
-/// ideal: a fixed latency, no queue. bus: one message at a time. crossbar: a link into each port. mesh: a
-/// rectangle of routers as square as the number of ports allows, x before y. hypercube: the least dimension
-/// that holds all ports, lowest differing bit first.
+/// ideal: a fixed latency, no queue and no links. bus: one message at a time, latency and beats. crossbar: a
+/// link into each port. mesh and hypercube: see routes.h.
 enum class NetworkKind : std::uint8_t { ideal, bus, crossbar, mesh, hypercube };
 inline constexpr std::array<std::string_view, 5> network_kind_names = {"ideal", "bus", "crossbar", "mesh",
                                                                        "hypercube"};
@@ -52,7 +57,7 @@ struct NetworkStatistics {
     return std::array{
         C{"messages", "1", "messages between different ports", &NetworkStatistics::messages},
         C{"bytes", "byte", "bytes of these messages", &NetworkStatistics::bytes},
-        C{"hops", "1", "links that they crossed", &NetworkStatistics::hops},
+        C{"hops", "1", "links that they crossed; ideal: none", &NetworkStatistics::hops},
         C{"links", "1", "transfers possible at the same time", &NetworkStatistics::links},
         C{"busy", "ps", "time that messages held links, all together", &NetworkStatistics::busy}};
   }
@@ -63,13 +68,23 @@ class Network {
   virtual ~Network() = default;
 
   /// Sends `bytes` (at least 1) at `now`. Calls come in the order of simulated time. A message to its own
-  /// port arrives at once.
+  /// port arrives at once. Messages of one port to another arrive in the order of sending.
   virtual Delivery send(sim::Ticks now, std::uint32_t from, std::uint32_t to, std::uint32_t bytes) = 0;
+
+  /// Links on the way from one port to another; ideal: 0.
+  [[nodiscard]] virtual std::uint32_t hops(std::uint32_t from, std::uint32_t to) const = 0;
+  /// Time of a message that meets no other: 0 to its own port.
+  [[nodiscard]] virtual sim::Ticks unloaded(std::uint32_t from, std::uint32_t to,
+                                            std::uint32_t bytes) const = 0;
 
   [[nodiscard]] virtual const NetworkStatistics& statistics() const = 0;
 };
 
-/// The network that the configuration names, between ports 0 .. ports - 1. Throws UserError for a width of 0.
-[[nodiscard]] std::unique_ptr<Network> make_network(const NetworkConfig& config, std::uint32_t ports);
+/// The network that the configuration names, between `nodes` nodes (at least 1) and the host. Throws
+/// UserError for a width of 0.
+[[nodiscard]] std::unique_ptr<Network> make_network(const NetworkConfig& config, std::uint32_t nodes);
+
+/// Host bytes that the links of such a network take.
+[[nodiscard]] std::uint64_t network_bytes(const NetworkConfig& config, std::uint32_t nodes);
 
 }  // namespace marti::memory

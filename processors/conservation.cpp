@@ -2,6 +2,7 @@
 
 #include "processors/build_report.h"
 #include "processors/cache_laws.h"
+#include "processors/flow_conservation.h"
 #include "processors/replay.h"
 #include "sim/error.h"
 
@@ -35,12 +36,16 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
     check_node(result.nodes[node], result.end, node);
   }
   const StepCounts steps = result.steps();
-  require(steps.pixels == static_cast<std::int64_t>(log.width) * log.height, "every pixel is written once");
-  std::int64_t packets = 0;
-  for (const NodeStatistics& node : result.nodes) {
-    packets += node.packets;
+  if (config.scheme == Scheme::image) {
+    require(steps.pixels == static_cast<std::int64_t>(log.width) * log.height, "every pixel is written once");
+    std::int64_t packets = 0;
+    for (const NodeStatistics& node : result.nodes) {
+      packets += node.packets;
+    }
+    require(packets == static_cast<std::int64_t>(result.packets), "every packet is traced once");
+  } else {
+    check_flow_conservation(log, config, result);
   }
-  require(packets == static_cast<std::int64_t>(result.packets), "every packet is traced once");
 
   std::int64_t reads = 0;
   std::int64_t writes = 0;

@@ -29,6 +29,8 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
   using Base::post;
   using Base::spend;
   using Base::statistics_;
+  using Base::watch;
+  using Base::watch_read;
   using Base::write_pixel;
 
  public:
@@ -82,6 +84,7 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
       add_building_time(walker_.times(), built_[node], statistics.time);
       statistics.time[static_cast<std::size_t>(Activity::idle)] = end_ - statistics.finish;
     }
+    Base::watch_idle();
   }
 
   SecondLevelResult second_level() const override { return walker_.second_level().result(); }
@@ -98,6 +101,8 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
 
  private:
   static constexpr std::uint32_t none = DynamicCursor::none;
+
+  static bool for_pixel(const DynamicCursor& cursor) { return !cursor.before; }
 
   // The first node of each cluster builds its database's tree; with a database in every node, each does.
   bool builds_before(std::uint32_t node) const {
@@ -120,7 +125,8 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
       const sim::Ticks wait = start_up_ - cursors_[node].time;
       spend(node, Activity::dispatch_wait, wait);
       start_up_wait_ = sim::add_ticks(start_up_wait_, wait);
-      cursors_[node].time = start_up_;
+      const sim::Ticks from = std::exchange(cursors_[node].time, start_up_);
+      watch(node, NodeState::dispatch_wait, from, false);
       post(EventClass::dispatch, start_up_, node);
     }
   }
@@ -128,9 +134,12 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
   // Lets a node work until it needs something shared.
   void run(std::uint32_t node) {
     DynamicCursor& cursor = cursors_[node];
+    const bool for_frame = for_pixel(cursor);
+    const sim::Ticks from = cursor.time;
     const DynamicStop stop =
         input_.step_by_step ? walker_.template advance<false>(node, cursor, statistics_[node], built_[node])
                             : walker_.template advance<true>(node, cursor, statistics_[node], built_[node]);
+    watch(node, NodeState::working, from, for_frame);
     switch (stop) {
       case DynamicStop::due:
         post(EventClass::step, cursor.time, node);
@@ -185,6 +194,7 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
   void read_done(std::uint32_t node, const memory::Service& service) {
     spend(node, service);
     DynamicCursor& cursor = cursors_[node];
+    watch_read(node, service, for_pixel(cursor));
     cursor.time = service.done;
     if (cursor.todo != Todo::lock) {
       walker_.pass(cursor);
@@ -204,6 +214,7 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
     }
     cursor.time = std::max(cursor.arrived, cursor.published);
     spend(node, Activity::lock_wait, cursor.time - cursor.arrived);
+    watch(node, NodeState::lock_wait, cursor.arrived);
     post(EventClass::step, cursor.time, node);
   }
 

@@ -32,6 +32,16 @@ struct PipelineConfig {
   std::uint32_t in_flight = 0;  ///< most rays admitted at a time; 0: as many as cannot deadlock
 };
 
+inline constexpr std::uint32_t pipeline_stages = 3;
+
+/// The stages' shares of `nodes` (at least 3) in the ratio of PipelineConfig's defaults, each at least 1.
+[[nodiscard]] PipelineConfig default_stages(std::uint32_t nodes);
+
+/// How many rays may be in flight at a time so that no cycle of stages can fill up and wait for itself: one
+/// less than fill the queues and the nodes of the search stage and the smaller of the other two. See
+/// docs/pipeline.md.
+[[nodiscard]] std::uint32_t most_in_flight(const PipelineConfig& pipeline);
+
 /// How regions are dealt out. blocks: runs of neighbouring regions. scatter: region i to node i modulo
 /// nodes. balanced: by the primitives in them. sampled: by the work of a pre-pass over few pixels.
 enum class RegionPolicy : std::uint8_t { blocks, scatter, balanced, sampled };

@@ -34,7 +34,7 @@ struct FlowCounts {
         C{"ended", "1", "rays that ended here", &FlowCounts::ended},
         C{"contributions", "1", "contributions to pixels sent to the host", &FlowCounts::contributions},
         C{"bytes_sent", "byte", "bytes of the messages sent", &FlowCounts::bytes_sent},
-        C{"longest_queue", "1", "most rays waiting at a time", &FlowCounts::longest_queue,
+        C{"longest_queue", "1", "most slots of its queue in use at a time", &FlowCounts::longest_queue,
           MergeRule::maximum},
         C{"most_set_aside", "1", "most rays set aside in the node's own memory at a time",
           &FlowCounts::most_set_aside, MergeRule::maximum},

@@ -26,6 +26,8 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
   using Base::post;
   using Base::spend;
   using Base::statistics_;
+  using Base::watch;
+  using Base::watch_read;
   using Base::write_pixel;
 
  public:
@@ -72,15 +74,24 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
       add_counted_time(walker_.ticks(), node.steps, node.references.all_hits(), node.time);
       node.time[static_cast<std::size_t>(Activity::idle)] = end_ - node.finish;
     }
+    Base::watch_idle();
   }
 
   SecondLevelResult second_level() const override { return walker_.second_level().result(); }
 
-  CacheCountResult cache_counts() const override { return walker_.cache_counts(); }
+  CacheCountResult cache_counts() const override {
+    if constexpr (requires { Caches::counted; }) {
+      return walker_.caches().counting().result();
+    } else {
+      return {};
+    }
+  }
 
   std::size_t bytes_per_node() const override { return Base::common_bytes(); }
 
  private:
+  static bool for_pixel(const Cursor& /*cursor*/) { return true; }
+
   template <class T>
   static void prefetch(const T& object) {
     const char* const bytes = reinterpret_cast<const char*>(&object);
@@ -93,11 +104,13 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
   void run(std::uint32_t node) {
     Cursor& cursor = cursors_[node];
     NodeStatistics& statistics = statistics_[node];
+    const sim::Ticks from = cursor.time;
     const Stop stop = input_.step_by_step ? walker_.template advance<false>(node, cursor, statistics)
                                           : walker_.template advance<true>(node, cursor, statistics);
     if (stop == Stop::end) {
       walker_.finish_pixel(cursor, statistics);
     }
+    watch(node, NodeState::working, from);
     constexpr std::array classes = {EventClass::step, EventClass::read, EventClass::write};
     post(classes[static_cast<std::size_t>(stop)], cursor.time, node);
   }
@@ -109,6 +122,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
 
   void read_done(std::uint32_t node, const memory::Service& service) {
     spend(node, service);
+    watch_read(node, service);
     Cursor& cursor = cursors_[node];
     cursor.time = service.done;
     walker_.note_wait(cursor, service);

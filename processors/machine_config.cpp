@@ -23,6 +23,18 @@ std::uint64_t tag_bytes(const memory::CacheConfig& cache) {
 
 }  // namespace
 
+MachineConfig one_node_of(const MachineConfig& config) {
+  MachineConfig one = config;
+  one.clusters = 1;
+  one.nodes = 1;
+  one.scheme = Scheme::image;
+  one.count = {};
+  if (config.scheme == Scheme::space) {
+    one.placement = Placement::replicated;
+  }
+  return one;
+}
+
 std::uint64_t host_bytes(const MachineConfig& config) {
   constexpr std::uint64_t bytes_a_node = 600;
   std::uint64_t tags = 0;
@@ -49,6 +61,7 @@ void check(const MachineConfig& config) {
   if (std::uint64_t{config.clusters} * config.nodes > most_nodes) {
     throw sim::UserError("a machine of more than 2^24 nodes");
   }
+  check_flow(config);
   if (config.write_buffer == 0 || config.word_bytes == 0) {
     throw sim::UserError("the write buffer and the word must not be empty");
   }

@@ -80,11 +80,19 @@ struct MachineConfig {
   [[nodiscard]] std::uint32_t all_nodes() const { return clusters * nodes; }
 };
 
+/// What a machine's speed-up is measured against: the same with one cluster of one node. A single node has
+/// nobody to send rays to, so it traces packets: a pipeline's with its memory, a space-parallel machine's
+/// with the whole database in its own.
+[[nodiscard]] MachineConfig one_node_of(const MachineConfig& config);
+
 /// The most nodes a machine may have; event keys and node tables are sized by it.
 inline constexpr std::uint32_t most_nodes = 1U << 24U;
 
 /// Host bytes that a replay of the machine takes for its nodes and their tags, roughly.
 [[nodiscard]] std::uint64_t host_bytes(const MachineConfig& config);
+
+/// check() for what only schemes other than image have; nothing with the image scheme.
+void check_flow(const MachineConfig& config);
 
 /// Throws UserError with the reason when the machine cannot be built.
 void check(const MachineConfig& config);

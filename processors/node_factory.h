@@ -20,12 +20,9 @@ namespace marti::processors {
 [[nodiscard]] std::unique_ptr<NodeArray> make_counted_nodes(const ReplayInput& input, sim::Engine& engine,
                                                             Host& host);
 
-template <template <class> class Nodes>
-std::unique_ptr<NodeArray> make_nodes(const ReplayInput& input, sim::Engine& engine, Host& host) {
-  const auto make = [&]<class Caches>(Caches caches) -> std::unique_ptr<NodeArray> {
-    return std::make_unique<Nodes<Caches>>(input, engine, host, std::move(caches));
-  };
-  const MachineConfig& config = input.config;
+/// make(caches) with the caches of `config`, one of node_caches.h.
+template <class Make>
+auto with_caches(const MachineConfig& config, const Make& make) {
   const memory::CacheConfig& cache = config.cache.cache;
   if (config.cache.organisation == CacheOrganisation::none) {
     return make(NoCaches{});
@@ -48,6 +45,13 @@ std::unique_ptr<NodeArray> make_nodes(const ReplayInput& input, sim::Engine& eng
   }
   return memory::with_tag_store(cache.replacement, common,
                                 [&]<class Tags>() { return make(SplitCaches<Tags>(config, shapes)); });
+}
+
+template <template <class> class Nodes>
+std::unique_ptr<NodeArray> make_nodes(const ReplayInput& input, sim::Engine& engine, Host& host) {
+  return with_caches(input.config, [&]<class Caches>(Caches caches) -> std::unique_ptr<NodeArray> {
+    return std::make_unique<Nodes<Caches>>(input, engine, host, std::move(caches));
+  });
 }
 
 }  // namespace marti::processors

@@ -11,12 +11,14 @@
 #include <vector>
 
 #include "processors/node_array.h"
+#include "processors/observer.h"
 #include "sim/large_pages.h"
 
 namespace marti::processors {
 
-/// `Derived` has run(node), which lets a node work until it needs something shared, and
-/// read_done(node, service). `Cursor` has time, word, word_end, writes, x, y and packet.
+/// `Derived` has run(node), which lets a node work until it needs something shared, read_done(node, service),
+/// and for_pixel(cursor), whether what the node does now is for the pixel at its cursor. `Cursor` has time,
+/// word, word_end, writes, x, y and packet.
 template <class Derived, class Cursor>
 class PacketNodes : public NodeArray {
  public:
@@ -69,6 +71,39 @@ class PacketNodes : public NodeArray {
     spend(node, Activity::bank_wait, service.wait_bank);
     spend(node, Activity::bank_access, service.bank);
   }
+  // Tells who watches, if anybody does, that the node was in `state` from `from` to its present time.
+  void watch(std::uint32_t node, NodeState state, sim::Ticks from, bool for_pixel = true) {
+    if (input_.observer != nullptr && from != cursors_[node].time) {
+      input_.observer->spent(node, state, from, cursors_[node].time,
+                             for_pixel ? place_of(node) : PixelPlace{});
+    }
+  }
+  // The same of a read that is done and was asked for at the node's present time.
+  void watch_read(std::uint32_t node, const memory::Service& service, bool for_pixel = true) {
+    if (input_.observer != nullptr) {
+      spent_reading(*input_.observer, node, service, cursors_[node].time,
+                    for_pixel ? place_of(node) : PixelPlace{});
+    }
+  }
+  // Misses since the last call were for `pixel`.
+  void watch_misses(std::uint32_t node, PixelPlace pixel) {
+    if (input_.observer == nullptr) {
+      return;
+    }
+    seen_misses_.resize(cursors_.size());
+    const std::int64_t all = statistics_[node].references.all_misses();
+    if (all != seen_misses_[node]) {
+      input_.observer->missed(node, all - seen_misses_[node], pixel);
+      seen_misses_[node] = all;
+    }
+  }
+  void watch_idle() {
+    for (std::uint32_t node = 0; input_.observer != nullptr && node < cursors_.size(); ++node) {
+      if (statistics_[node].finish != end_) {
+        input_.observer->spent(node, NodeState::idle, statistics_[node].finish, end_, {});
+      }
+    }
+  }
   /// What all nodes take each: the cursor, statistics, an event, and the write buffer.
   [[nodiscard]] std::size_t common_bytes() const {
     return sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(sim::Event) +
@@ -86,7 +121,12 @@ class PacketNodes : public NodeArray {
     }
     spend(node, Activity::dispatch_wait, grant->start - cursor.time);
     ++statistics_[node].packets;
-    cursor.time = grant->start;
+    const sim::Ticks asked = std::exchange(cursor.time, grant->start);
+    if (input_.observer != nullptr) {
+      watch(node, NodeState::dispatch_wait, asked, false);
+      watch_misses(node, {});
+      input_.observer->began_packet(node, grant->packet, grant->start);
+    }
     cursor.packet = input_.packets[grant->packet];
     cursor.y = cursor.packet.y0;
     cursor.x = cursor.packet.x0;
@@ -103,7 +143,8 @@ class PacketNodes : public NodeArray {
       return true;
     }
     spend(node, Activity::queue_full_wait, room_at - cursor.time);
-    cursor.time = room_at;
+    const sim::Ticks from = std::exchange(cursor.time, room_at);
+    watch(node, NodeState::queue_full_wait, from, derived().for_pixel(cursor));
     post(EventClass::write, room_at, node);
     return false;
   }
@@ -115,6 +156,7 @@ class PacketNodes : public NodeArray {
     const std::uint64_t pixel = std::uint64_t{cursor.y} * input_.log.width + cursor.x;
     interconnect_of(node).write({port_of(node), input_.layout.address(memory::RecordKind::pixel, pixel),
                                  input_.layout.record_bytes(memory::RecordKind::pixel)});
+    watch_misses(node, place_of(node));
     if (++cursor.x == cursor.packet.x1) {
       cursor.x = cursor.packet.x0;
       if (++cursor.y == cursor.packet.y1) {
@@ -153,6 +195,8 @@ class PacketNodes : public NodeArray {
 
   Derived& derived() { return static_cast<Derived&>(*this); }
 
+  [[nodiscard]] PixelPlace place_of(std::uint32_t node) const { return {cursors_[node].x, cursors_[node].y}; }
+
   void begin_pixel(Cursor& cursor) const {
     const std::span<const std::uint32_t> words = input_.log.pixel(cursor.x, cursor.y);
     cursor.word = words.data();
@@ -172,6 +216,7 @@ class PacketNodes : public NodeArray {
   sim::LargeVector<sim::Ticks> writes_;  // when each entry of each node's write buffer is free
   std::vector<Client> clients_;
   std::vector<memory::Interconnect*> interconnects_;
+  std::vector<std::int64_t> seen_misses_;  // that the observer has been told of; empty without one
 };
 
 }  // namespace marti::processors

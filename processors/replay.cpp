@@ -1,15 +1,15 @@
 #include "processors/replay.h"
 
-#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
 
-#include "memory/layout.h"
-#include "memory/set_tags.h"
+#include "processors/bounds.h"
 #include "processors/node_array.h"
-#include "processors/node_order.h"
+#include "processors/observer.h"
 #include "processors/packets.h"
+#include "processors/pipeline.h"
+#include "processors/replay_parts.h"
 #include "sim/engine.h"
 #include "sim/error.h"
 
@@ -34,25 +34,6 @@ std::optional<TreePlan> plan_of(const WorkLog& log, const MachineConfig& config,
     throw sim::UserError("build.sharing: \"none\" leaves no branch to be split during the frame");
   }
   return plan;
-}
-
-memory::Layout layout_of(const WorkLog& log, const MachineConfig& config, std::optional<TreePlan>& plan) {
-  const memory::RecordCounts counts = {plan ? plan->initial_nodes() : log.topology.nodes.size(),
-                                       plan ? plan->initial_entries() : log.topology.entries.size(),
-                                       log.primitives,
-                                       log.materials,
-                                       log.texture_begin.empty() ? 0 : log.texture_begin.back(),
-                                       std::uint64_t{log.width} * log.height};
-  const memory::Layout layout(config.layout, counts, log.quadrics.size());
-  const std::uint32_t unit = config.cache.organisation == CacheOrganisation::none ? config.banks.interleave
-                                                                                  : config.cache.cache.line;
-  if (plan) {
-    plan->place_behind(layout, unit);
-  }
-  if (std::max(layout.end(), plan ? plan->end() : 0) / unit >= memory::no_line) {
-    throw sim::UserError("the database has 2^32 or more lines; use longer cache lines");
-  }
-  return layout;
 }
 
 }  // namespace
@@ -85,30 +66,35 @@ TimeDivision MachineResult::time() const {
 
 MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
   check(config);
+  switch (config.scheme) {
+    case Scheme::image:
+      break;
+    case Scheme::pipeline:
+      return replay_pipeline(log, config, options);
+    case Scheme::space:
+      throw sim::UserError("machine.scheme: \"space\" cannot be timed");
+  }
   std::optional<TreePlan> plan = plan_of(log, config, options);
   const memory::Layout layout = layout_of(log, config, plan);
   const PacketList packets(log.width, log.height, config.packets);
-  const std::vector<std::uint32_t> rank = config.layout.node_order == memory::NodeOrder::depth_first
-                                              ? depth_first_rank(log.topology)
-                                              : std::vector<std::uint32_t>{};
+  const std::vector<std::uint32_t> rank = node_ranks(log, config);
   sim::Engine engine;
   engine.reserve(std::size_t{config.all_nodes()} + 1);
   Host host(config.host, packets.size(), config.all_nodes());
-  const std::unique_ptr<NodeArray> nodes =
-      make_node_array({log, config, layout, packets, rank, options.step_by_step, plan ? &*plan : nullptr,
-                       options.report_built},
-                      engine, host);
-
-  std::vector<std::unique_ptr<memory::Interconnect>> interconnects;
-  std::vector<memory::Interconnect*> links;
-  for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
-    interconnects.push_back(memory::make_interconnect(
-        config.interconnect, banks_of(config),
-        {engine, nodes->client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * config.nodes,
-         config.nodes}));
-    links.push_back(interconnects.back().get());
+  const ReplayInput input = {log,
+                             config,
+                             layout,
+                             packets,
+                             rank,
+                             options.step_by_step,
+                             plan ? &*plan : nullptr,
+                             options.report_built,
+                             options.observer};
+  if (options.observer != nullptr) {
+    options.observer->begin(input);
   }
-  nodes->connect(links);
+  const std::unique_ptr<NodeArray> nodes = make_node_array(input, engine, host);
+  const Interconnects interconnects = connect_memory(config, engine, *nodes);
   for (const EventClass c :
        {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read, EventClass::write}) {
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
@@ -118,31 +104,14 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   engine.run(std::numeric_limits<std::uint64_t>::max());
   nodes->finish();
 
-  MachineResult result;
-  result.end = nodes->end();
-  result.nodes = nodes->statistics();
-  for (const auto& interconnect : interconnects) {
-    result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
-    if (const memory::SharedCacheStatistics* const cache = interconnect->cache_statistics()) {
-      result.l2.caches.push_back(cache->lookups);
-      result.l2.waits.push_back(cache->waits);
-    }
+  if (options.observer != nullptr) {
+    options.observer->end(nodes->end());
   }
-  if (config.l2.sharing == SecondLevel::private_caches) {
-    result.l2 = nodes->second_level();
-  }
-  result.counts = nodes->cache_counts();
+  MachineResult result = common_result(config, engine, *nodes, interconnects, layout);
   result.host = host.statistics();
-  result.build = nodes->build_result();
   result.packets = packets.size();
-  result.database_bytes = layout.database_bytes();
-  result.copies = config.placement == Placement::replicated ? config.all_nodes() : config.clusters;
-  result.events = engine.events();
-  result.host_bytes_per_node = nodes->bytes_per_node();
-  result.unloaded_miss = interconnects.front()->unloaded_read(
-      config.cache.organisation == CacheOrganisation::none ? config.banks.interleave
-                                                           : config.cache.cache.line);
   check_conservation(log, config, result);
+  check_bounds(config, result);
   return result;
 }
 

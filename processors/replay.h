@@ -17,6 +17,8 @@
 
 namespace marti::processors {
 
+class Observer;
+
 /// What one cluster's interconnect and banks counted.
 struct ClusterResult {
   memory::InterconnectStatistics interconnect;
@@ -51,7 +53,8 @@ struct ReplayOptions {
   /// What of the tree is there when the frame begins, one entry a node, instead of what MachineConfig::build
   /// says; its `sharing` must not be `given`, and with `none` no branch may be lazy. Empty: what it says.
   std::vector<BranchStart> starts{};
-  bool report_built = false;  ///< fill BuildResult::built; empty all the same when the tree is given
+  bool report_built = false;     ///< fill BuildResult::built; empty all the same when the tree is given
+  Observer* observer = nullptr;  ///< watches (processors/observer.h); same result
 };
 
 /// Times `config` on `log`. Deterministic, single-threaded; many replays may share one log. Before it
@@ -61,7 +64,8 @@ struct ReplayOptions {
                                    const ReplayOptions& options = {});
 
 /// The conservation laws that every result must obey: each node's time adds up to the end; every pixel is
-/// written once; what the nodes waited is what the interconnect and the banks made them wait; what was built
+/// written once, or where rays move, every ray of the log is made, traced and ended once, and every message
+/// arrives; what the nodes waited is what the interconnect and the banks made them wait; what was built
 /// is what is there.
 void check_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result);
 

@@ -12,6 +12,8 @@
 
 namespace marti::processors {
 
+class Observer;
+
 /// References to objects that outlive the replay.
 struct ReplayInput {
   const WorkLog& log;
@@ -22,6 +24,7 @@ struct ReplayInput {
   bool step_by_step = false;                 ///< an event for every reference
   const TreePlan* tree = nullptr;            ///< how the tree is built; null when it is given
   bool report_built = false;                 ///< say which branches are built at the end
+  Observer* observer = nullptr;              ///< who watches; null: nobody
 };
 
 }  // namespace marti::processors

@@ -56,6 +56,23 @@ void write_exr(const processors::Image& image, const std::filesystem::path& file
   write(file, spec, OIIO::TypeDesc::FLOAT, image.pixels.data());
 }
 
+void write_channels(std::uint32_t width, std::uint32_t height, std::span<const std::string> names,
+                    std::span<const std::vector<float>> channels, const std::filesystem::path& file) {
+  OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels.size()),
+                       OIIO::TypeDesc::FLOAT);
+  spec.channelnames.assign(names.begin(), names.end());
+  spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "1970:01:01 00:00:00");
+  std::vector<float> pixels;
+  pixels.reserve(std::size_t{width} * height * channels.size());
+  for (std::size_t pixel = 0; pixel < std::size_t{width} * height; ++pixel) {
+    for (const std::vector<float>& channel : channels) {
+      pixels.push_back(channel[pixel]);
+    }
+  }
+  write(file, spec, OIIO::TypeDesc::FLOAT, pixels.data());
+}
+
 void write_png(const processors::Image& image, const std::filesystem::path& file) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(image.pixels.size() * 3);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,6 +17,10 @@ namespace marti::studies {
 /// Writes 32-bit float linear RGB as OpenEXR, without a date that means anything: equal images are equal
 /// files. Throws UserError when the file cannot be written.
 void write_exr(const processors::Image& image, const std::filesystem::path& file);
+
+/// Writes an OpenEXR of 32-bit float channels, each with a name and width * height figures.
+void write_channels(std::uint32_t width, std::uint32_t height, std::span<const std::string> names,
+                    std::span<const std::vector<float>> channels, const std::filesystem::path& file);
 
 /// Writes 8-bit sRGB-encoded PNG; values are clamped to 0..1. Throws UserError likewise.
 void write_png(const processors::Image& image, const std::filesystem::path& file);

@@ -11,6 +11,8 @@
 #include "sim/error.h"
 #include "studies/build_keys.h"
 #include "studies/cache_detail_keys.h"
+#include "studies/flow_keys.h"
+#include "studies/network_keys.h"
 
 namespace marti::studies {
 
@@ -61,9 +63,10 @@ constexpr std::array<std::string_view, processors::split_caches> split_keys = {
 
 void declare_node(Schema& schema) {
   schema.section("machine", "how many processors work on a frame, and how they share it");
-  schema.choice(
-      "machine.scheme", "image", {"image"},
-      "the parallel scheme; image: a node takes a packet of neighbouring pixels and traces it whole");
+  schema.choice("machine.scheme", "image", names(processors::scheme_names),
+                "the parallel scheme; image: a node takes a packet of neighbouring pixels and traces it "
+                "whole; pipeline: nodes search, test or shade, and rays go round between them; space: a node "
+                "holds a part of space, and rays go to the node whose part they enter");
   schema.integer("machine.clusters", 1, {1, processors::most_nodes}, "",
                  "clusters, each with a copy of the database in its own shared memory");
   schema.integer("machine.nodes", 16, {1, processors::most_nodes}, "", "processor nodes in each cluster");
@@ -167,8 +170,10 @@ void declare_host(Schema& schema) {
       "...; blocks: each node has a run of packets");
   clock(schema, "host.clock", "clock of the host");
   cycles(schema, "host.latency_cycles", 100,
-         "cycles from a node's request to its packet; nodes ask when they are free, not before");
-  cycles(schema, "host.occupancy_cycles", 0, "cycles that one request keeps the host from the next");
+         "cycles from a node's request to its packet; nodes ask when they are free, not before; where rays "
+         "move, cycles until the first ray");
+  cycles(schema, "host.occupancy_cycles", 0,
+         "cycles that one request, or one camera ray, keeps the host from the next");
 }
 
 // A size that only a power of two can be.
@@ -298,19 +303,32 @@ void read_interconnect(sim::Config& config, processors::MachineConfig& machine) 
   config.mark_unused_reason("memory", "there are no banks " + kind, "interconnect.kind");
 }
 
+// Only where rays move from node to node are messages sent.
+void read_messages(sim::Config& config, processors::MachineConfig& machine) {
+  if (machine.scheme != processors::Scheme::image) {
+    machine.network = read_network(config);
+    return;
+  }
+  config.mark_unused_reason("network", "no messages are sent with machine.scheme = \"image\"",
+                            "machine.scheme");
+}
+
 }  // namespace
 
 void declare_machine_keys(sim::Schema& schema) {
   declare_node(schema);
   declare_memory(schema);
   declare_interconnect(schema);
+  declare_network_keys(schema);
   declare_host(schema);
   declare_build_keys(schema);
+  declare_count_keys(schema);
+  declare_flow_keys(schema);
 }
 
 processors::MachineConfig read_machine(sim::Config& config) {
   processors::MachineConfig machine;
-  (void)config.choice("machine.scheme");
+  machine.scheme = config.choice_as<processors::Scheme>("machine.scheme");
   machine.clusters = count(config, "machine.clusters");
   machine.nodes = count(config, "machine.nodes");
   if (std::uint64_t{machine.clusters} * machine.nodes > processors::most_nodes) {
@@ -318,7 +336,10 @@ processors::MachineConfig read_machine(sim::Config& config) {
   }
   machine.clock = clock(config, "node.clock");
   machine.word_bytes = static_cast<std::uint32_t>(config.size("node.word"));
-  machine.write_buffer = count(config, "node.write_buffer");
+  const bool image = machine.scheme == processors::Scheme::image;
+  if (image) {
+    machine.write_buffer = count(config, "node.write_buffer");
+  }
   read_costs(config, machine);
   read_layout(config, machine.layout);
   read_cache(config, machine.cache);
@@ -326,9 +347,14 @@ processors::MachineConfig read_machine(sim::Config& config) {
   read_local(config, machine);
   read_interconnect(config, machine);
   read_second_level(config, machine);
+  read_flow(config, machine);
+  read_messages(config, machine);
+  read_count(config, machine);
   machine.packets = {count(config, "packets.width"), count(config, "packets.height"),
                      config.choice_as<processors::PacketOrder>("packets.order")};
-  machine.host.assignment = config.choice_as<processors::Assignment>("host.assignment");
+  if (image) {
+    machine.host.assignment = config.choice_as<processors::Assignment>("host.assignment");
+  }
   if (machine.host.assignment == processors::Assignment::dynamic) {
     machine.host.clock = clock(config, "host.clock");
     machine.host.latency_cycles = config.integer("host.latency_cycles");

@@ -22,6 +22,8 @@
 #include "studies/paper/paper.h"
 #include "studies/paper/paper_keys.h"
 #include "studies/run_result.h"
+#include "studies/schemes/schemes.h"
+#include "studies/schemes/schemes_keys.h"
 #include "studies/version.h"
 
 namespace {
@@ -50,7 +52,7 @@ void run_command(const RunArguments& arguments) {
   if (!arguments.directory.empty()) {
     studies::prepare_output(arguments.directory);
   }
-  const studies::RunResult result = studies::run(config);
+  const studies::RunResult result = studies::run(config, arguments.directory);
   std::vector<std::filesystem::path> files;
   if (!arguments.directory.empty()) {
     files = studies::write_output(result, arguments.directory);
@@ -108,7 +110,9 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
   CLI::App* paper = study->add_subcommand("paper", "The tables and figures of the paper of 1992");
   CLI::App* frames =
       study->add_subcommand("frames", "The cycle \"build, render\" of each frame of an animated scene");
-  for (CLI::App* command : {operations, paper, frames}) {
+  CLI::App* schemes =
+      study->add_subcommand("schemes", "Parallel schemes on one scene: how they grow, and what limits them");
+  for (CLI::App* command : {operations, paper, frames, schemes}) {
     CLI::Option* config = command->add_option("CONFIG", arguments.config, "configuration file (TOML)");
     CLI::Option* directory =
         command->add_option("-o,--output", arguments.directory, "directory for tables, charts and report")
@@ -121,6 +125,7 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
   operations->callback([&] { run_study(arguments, studies::run_schema(), studies::run_operations); });
   paper->callback([&] { run_study(arguments, studies::paper_schema(), studies::run_paper); });
   frames->callback([&] { run_study(arguments, studies::run_schema(), studies::run_frames); });
+  schemes->callback([&] { run_study(arguments, studies::schemes_schema(), studies::run_schemes); });
 }
 
 void list_scenes() {
@@ -195,7 +200,7 @@ int parse_and_run(int argc, char** argv) {
   run->add_option("--set", run_arguments.assignments, "key=value, overrides the file; may be repeated")
       ->allow_extra_args(false);
   run->add_option("-o,--output", run_arguments.directory,
-                  "directory for image.exr, image.png and result.json")
+                  "directory for image.exr, image.png, result.json and what is recorded")
       ->check(no_empty_directory);
   run->add_flag("--json", run_arguments.json, "print the result as JSON instead of the summary");
   run->callback([&] { run_command(run_arguments); });
@@ -209,6 +214,7 @@ int parse_and_run(int argc, char** argv) {
   config->callback([&] {
     sim::Schema schema = studies::run_schema();
     studies::declare_paper_keys(schema);
+    studies::declare_schemes_keys(schema);
     print(markdown ? sim::list_keys_as_markdown(schema) : sim::list_keys_as_text(schema));
   });
 

@@ -12,7 +12,7 @@ namespace marti::studies {
 void prepare_output(const std::filesystem::path& directory);
 
 /// Writes image.exr, image.png and result.json, and exact.exr and exact.png of a run with
-/// image.voxel_cut_reference, under temporary names and renames them together at the
+/// image.voxel_cut_reference, and what the run has recorded, under temporary names and renames them together at the
 /// end; signals that end the program wait until that is done. Returns the files. Throws UserError with the
 /// reason; older results stay as they were then.
 std::vector<std::filesystem::path> write_output(const RunResult& result,

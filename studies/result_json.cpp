@@ -5,7 +5,9 @@
 
 #include "studies/build_output.h"
 #include "studies/cache_output.h"
+#include "studies/count_output.h"
 #include "studies/run_result.h"
+#include "studies/scaling_output.h"
 #include "studies/version.h"
 
 namespace marti::studies {
@@ -211,6 +213,8 @@ std::string json_of(const RunResult& r) {
       {"speed_up", optional(r.scaling.speed_up)},
       {"efficiency", optional(r.scaling.efficiency)},
       {"karp_flatt_serial_fraction", optional(r.scaling.serial_fraction)},
+      {"speed_up_loss", loss_json(r)},
+      {"bounds", bounds_json(r)},
       {"limit",
        {{"what", name_of(r.finding.limit)}, {"share", r.finding.share}, {"sentence", r.finding.sentence}}},
       {"interconnect_utilisation", optional(used.interconnect)},
@@ -231,6 +235,9 @@ std::string json_of(const RunResult& r) {
   }
   if (r.machine.l2.sharing != processors::SecondLevel::none) {
     machine["l2"] = second_level_json(r.machine, timed, timed.l2.caches.size() <= most_listed);
+  }
+  if (r.machine.count.any()) {
+    machine["counts"] = counts_json(r.machine, timed.counts);
   }
   const Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
                        {"config", config_json(r)},

@@ -3,6 +3,8 @@
 
 #include "sim/units.h"
 #include "studies/machine_keys.h"
+#include "studies/record/observers.h"
+#include "studies/record_keys.h"
 #include "studies/run_result.h"
 
 namespace marti::studies {
@@ -28,37 +30,56 @@ void refuse_several_frames(const sim::Config& config, const FrameRange& frames) 
   }
 }
 
+// Times the machine, watched by what is asked for.
+processors::MachineResult watched_replay(const RecordConfig& record, const std::filesystem::path& directory,
+                                         RunResult& result) {
+  Observers observers;
+  if (record.timeline) {
+    result.timeline = std::make_unique<Timeline>(directory / "timeline.json", record.timeline_options);
+    observers.add(*result.timeline);
+  }
+  if (record.heat_maps) {
+    result.heat_map = std::make_unique<HeatMap>();
+    observers.add(*result.heat_map);
+  }
+  processors::ReplayOptions options;
+  options.observer = observers.empty() ? nullptr : &observers;
+  return processors::replay(*result.functional.frame.log, result.machine, options);
+}
+
 }  // namespace
 
 sim::Schema run_schema() {
   sim::Schema schema;
   declare_frame_keys(schema);
   declare_machine_keys(schema);
+  declare_record_keys(schema);
   return schema;
 }
 
-RunResult run(sim::Config& config) {
+RunResult run(sim::Config& config, const std::filesystem::path& directory) {
   RunResult result;
   result.config_name = config.name();
   result.frame_config = read_frame(config);
   refuse_several_frames(config, result.frame_config.frames);
   result.machine = read_machine(config);
+  const RecordConfig record = read_record(config, !directory.empty());
   config.refuse_unused();
   refuse_beyond_memory(config, result);
   result.values = config.effective_values();
 
   result.functional = run_functional(result.frame_config);
   const processors::WorkLog& log = *result.functional.frame.log;
-  result.timed = processors::replay(log, result.machine);
-  sim::Ticks one_node_end = result.timed.end;
-  if (result.machine.all_nodes() > 1) {
-    processors::MachineConfig one = result.machine;
-    one.clusters = 1;
-    one.nodes = 1;
-    one_node_end = processors::replay(log, one).end;
+  result.timed = watched_replay(record, directory, result);
+  result.one_node = result.timed;
+  if (result.machine.all_nodes() > 1 || result.machine.scheme != processors::Scheme::image) {
+    result.one_node = processors::replay(log, processors::one_node_of(result.machine));
   }
-  result.scaling = scaling_of(one_node_end, result.timed.end, result.machine.all_nodes());
+  result.scaling = scaling_of(result.one_node.end, result.timed.end, result.machine.all_nodes());
+  result.loss = loss_of(result.one_node, result.timed);
   result.finding = find_limit(result.machine, result.timed);
+  result.bounds = processors::frame_bounds(result.machine, result.timed);
+  result.prediction = processors::predict(result.machine, result.timed);
   return result;
 }
 

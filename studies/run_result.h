@@ -1,13 +1,20 @@
 // Everything one `marti run` found out.
 #pragma once
 
+#include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "processors/bounds.h"
 #include "processors/machine_config.h"
 #include "processors/replay.h"
 #include "sim/config.h"
 #include "studies/functional_run.h"
+#include "studies/loss.h"
+#include "studies/record/heat_map.h"
+#include "studies/record/timeline.h"
 #include "studies/scaling.h"
 
 namespace marti::studies {
@@ -19,13 +26,20 @@ struct RunResult {
   processors::MachineConfig machine;
   FunctionalRun functional;
   processors::MachineResult timed;
+  processors::MachineResult one_node;  ///< the same machine with one cluster of one node
   Scaling scaling;
+  SpeedUpLoss loss;
   Finding finding;
+  processors::FrameBounds bounds;
+  std::optional<processors::Prediction> prediction;
+  std::unique_ptr<Timeline> timeline;  ///< written, but not under its own name yet; null: not asked for
+  std::unique_ptr<HeatMap> heat_map;   ///< null: not asked for
 };
 
 /// Runs a configuration: one functional run, the machine and the same machine with one node. Throws
-/// UserError for anything wrong with the input, before it has written anything.
-[[nodiscard]] RunResult run(sim::Config& config);
+/// UserError for anything wrong with the input, before it has written anything. What is recorded while the
+/// machine runs goes to `directory`, which must exist; without one nothing may be recorded.
+[[nodiscard]] RunResult run(sim::Config& config, const std::filesystem::path& directory = {});
 
 /// The schema of `marti run`.
 [[nodiscard]] sim::Schema run_schema();

@@ -8,7 +8,10 @@
 #include "sim/units.h"
 #include "studies/build_output.h"
 #include "studies/cache_output.h"
+#include "studies/count_output.h"
 #include "studies/run_result.h"
+#include "studies/scaling_output.h"
+#include "studies/text_units.h"
 
 namespace marti::studies {
 
@@ -32,17 +35,6 @@ std::string grouped(std::uint64_t value) { return grouped(static_cast<std::int64
 // "1 node", "16 nodes"
 std::string counted(std::uint64_t count, std::string_view what) {
   return fmt::format("{} {}{}", grouped(count), what, count == 1 ? "" : "s");
-}
-
-std::string seconds(sim::Ticks ticks) {
-  const double s = static_cast<double>(ticks) / static_cast<double>(sim::ticks_per_second);
-  if (s >= 1.0) {
-    return fmt::format("{:.3f} s", s);
-  }
-  if (s >= 1e-3) {
-    return fmt::format("{:.3f} ms", s * 1e3);
-  }
-  return fmt::format("{:.3f} us", s * 1e6);
 }
 
 std::string bytes(double count) {
@@ -226,9 +218,13 @@ std::string summary_of(const RunResult& r) {
   scene_lines(out, r);
   voxel_lines(out, r);
   machine_lines(out, r);
+  text += loss_lines(r);
   time_lines(out, r);
   memory_lines(out, r);
+  text += counts_lines(r.machine, r.timed.counts);
   text += build_lines(r.timed);
+  text += bound_lines(r);
+  text += record_lines(r);
   fmt::format_to(out, "\nlimited by    {}\n", r.finding.sentence);
   return text;
 }

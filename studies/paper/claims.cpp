@@ -22,8 +22,6 @@ const SceneTrees* find(std::span<const SceneTrees> scenes, std::string_view name
   return at == scenes.end() ? nullptr : &*at;
 }
 
-Verdict verdict(bool agrees) { return agrees ? Verdict::agrees : Verdict::differs; }
-
 Claim polygons(std::span<const SceneTrees> scenes, std::string_view name, std::uint64_t published) {
   Claim claim{fmt::format("size of {}", name), fmt::format("{} polygons", published), "", {}};
   claim.verdict = Verdict::not_measured;
@@ -31,7 +29,7 @@ Claim polygons(std::span<const SceneTrees> scenes, std::string_view name, std::u
     // The pot's polygons are its triangles; other scenes keep the count of their source.
     const std::uint64_t here = name.starts_with("teapot") ? scene->primitives : scene->polygons;
     claim.here = fmt::format("{}", here);
-    claim.verdict = verdict(here == published);
+    claim.verdict = verdict_of(here == published);
   }
   return claim;
 }
@@ -58,7 +56,7 @@ Claim deep_nodes(std::span<const SceneTrees> scenes) {
     const std::vector<LevelCount>& levels = scene->octree.levels;
     const double share = deep_share(levels.size(), [&](std::size_t l) { return levels[l - 1].nodes(); });
     claim.here = fmt::format("{:.2f} %", 100.0 * share);
-    claim.verdict = verdict(std::abs(share - 0.42) <= 0.005);
+    claim.verdict = verdict_of(std::abs(share - 0.42) <= 0.005);
   }
   return claim;
 }
@@ -70,7 +68,7 @@ Claim first_level(std::span<const SceneTrees> scenes, double k, std::uint32_t pu
   if (const SceneTrees* scene = find(scenes, pot)) {
     const std::optional<std::uint32_t> level = rule_level(scene->octree.levels, k);
     claim.here = level_text(level);
-    claim.verdict = verdict(level == published);
+    claim.verdict = verdict_of(level == published);
   }
   return claim;
 }
@@ -86,7 +84,7 @@ Claim bsp_leaves(std::span<const SceneTrees> scenes) {
         (claim.here.empty() ? "" : "; ") + fmt::format("{} {} against {}", scene.scene, bsp, octree);
   }
   if (!scenes.empty()) {
-    claim.verdict = verdict(always);
+    claim.verdict = verdict_of(always);
   }
   return claim;
 }
@@ -109,7 +107,7 @@ Claim deep_accesses(const TracedRun* run) {
     const double deeper =
         deep_share(levels, [&](std::size_t l) { return l == 8 ? std::uint64_t{0} : accesses(*run, l); });
     claim.here = fmt::format("{:.2f} %; levels 9 to 12 {:.2f} %", 100.0 * share, 100.0 * deeper);
-    claim.verdict = verdict(share < 0.01);
+    claim.verdict = verdict_of(share < 0.01);
   }
   return claim;
 }
@@ -121,7 +119,7 @@ Claim access_fall(const TracedRun* run) {
     const double left = static_cast<double>(accesses(*run, 9)) / static_cast<double>(accesses(*run, 8));
     claim.here = fmt::format("most on level {}; level 9 has {:.1f} % of the accesses of level 8",
                              peak - run->visits.per_level.begin() + 1, 100.0 * left);
-    claim.verdict = verdict(left < 0.5);
+    claim.verdict = verdict_of(left < 0.5);
   }
   return claim;
 }
@@ -149,7 +147,7 @@ Claim worst_case(std::span<const TracedRun> runs) {
                   fmt::format("{}: below level {}, rule at {}", name_of(run.run), fall, bound);
   }
   if (!runs.empty()) {
-    claim.verdict = verdict(always);
+    claim.verdict = verdict_of(always);
   }
   return claim;
 }
@@ -207,26 +205,12 @@ Claim penalty(std::span<const RunOutcomes> runs) {
     }
   }
   if (!claim.here.empty()) {
-    claim.verdict = verdict(always);
+    claim.verdict = verdict_of(always);
   }
   return claim;
 }
 
 }  // namespace
-
-std::string_view name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::agrees:
-      return "agrees";
-    case Verdict::in_part:
-      return "in part";
-    case Verdict::differs:
-      return "differs";
-    case Verdict::not_measured:
-      return "not measured";
-  }
-  throw sim::InternalError("an unknown verdict");
-}
 
 std::vector<Claim> check_tree_claims(std::span<const SceneTrees> scenes) {
   return {polygons(scenes, "gears:2", 1169),
@@ -248,29 +232,6 @@ std::vector<Claim> check_build_claims(std::span<const RunOutcomes> runs) {
           saving(runs, "time for building", 0.2,
                  [](const LevelOutcome& level) { return static_cast<std::uint64_t>(level.building()); }),
           penalty(runs)};
-}
-
-Table claim_table(std::span<const Claim> claims) {
-  Table table("claims", "The paper's statements",
-              {{"subject", ColumnType::text, "", "what it is about"},
-               {"paper", ColumnType::text, "", "what the paper says"},
-               {"here", ColumnType::text, "", "what was measured"},
-               {"verdict", ColumnType::text, "", "agrees, in part, differs, or not measured"}});
-  for (const Claim& claim : claims) {
-    table.add_row({claim.subject, claim.paper, claim.here.empty() ? Cell() : Cell(claim.here),
-                   std::string(name_of(claim.verdict))});
-  }
-  return table;
-}
-
-std::string text_of(std::span<const Claim> claims) {
-  std::string text = "The paper's statements\n";
-  for (const Claim& claim : claims) {
-    text += fmt::format("  {:12}  {}\n                paper: {}\n                here:  {}\n",
-                        name_of(claim.verdict), claim.subject, claim.paper,
-                        claim.here.empty() ? "-" : claim.here);
-  }
-  return text;
 }
 
 }  // namespace marti::studies

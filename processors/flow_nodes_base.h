@@ -1,0 +1,127 @@
+// What the nodes of all schemes in which rays move have in common: counters, messages, and the way to the
+// cluster's memory.
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "processors/flow_replay.h"
+#include "processors/log_walker.h"
+#include "sim/large_pages.h"
+
+namespace marti::processors {
+
+/// `Derived` has read_done(node, service): a read that the node waits for has been served.
+template <class Derived>
+class FlowNodesBase : public FlowNodes {
+ public:
+  void connect(std::vector<memory::Interconnect*> interconnects) override {
+    interconnects_ = std::move(interconnects);
+  }
+  memory::InterconnectClient& client(std::uint32_t cluster) override { return clients_[cluster]; }
+  sim::Ticks end() const override { return std::max(end_, host_.last_arrival()); }
+  std::vector<NodeStatistics> statistics() const override { return {statistics_.begin(), statistics_.end()}; }
+  void report(FlowResult& result) const override { result.nodes.assign(counts_.begin(), counts_.end()); }
+
+ protected:
+  explicit FlowNodesBase(const FlowParts& parts)
+      : input_(parts.input),
+        engine_(parts.engine),
+        host_(parts.host),
+        networks_(parts.networks),
+        statistics_(parts.input.config.all_nodes()),
+        counts_(parts.input.config.all_nodes()) {
+    clients_.reserve(input_.config.clusters);
+    for (std::uint32_t cluster = 0; cluster < input_.config.clusters; ++cluster) {
+      clients_.emplace_back(static_cast<Derived&>(*this), cluster * input_.config.nodes);
+    }
+  }
+
+  // All clusters, in an order drawn from `seed` (0: ascending).
+  [[nodiscard]] std::vector<std::uint32_t> first_order(std::uint64_t seed) const {
+    std::vector<std::uint32_t> order(input_.config.clusters);
+    std::iota(order.begin(), order.end(), 0U);
+    if (seed != 0) {
+      std::shuffle(order.begin(), order.end(), std::mt19937_64(seed));
+    }
+    return order;
+  }
+
+  std::uint32_t cluster_of(std::uint32_t node) const {
+    return networks_.size() == 1 ? 0 : node / input_.config.nodes;
+  }
+  std::uint32_t port_of(std::uint32_t node) const { return node - cluster_of(node) * input_.config.nodes; }
+  memory::Interconnect& interconnect_of(std::uint32_t node) { return *interconnects_[cluster_of(node)]; }
+  void post(FlowEvent event, sim::Ticks time, std::uint32_t component) {
+    engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(event), component));
+  }
+  void spend(std::uint32_t node, Activity activity, sim::Ticks time) {
+    statistics_[node].time[static_cast<std::size_t>(activity)] += time;
+  }
+  void spend(std::uint32_t node, const memory::Service& service) {
+    spend(node, Activity::interconnect_wait, service.wait_interconnect);
+    spend(node, Activity::transfer, service.transfer);
+    spend(node, Activity::bank_wait, service.wait_bank);
+    spend(node, Activity::bank_access, service.bank);
+  }
+
+  // Sends a ray to another node; when it arrives.
+  sim::Ticks send_ray(std::uint32_t from, std::uint32_t to, sim::Ticks now) {
+    const std::uint32_t bytes = input_.config.messages.ray_bytes;
+    ++counts_[from].passed_on;
+    counts_[from].bytes_sent += bytes;
+    return networks_[cluster_of(from)]->send(now, port_of(from), port_of(to), bytes).arrival;
+  }
+  // Sends the host what a ray adds to its pixel.
+  void send_contribution(std::uint32_t from, sim::Ticks now) {
+    const std::uint32_t bytes = input_.config.messages.contribution_bytes;
+    ++counts_[from].contributions;
+    counts_[from].bytes_sent += bytes;
+    host_.collect(networks_[cluster_of(from)]->send(now, port_of(from), input_.config.nodes, bytes).arrival);
+  }
+  // Sends a camera ray to a node; when it arrives.
+  sim::Ticks send_camera_ray(std::uint32_t to, sim::Ticks now) {
+    return networks_[cluster_of(to)]
+        ->send(now, input_.config.nodes, port_of(to), input_.config.messages.ray_bytes)
+        .arrival;
+  }
+
+  // The node's time up to its `finish` is in its statistics but for what follows from counts.
+  void finish_node(std::uint32_t node, const StepTicks& ticks) {
+    NodeStatistics& statistics = statistics_[node];
+    add_counted_time(ticks, statistics.steps, statistics.references.all_hits(), statistics.time);
+    statistics.time[static_cast<std::size_t>(Activity::idle)] = end() - statistics.finish;
+  }
+
+  ReplayInput input_;
+  sim::Engine& engine_;
+  FlowHost& host_;
+  std::vector<memory::Network*> networks_;
+  sim::LargeVector<NodeStatistics> statistics_;
+  sim::LargeVector<FlowCounts> counts_;
+  sim::Ticks end_ = 0;  // of the nodes' work so far
+
+ private:
+  // One cluster's ports, with port numbers turned into node numbers. Nothing is written to the memory: the
+  // host has the pixels.
+  class Client final : public memory::InterconnectClient {
+   public:
+    Client(Derived& nodes, std::uint32_t first) : nodes_(nodes), first_(first) {}
+    void read_done(std::uint32_t port, const memory::Service& service) override {
+      nodes_.read_done(first_ + port, service);
+    }
+    void write_done(std::uint32_t /*port*/, sim::Ticks /*done*/) override {}
+
+   private:
+    Derived& nodes_;
+    std::uint32_t first_;
+  };
+
+  std::vector<Client> clients_;
+  std::vector<memory::Interconnect*> interconnects_;
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,62 @@
+#include "processors/flow_replay.h"
+
+#include <limits>
+#include <optional>
+
+#include "processors/replay_parts.h"
+#include "sim/error.h"
+
+namespace marti::processors {
+
+MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options,
+                          std::uint32_t limit, const MakeFlowNodes& make) {
+  if (!options.starts.empty()) {
+    throw sim::UserError("build.sharing: start states of branches need the image scheme");
+  }
+  std::optional<TreePlan> given;
+  const memory::Layout layout = layout_of(log, config, given);
+  const PacketList packets(log.width, log.height, config.packets);
+  const std::vector<std::uint32_t> rank = node_ranks(log, config);
+  sim::Engine engine;
+  engine.reserve(std::size_t{config.all_nodes()} + config.clusters);
+  FlowHost host(log, packets, config, limit);
+  std::vector<std::unique_ptr<memory::Network>> networks;
+  const ReplayInput input{log, config, layout, packets, rank, options.step_by_step};
+  FlowParts parts{input, engine, host, {}};
+  for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
+    networks.push_back(memory::make_network(config.network, config.nodes));
+    parts.networks.push_back(networks.back().get());
+  }
+  const std::unique_ptr<FlowNodes> nodes = make(parts);
+  const Interconnects interconnects = connect_memory(config, engine, *nodes);
+  for (const FlowEvent c : {FlowEvent::step, FlowEvent::reply, FlowEvent::read, FlowEvent::done,
+                            FlowEvent::wake, FlowEvent::admit}) {
+    engine.attach(static_cast<std::uint8_t>(c), *nodes);
+  }
+  nodes->start(options.start_seed);
+  // Every event moves a ray on, or is the only one of a node or a cluster that finds nothing to do.
+  engine.run(std::numeric_limits<std::uint64_t>::max());
+  nodes->finish();
+
+  MachineResult result = common_result(config, engine, *nodes, interconnects, layout);
+  result.host = host.statistics();
+  result.packets = packets.size();
+  FlowResult& flow = result.flow;
+  flow.memory_bytes.assign(config.all_nodes(),
+                           config.placement == Placement::replicated ? layout.database_bytes() : 0);
+  flow.collected = host.collected();
+  flow.most_in_flight = host.most_in_flight();
+  for (const auto& network : networks) {
+    flow.networks.push_back(network->statistics());
+  }
+  nodes->report(flow);
+  flow.rays = host.sent();
+  for (const FlowCounts& node : flow.nodes) {
+    flow.rays += node.made;
+  }
+  sim::ensure(host.in_flight() == 0, "rays are left over");
+  check_conservation(log, config, result);
+  return result;
+}
+
+}  // namespace marti::processors

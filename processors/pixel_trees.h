@@ -1,0 +1,38 @@
+// The trees of rays of the pixels that are being traced: a pool, because a frame's trees would be larger than
+// its log.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "processors/program/ray_tree.h"
+
+namespace marti::processors {
+
+class PixelTrees {
+ public:
+  /// The tree of a pixel with at least one ray; its camera ray is ray 0 and is alive.
+  std::uint32_t open(std::span<const std::uint32_t> words);
+
+  [[nodiscard]] const LoggedRay& ray(std::uint32_t tree, std::uint32_t number) const {
+    return trees_[tree].rays[number];
+  }
+  /// A ray of the tree comes alive.
+  void begin_ray(std::uint32_t tree) { ++trees_[tree].alive; }
+  /// A ray has ended and its children have come alive; without any alive the tree is forgotten.
+  void end_ray(std::uint32_t tree);
+
+  /// Trees in use.
+  [[nodiscard]] std::size_t size() const { return trees_.size() - free_.size(); }
+
+ private:
+  struct Tree {
+    std::vector<LoggedRay> rays;
+    std::uint32_t alive = 0;
+  };
+  std::vector<Tree> trees_;
+  std::vector<std::uint32_t> free_;
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,92 @@
+// Rays in flight, all in one pool, and the queues of rays before the nodes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "processors/program/work_log.h"
+#include "sim/large_pages.h"
+#include "sim/time.h"
+
+namespace marti::processors {
+
+/// A ray that is under way, waits in a queue, or is in a node.
+struct FlowRay {
+  const std::uint32_t* word = nullptr;  ///< its next step
+  const std::uint32_t* end = nullptr;
+  sim::Ticks arrival = 0;    ///< at the node before which it waits
+  std::uint32_t next = 0;    ///< in the queue, or in the list of free entries
+  std::uint32_t tree = 0;    ///< of its pixel
+  std::uint32_t number = 0;  ///< in the tree
+  RayKind kind = RayKind::camera;
+  bool record_read = false;  ///< of the leaf at `word`
+  bool lit = false;          ///< a light's contribution was added
+};
+
+class RayPool {
+ public:
+  static constexpr std::uint32_t none = 0xffffffffU;
+
+  /// A new ray; references to others may end.
+  std::uint32_t take() {
+    if (free_ == none) {
+      rays_.emplace_back();
+      return static_cast<std::uint32_t>(rays_.size() - 1);
+    }
+    const std::uint32_t ray = free_;
+    free_ = rays_[ray].next;
+    return ray;
+  }
+  void give_back(std::uint32_t ray) {
+    rays_[ray].next = free_;
+    free_ = ray;
+  }
+  [[nodiscard]] FlowRay& operator[](std::uint32_t ray) { return rays_[ray]; }
+  [[nodiscard]] const FlowRay& operator[](std::uint32_t ray) const { return rays_[ray]; }
+
+ private:
+  sim::LargeVector<FlowRay> rays_;
+  std::uint32_t free_ = none;
+};
+
+/// The rays that wait before one node or are under way to it, in the order in which they arrive; those that
+/// arrive together in the order in which they were sent.
+struct RayQueue {
+  std::uint32_t head = RayPool::none;
+  std::uint32_t tail = RayPool::none;
+  std::uint32_t count = 0;  ///< slots in use, those reserved for rays not sent yet included
+
+  /// Adds a ray; its slot has been counted.
+  void insert(RayPool& rays, std::uint32_t ray) {
+    rays[ray].next = RayPool::none;
+    if (head == RayPool::none) {
+      head = tail = ray;
+      return;
+    }
+    const sim::Ticks arrival = rays[ray].arrival;
+    if (rays[tail].arrival <= arrival) [[likely]] {
+      rays[tail].next = ray;
+      tail = ray;
+      return;
+    }
+    std::uint32_t* link = &head;
+    while (rays[*link].arrival <= arrival) {
+      link = &rays[*link].next;
+    }
+    rays[ray].next = *link;
+    *link = ray;
+  }
+
+  /// Takes the first ray out; its slot is free. The queue must have one.
+  std::uint32_t pop(RayPool& rays) {
+    const std::uint32_t ray = head;
+    head = rays[ray].next;
+    if (head == RayPool::none) {
+      tail = RayPool::none;
+    }
+    --count;
+    return ray;
+  }
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,78 @@
+#include "processors/replay_parts.h"
+
+#include <algorithm>
+
+#include "memory/set_tags.h"
+#include "processors/node_order.h"
+#include "sim/error.h"
+
+namespace marti::processors {
+
+std::uint32_t reference_unit(const MachineConfig& config) {
+  return config.cache.organisation == CacheOrganisation::none ? config.banks.interleave
+                                                              : config.cache.cache.line;
+}
+
+memory::Layout layout_of(const WorkLog& log, const MachineConfig& config, std::optional<TreePlan>& plan) {
+  const memory::RecordCounts counts = {plan ? plan->initial_nodes() : log.topology.nodes.size(),
+                                       plan ? plan->initial_entries() : log.topology.entries.size(),
+                                       log.primitives,
+                                       log.materials,
+                                       log.texture_begin.empty() ? 0 : log.texture_begin.back(),
+                                       std::uint64_t{log.width} * log.height};
+  const memory::Layout layout(config.layout, counts, log.quadrics.size());
+  const std::uint32_t unit = reference_unit(config);
+  if (plan) {
+    plan->place_behind(layout, unit);
+  }
+  if (std::max(layout.end(), plan ? plan->end() : 0) / unit >= memory::no_line) {
+    throw sim::UserError("the database has 2^32 or more lines; use longer cache lines");
+  }
+  return layout;
+}
+
+std::vector<std::uint32_t> node_ranks(const WorkLog& log, const MachineConfig& config) {
+  return config.layout.node_order == memory::NodeOrder::depth_first ? depth_first_rank(log.topology)
+                                                                    : std::vector<std::uint32_t>{};
+}
+
+Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine, NodeArray& nodes) {
+  Interconnects interconnects;
+  std::vector<memory::Interconnect*> links;
+  for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
+    interconnects.push_back(memory::make_interconnect(
+        config.interconnect, banks_of(config),
+        {engine, nodes.client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * config.nodes,
+         config.nodes}));
+    links.push_back(interconnects.back().get());
+  }
+  nodes.connect(links);
+  return interconnects;
+}
+
+MachineResult common_result(const MachineConfig& config, const sim::Engine& engine, const NodeArray& nodes,
+                            const Interconnects& interconnects, const memory::Layout& layout) {
+  MachineResult result;
+  result.end = nodes.end();
+  result.nodes = nodes.statistics();
+  for (const auto& interconnect : interconnects) {
+    result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
+    if (const memory::SharedCacheStatistics* const cache = interconnect->cache_statistics()) {
+      result.l2.caches.push_back(cache->lookups);
+      result.l2.waits.push_back(cache->waits);
+    }
+  }
+  if (config.l2.sharing == SecondLevel::private_caches) {
+    result.l2 = nodes.second_level();
+  }
+  result.counts = nodes.cache_counts();
+  result.build = nodes.build_result();
+  result.database_bytes = layout.database_bytes();
+  result.copies = config.placement == Placement::replicated ? config.all_nodes() : config.clusters;
+  result.events = engine.events();
+  result.host_bytes_per_node = nodes.bytes_per_node();
+  result.unloaded_miss = interconnects.front()->unloaded_read(reference_unit(config));
+  return result;
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,64 @@
+// What each pixel cost: time, misses and waiting, added up while a replay is watched.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "processors/observer.h"
+#include "processors/program/image.h"
+
+namespace marti::studies {
+
+/// The three figures of a pixel. Time that is nobody's (waiting for a packet, building before the frame,
+/// idling) is in none.
+enum class Heat : std::uint8_t {
+  cycles,  ///< all time that nodes spent for it: working and waiting
+  misses,  ///< references that missed the node's cache
+  waits,   ///< of the time, that in states other than `working`
+};
+inline constexpr std::size_t heats = 3;
+inline constexpr std::array<std::string_view, heats> heat_names = {"cycles", "misses", "waits"};
+
+class HeatMap final : public processors::Observer {
+ public:
+  void begin(const processors::ReplayInput& input) override;
+  void spent(std::uint32_t node, processors::NodeState state, sim::Ticks from, sim::Ticks to,
+             processors::PixelPlace pixel) override;
+  void missed(std::uint32_t node, std::int64_t misses, processors::PixelPlace pixel) override;
+
+  [[nodiscard]] std::uint32_t width() const { return width_; }
+  [[nodiscard]] std::uint32_t height() const { return height_; }
+  /// Pixels row by row from the top: ticks, misses, ticks.
+  [[nodiscard]] const std::vector<std::int64_t>& values(Heat heat) const {
+    return values_[static_cast<std::size_t>(heat)];
+  }
+  /// The same, times in cycles of the nodes' clock.
+  [[nodiscard]] std::vector<float> figures(Heat heat) const;
+
+ private:
+  [[nodiscard]] std::size_t index(processors::PixelPlace pixel) const {
+    return std::size_t{pixel.y} * width_ + pixel.x;
+  }
+
+  std::uint32_t width_ = 0;
+  std::uint32_t height_ = 0;
+  sim::Ticks period_ = 1;
+  std::array<std::vector<std::int64_t>, heats> values_;
+};
+
+/// What the colours of a map stand for: 0 is the darkest, `brightest` and all above it the brightest.
+struct Legend {
+  double brightest = 0.0;  ///< 99 of 100 pixels lie at or below it
+  double largest = 0.0;
+  double mean = 0.0;
+};
+
+[[nodiscard]] Legend legend_of(const std::vector<float>& figures);
+
+/// A map in false colours. All black-blue when every figure is 0.
+[[nodiscard]] processors::Image false_colour(const std::vector<float>& figures, std::uint32_t width,
+                                             std::uint32_t height, const Legend& legend);
+
+}  // namespace marti::studies

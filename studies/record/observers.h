@@ -1,0 +1,29 @@
+// Several observers as one, and a check that the nodes tell all of their time.
+#pragma once
+
+#include <vector>
+
+#include "processors/observer.h"
+
+namespace marti::studies {
+
+/// Passes every call on to each of its observers, which must outlive it.
+class Observers final : public processors::Observer {
+ public:
+  void add(processors::Observer& observer) { observers_.push_back(&observer); }
+  [[nodiscard]] bool empty() const { return observers_.empty(); }
+
+  void begin(const processors::ReplayInput& input) override;
+  void spent(std::uint32_t node, processors::NodeState state, sim::Ticks from, sim::Ticks to,
+             processors::PixelPlace pixel) override;
+  void missed(std::uint32_t node, std::int64_t misses, processors::PixelPlace pixel) override;
+  void began_packet(std::uint32_t node, std::uint64_t packet, sim::Ticks start) override;
+  /// Throws InternalError unless the pieces of each node reached from 0 to `time` without a gap.
+  void end(sim::Ticks time) override;
+
+ private:
+  std::vector<processors::Observer*> observers_;
+  std::vector<sim::Ticks> told_;  // until when, of each node
+};
+
+}  // namespace marti::studies

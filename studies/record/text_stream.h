@@ -1,0 +1,37 @@
+// A long text file, written piece by piece.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "sim/files.h"
+
+namespace marti::studies {
+
+/// Written under a temporary name; commit() gives the file its own. A UserError says why it cannot be written
+/// (no such directory, disk full, ...); without commit() nothing is left behind.
+class TextStream {
+ public:
+  explicit TextStream(const std::filesystem::path& file);
+
+  void write(std::string_view text);
+  /// Everything is in the file, under its temporary name.
+  void close();
+  /// After close().
+  void commit() { pending_.commit(); }
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  [[noreturn]] void fail() const;
+
+  std::filesystem::path file_;
+  sim::PendingFile pending_;
+  std::unique_ptr<std::FILE, Closer> stream_;
+};
+
+}  // namespace marti::studies

@@ -1,0 +1,154 @@
+#include "studies/schemes/arguments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+namespace marti::studies {
+
+namespace {
+
+using processors::Scheme;
+
+// A machine that is timed with fewer numbers of nodes says nothing about growth.
+constexpr std::size_t fewest_points = 3;
+
+enum class Kind { naive, cached, space };
+
+bool is(Kind kind, const ScalingPoint& point) {
+  switch (kind) {
+    case Kind::naive:
+      return point.scheme == Scheme::image && point.hit_ratio.value_or(0.0) == 0.0;
+    case Kind::cached:
+      return point.scheme == Scheme::image && point.hit_ratio.value_or(0.0) > 0.0 && point.shared_use;
+    case Kind::space:
+      return point.scheme == Scheme::space;
+  }
+  return false;
+}
+
+// The points of the first machine of that kind; nothing when it is not there or was timed too few times.
+std::vector<ScalingPoint> find(Kind kind, std::span<const ScalingPoint> points) {
+  const auto first = std::find_if(points.begin(), points.end(), [&](const auto& p) { return is(kind, p); });
+  if (first == points.end()) {
+    return {};
+  }
+  std::vector<ScalingPoint> found = points_of(points, first->machine);
+  return found.size() >= fewest_points ? found : std::vector<ScalingPoint>{};
+}
+
+double efficiency(const ScalingPoint& point) { return point.scaling.efficiency.value_or(0.0); }
+double speed_up(const ScalingPoint& point) { return point.scaling.speed_up.value_or(0.0); }
+
+Claim naive(std::span<const ScalingPoint> points) {
+  Claim claim{"naive pixel parallelism", "one shared memory saturates with few processors", "", {}};
+  claim.verdict = Verdict::not_measured;
+  if (const std::vector<ScalingPoint> machine = find(Kind::naive, points); !machine.empty()) {
+    const auto best = std::max_element(machine.begin(), machine.end(), [](const auto& a, const auto& b) {
+      return speed_up(a) < speed_up(b);
+    });
+    const ScalingPoint& last = machine.back();
+    claim.here = fmt::format(
+        "at most {:.1f} times as fast as one node, and with {} nodes the way to memory is {:.1f} % busy",
+        speed_up(*best), last.nodes, 100.0 * last.shared_use.value_or(0.0));
+    claim.verdict = verdict_of(last.shared_use.value_or(0.0) > 0.9 && efficiency(last) < 0.5);
+  }
+  return claim;
+}
+
+Claim cached(std::span<const ScalingPoint> points) {
+  Claim claim{
+      "packets with private caches", "a much larger number of processors can share the memory", "", {}};
+  claim.verdict = Verdict::not_measured;
+  const std::vector<ScalingPoint> without = find(Kind::naive, points);
+  const std::vector<ScalingPoint> with = find(Kind::cached, points);
+  if (!without.empty() && !with.empty()) {
+    const double few = half_efficiency_nodes(without);
+    const double many = half_efficiency_nodes(with);
+    claim.here =
+        fmt::format("half the efficiency is left at {:.0f} nodes, without caches at {:.1f}", many, few);
+    claim.verdict = verdict_of(many >= 4.0 * few);
+  }
+  return claim;
+}
+
+Claim space(std::span<const ScalingPoint> points) {
+  Claim claim{"space parallelism", "efficiency falls beyond ten or twenty processors", "", {}};
+  claim.verdict = Verdict::not_measured;
+  if (const std::vector<ScalingPoint> machine = find(Kind::space, points); !machine.empty()) {
+    std::string figures;
+    for (const ScalingPoint& point : machine) {
+      figures += fmt::format("{}{} at {}", figures.empty() ? "" : ", ",
+                             fmt::format("{:.2f}", efficiency(point)), point.nodes);
+    }
+    const double half = half_efficiency_nodes(machine);
+    claim.here = fmt::format("efficiency {} nodes; half of it is left at {:.0f}", figures, half);
+    claim.verdict =
+        verdict_of(half <= 40.0 && efficiency(machine.back()) < 0.5 * efficiency(machine.front()));
+  }
+  return claim;
+}
+
+Claim pipeline(std::span<const StagePoint> stages) {
+  Claim claim{"pipelining", "the slowest stage limits the machine", "", Verdict::not_measured};
+  if (stages.size() > 1) {
+    const StagePoint& first = stages.front();
+    const auto best = std::min_element(stages.begin(), stages.end(),
+                                       [](const auto& a, const auto& b) { return a.end < b.end; });
+    const auto describe = [](const StagePoint& point) {
+      return fmt::format("{} + {} + {} nodes: {} {:.0f} % busy", point.nodes[0], point.nodes[1],
+                         point.nodes[2], stage_names[point.slowest()], 100.0 * point.busy[point.slowest()]);
+    };
+    claim.here = fmt::format("{}; {}, {:.2f} times as fast", describe(first), describe(*best),
+                             static_cast<double>(first.end) / static_cast<double>(best->end));
+    // Nodes taken from the least busy stage and given to the busiest must help.
+    claim.verdict = verdict_of(first.busy[first.slowest()] > 0.8 && best->end < first.end);
+  }
+  return claim;
+}
+
+Claim cells(std::span<const CellPoint> points) {
+  Claim claim{"size of the cells", "too small and too large cells both hurt the cache", "",
+              Verdict::not_measured};
+  if (points.size() >= fewest_points) {
+    const auto fewest = std::min_element(points.begin(), points.end(), [](const auto& a, const auto& b) {
+      return a.references.all_misses() < b.references.all_misses();
+    });
+    const auto times = [&](const CellPoint& point) {
+      return static_cast<double>(point.references.all_misses()) /
+             static_cast<double>(std::max<std::int64_t>(1, fewest->references.all_misses()));
+    };
+    claim.here = fmt::format("fewest misses with level {}; {:.1f} times as many with {}, {:.2f} with {}",
+                             fewest->level, times(points.front()), points.front().level, times(points.back()),
+                             points.back().level);
+    claim.verdict = verdict_of(times(points.front()) > 1.05 && times(points.back()) > 1.05);
+  }
+  return claim;
+}
+
+}  // namespace
+
+double half_efficiency_nodes(std::span<const ScalingPoint> machine) {
+  const double half = 0.5 * efficiency(machine.front());
+  for (std::size_t i = 1; i < machine.size(); ++i) {
+    const double before = efficiency(machine[i - 1]);
+    const double after = efficiency(machine[i]);
+    if (after < half) {
+      const double from = std::log2(machine[i - 1].nodes);
+      const double to = std::log2(machine[i].nodes);
+      return std::exp2(from + (to - from) * (before - half) / (before - after));
+    }
+  }
+  return machine.back().nodes;
+}
+
+std::vector<Claim> check_arguments(std::span<const ScalingPoint> points,
+                                   std::span<const CellPoint> cell_points,
+                                   std::span<const StagePoint> stages) {
+  return {naive(points), cached(points), space(points), pipeline(stages), cells(cell_points)};
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,24 @@
+// The paper's statements about parallel machines beside what the study measured. (McNeill et al. 1992,
+// section 3; the space-parallel one after Birtwistle, Cleary, Wyvill, Vatti 1986.)
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "studies/paper/claims.h"
+#include "studies/schemes/cell_table.h"
+#include "studies/schemes/scaling_table.h"
+#include "studies/schemes/stage_table.h"
+
+namespace marti::studies {
+
+/// The largest number of nodes with at least half the efficiency that the machine has with its fewest nodes,
+/// between the measured ones by a straight line in log(nodes); the last one when it never falls so far.
+[[nodiscard]] double half_efficiency_nodes(std::span<const ScalingPoint> machine);
+
+/// Statements whose machines were not timed have the verdict not_measured.
+[[nodiscard]] std::vector<Claim> check_arguments(std::span<const ScalingPoint> points,
+                                                 std::span<const CellPoint> cells,
+                                                 std::span<const StagePoint> stages);
+
+}  // namespace marti::studies

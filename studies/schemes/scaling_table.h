@@ -1,0 +1,50 @@
+// How machines of several schemes grow with the number of their nodes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "processors/program/work_log.h"
+#include "processors/replay.h"
+#include "studies/results/table.h"
+#include "studies/scaling.h"
+#include "studies/schemes/schemes_keys.h"
+#include "studies/schemes/stage_table.h"
+
+namespace marti::studies {
+
+/// One machine with one number of nodes.
+struct ScalingPoint {
+  std::string machine;
+  processors::Scheme scheme = processors::Scheme::image;
+  std::uint32_t nodes = 0;
+  sim::Ticks end = 0;
+  sim::Ticks one_node_end = 0;
+  Scaling scaling;
+  Limit limit = Limit::nothing;
+  std::optional<double> shared_use;  ///< share of the frame in which the memory's interconnect was busy
+  std::optional<double> hit_ratio;
+  double idle = 0.0;     ///< share of the nodes' time
+  double waiting = 0.0;  ///< share of the nodes' time spent waiting for anything but the end
+  std::int64_t messages = 0;
+  std::int64_t message_bytes = 0;
+};
+
+/// Times every machine with every number of nodes from the log; points in the order of the machines, then of
+/// the nodes. A number that a machine cannot have (a pipeline needs a node for each stage) has no point. A
+/// pipeline's nodes are shared out as in the quickest of `stages`, if there is any.
+[[nodiscard]] std::vector<ScalingPoint> time_machines(const SchemesConfig& config,
+                                                      const processors::WorkLog& log,
+                                                      std::span<const StagePoint> stages);
+
+/// "schemes": a row for each point.
+[[nodiscard]] Table scaling_table(std::span<const ScalingPoint> points);
+
+/// The points of one machine.
+[[nodiscard]] std::vector<ScalingPoint> points_of(std::span<const ScalingPoint> points,
+                                                  std::string_view machine);
+
+}  // namespace marti::studies

@@ -1,0 +1,14 @@
+// `marti study schemes`: the paper's section on parallel machines (McNeill et al. 1992, section 3) as runs:
+// naive pixel parallelism, packets with caches, pipelining and space parallelism, on one scene and clock.
+#pragma once
+
+#include "sim/config.h"
+#include "studies/results/study_files.h"
+
+namespace marti::studies {
+
+/// Traces the scene once, times every machine from its log, and then trees of several cell sizes. Throws
+/// UserError for anything wrong with the input.
+[[nodiscard]] StudyOutput run_schemes(sim::Config& config);
+
+}  // namespace marti::studies

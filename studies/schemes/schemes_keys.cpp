@@ -1,0 +1,114 @@
+#include "studies/schemes/schemes_keys.h"
+
+#include <algorithm>
+
+#include "sim/units.h"
+#include "studies/machine_keys.h"
+#include "studies/run_result.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr std::uint32_t most_study_nodes = 65536;
+
+std::vector<std::uint32_t> ascending(const sim::Config& config, std::string_view key) {
+  std::vector<std::uint32_t> values;
+  for (const std::int64_t value : config.integers(key)) {
+    values.push_back(static_cast<std::uint32_t>(value));
+  }
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+// A file that the configuration names, from the directory it is in itself.
+std::filesystem::path beside(const sim::Config& config, const std::string& name) {
+  return std::filesystem::path(config.name()).parent_path() / name;
+}
+
+}  // namespace
+
+NamedMachine read_machine_file(const std::filesystem::path& file, std::vector<std::string> assignments) {
+  sim::Config config = sim::Config::from_file(run_schema(), file, assignments);
+  (void)read_frame(config);
+  std::string name = file.stem().string();
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return (c < 'a' || c > 'z') && (c < '0' || c > '9'); }, '_');
+  NamedMachine machine{std::move(name), read_machine(config)};
+  config.refuse_unused();
+  return machine;
+}
+
+void declare_schemes_keys(sim::Schema& schema) {
+  schema.section(
+      "schemes",
+      "only for `marti study schemes`, which takes the machines from files of their own, named from "
+      "the directory of the study's");
+  schema.texts(
+      "schemes.machines", {"naive-pixel.toml", "marti.toml", "pipeline.toml", "space.toml"},
+      "machines whose speed-up is compared; what these files say about scene, image and structure is "
+      "left aside");
+  schema.integers("schemes.nodes", {1, 2, 4, 8, 16, 32, 64, 128, 256}, {1, most_study_nodes}, "",
+                  "nodes in each cluster; a machine that needs more is left out there");
+  schema.text("schemes.cell_machine", "marti.toml", "the machine whose misses are counted over cell sizes");
+  schema.integers("schemes.cell_levels", {4, 5, 6, 7, 8, 9, 10, 11, 12}, {1, 21}, "",
+                  "structure.max_level of the trees whose cells are compared");
+  schema.integer("schemes.cell_objects", 1, {1, 1'000'000}, "",
+                 "structure.max_objects of these trees: small, so that the level decides");
+  schema.text("schemes.stage_machine", "pipeline.toml",
+              "the pipeline whose nodes are shared out among its stages in several ways; empty: none");
+  schema.integer("schemes.stage_nodes", 16, {3, 1024}, "", "nodes of that pipeline");
+}
+
+sim::Schema schemes_schema() {
+  sim::Schema schema;
+  declare_frame_keys(schema);
+  declare_schemes_keys(schema);
+  return schema;
+}
+
+SchemesConfig read_schemes(sim::Config& config) {
+  SchemesConfig schemes;
+  schemes.frame = read_frame(config);
+  if (schemes.frame.frames.count > 1) {
+    config.fail("frames.count", "the study renders one frame, that of frames.first");
+  }
+  schemes.nodes = ascending(config, "schemes.nodes");
+  schemes.cell_levels = ascending(config, "schemes.cell_levels");
+  schemes.cell_objects = static_cast<std::uint32_t>(config.integer("schemes.cell_objects"));
+  schemes.stage_nodes = static_cast<std::uint32_t>(config.integer("schemes.stage_nodes"));
+  if (schemes.nodes.empty()) {
+    config.fail("schemes.nodes", "must name a number of nodes");
+  }
+  if (!schemes.cell_levels.empty() && schemes.frame.structure != "octree") {
+    config.fail("structure.kind", "the study compares the cells of octrees; set schemes.cell_levels = []");
+  }
+  const std::string most = "machine.nodes=" + std::to_string(schemes.nodes.back());
+  for (const std::string& name : config.texts("schemes.machines")) {
+    schemes.machines.push_back(beside(config, name));
+    const std::uint64_t bytes =
+        processors::host_bytes(read_machine_file(schemes.machines.back(), {most}).config);
+    if (bytes > static_cast<std::uint64_t>(schemes.frame.memory_limit)) {
+      config.fail("schemes.nodes", "simulating that many nodes of " + name +
+                                       " takes more than host_machine.memory_limit = " +
+                                       sim::print_size(schemes.frame.memory_limit));
+    }
+  }
+  if (schemes.machines.empty()) {
+    config.fail("schemes.machines", "must name a machine");
+  }
+  schemes.cell_machine = beside(config, config.text("schemes.cell_machine"));
+  (void)read_machine_file(schemes.cell_machine, {});
+  const std::string& stages = config.text("schemes.stage_machine");
+  if (!stages.empty()) {
+    schemes.stage_machine = beside(config, stages);
+    if (read_machine_file(schemes.stage_machine, {}).config.scheme != processors::Scheme::pipeline) {
+      config.fail("schemes.stage_machine", "names a machine that is no pipeline");
+    }
+  }
+  config.refuse_unused();
+  return schemes;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,47 @@
+// The configuration of `marti study schemes`: what is traced, and which machines are timed from it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "processors/machine_config.h"
+#include "sim/config.h"
+#include "sim/schema.h"
+#include "studies/frame_keys.h"
+
+namespace marti::studies {
+
+/// A machine of a file of its own, with so many nodes.
+struct NamedMachine {
+  std::string name;  ///< of the file, without directory and .toml; other than a-z and 0-9 is a '_'
+  processors::MachineConfig config;
+};
+
+struct SchemesConfig {
+  FrameConfig frame;
+  std::vector<std::filesystem::path> machines;  ///< files of machines whose scaling is compared
+  std::vector<std::uint32_t> nodes;             ///< ascending, each once
+  std::filesystem::path cell_machine;           ///< whose misses are counted over the size of cells
+  std::vector<std::uint32_t> cell_levels;       ///< ascending, each once; may be empty
+  std::uint32_t cell_objects = 1;
+  std::filesystem::path stage_machine;  ///< a pipeline, or empty
+  std::uint32_t stage_nodes = 16;       ///< of all its stages
+};
+
+void declare_schemes_keys(sim::Schema& schema);
+
+/// The schema of `marti study schemes`: the keys of what is traced, and a section of its own.
+[[nodiscard]] sim::Schema schemes_schema();
+
+/// Throws UserError naming file, line and key; the machines are read with one of the node counts each, so
+/// that a wrong one is found before anything runs.
+[[nodiscard]] SchemesConfig read_schemes(sim::Config& config);
+
+/// The machine of a file with other values for some keys ("machine.nodes=4"). What the file says about scene,
+/// image and structure is read and left aside. Throws UserError.
+[[nodiscard]] NamedMachine read_machine_file(const std::filesystem::path& file,
+                                             std::vector<std::string> assignments);
+
+}  // namespace marti::studies

@@ -1,0 +1,35 @@
+// A pipeline's nodes shared out among its stages in several ways: which stage decides.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "processors/program/work_log.h"
+#include "studies/results/table.h"
+#include "studies/schemes/schemes_keys.h"
+
+namespace marti::studies {
+
+inline constexpr std::size_t pipeline_stages = 3;
+inline constexpr std::array<std::string_view, pipeline_stages> stage_names = {"search", "nearest", "shade"};
+
+struct StagePoint {
+  std::array<std::uint32_t, pipeline_stages> nodes{};
+  /// Time the nodes of each stage worked or waited for memory, over that of all nodes of the stage.
+  std::array<double, pipeline_stages> busy{};
+  sim::Ticks end = 0;
+
+  [[nodiscard]] std::size_t slowest() const;
+};
+
+/// Starts with shares that are as equal as can be, then takes a node from the stage that is least busy and
+/// gives it to the one that is busiest, until a way of sharing out comes up again.
+[[nodiscard]] std::vector<StagePoint> time_stages(const SchemesConfig& config,
+                                                  const processors::WorkLog& log);
+
+/// "stages": a row for each stage of each way of sharing out.
+[[nodiscard]] Table stage_table(std::span<const StagePoint> points);
+
+}  // namespace marti::studies

@@ -1,0 +1,65 @@
+// `marti study schemes` as its user meets it: exit status, messages, files.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/cli/shell.h"
+#include "tests/support/temporary_directory.h"
+
+namespace marti::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path shipped = fs::path(MARTI_SOURCE) / "configs" / "schemes.toml";
+const std::string small = quoted(shipped) +
+                          " --set scene.source=tetra:3 --set image.width=24 --set image.height=16"
+                          " --set 'schemes.nodes=[1,4,9]' --set 'schemes.cell_levels=[2,4,6]'"
+                          " --set schemes.stage_nodes=6";
+
+TEST(SchemesCommand, WritesTablesAndChartsAndTheSameBytesAgain) {
+  const TemporaryDirectory directory;
+  const fs::path a = directory.path() / "a";
+  const fs::path b = directory.path() / "b";
+  const Outcome outcome = marti("study schemes " + small + " -o " + quoted(a));
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  for (const char* text : {"Speed-up over one node", "pipeline", "space", "The paper's statements"}) {
+    EXPECT_NE(outcome.output.find(text), std::string::npos) << text;
+  }
+  for (const char* name :
+       {"schemes.csv", "stages.csv", "cells.csv", "claims.csv", "schemes.vl.json",
+        "schemes_efficiency.vl.json", "stages.vl.json", "cells.vl.json", "results.sqlite"}) {
+    EXPECT_TRUE(fs::exists(a / name)) << name;
+  }
+  ASSERT_EQ(marti("study schemes " + small + " -o " + quoted(b)).status, 0);
+  for (const auto& entry : fs::directory_iterator(a)) {
+    const std::string name = entry.path().filename().string();
+    if (name != "results.sqlite") {
+      EXPECT_EQ(read(a / name), read(b / name)) << name;
+    }
+  }
+}
+
+TEST(SchemesCommand, WrongInputIsTwoAndSaysWhere) {
+  const TemporaryDirectory directory;
+  const std::string out = " -o " + quoted(directory.path() / "out");
+  const auto refused = [&](const std::string& options, const std::string& complaint) {
+    const Outcome outcome = marti("study schemes " + small + out + options);
+    EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.output;
+    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
+  };
+  refused(" --set 'schemes.machines=[\"nowhere.toml\"]'", "nowhere.toml");
+  refused(" --set 'schemes.machines=[]'", "schemes.machines");
+  refused(" --set 'schemes.machines=[\"paper.toml\"]'", "paper.toml");
+  refused(" --set 'schemes.nodes=[]'", "schemes.nodes");
+  refused(" --set 'schemes.nodes=[0]'", "schemes.nodes");
+  refused(" --set structure.kind=grid --set structure.density=1", "structure.kind");
+  refused(" --set schemes.stage_machine=marti.toml", "schemes.stage_machine");
+  refused(" --set schemes.stage_nodes=2", "schemes.stage_nodes");
+  refused(" --set machine.nodes=4", "machine.nodes");
+  refused(" --set frames.count=2", "frames.count");
+}
+
+}  // namespace
+}  // namespace marti::test

@@ -1,0 +1,117 @@
+// The paper's arguments about parallel machines, as directions: the shipped machines on a small image.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/config.h"
+#include "studies/functional_run.h"
+#include "studies/schemes/arguments.h"
+#include "studies/schemes/schemes_keys.h"
+
+namespace marti::tests {
+namespace {
+
+using namespace studies;
+
+/// The shipped study, of a smaller image.
+const SchemesConfig& shipped() {
+  static const SchemesConfig schemes = [] {
+    const std::vector<std::string> smaller = {"image.width=64", "image.height=64",
+                                              "schemes.nodes=[1,2,4,8,16,32,64,128]",
+                                              "schemes.cell_levels=[4,6,7,9,12]"};
+    sim::Config config = sim::Config::from_file(
+        schemes_schema(), std::filesystem::path(MARTI_SOURCE) / "configs" / "schemes.toml", smaller);
+    return read_schemes(config);
+  }();
+  return schemes;
+}
+
+const processors::WorkLog& log() {
+  static const FunctionalRun run = run_functional(shipped().frame);
+  return *run.frame.log;
+}
+
+const std::vector<StagePoint>& stages() {
+  static const std::vector<StagePoint> points = time_stages(shipped(), log());
+  return points;
+}
+
+const std::vector<ScalingPoint>& points() {
+  static const std::vector<ScalingPoint> all = time_machines(shipped(), log(), stages());
+  return all;
+}
+
+double efficiency(const ScalingPoint& point) { return point.scaling.efficiency.value(); }
+
+TEST(Arguments, NaiveSharedMemorySaturates) {
+  const std::vector<ScalingPoint> naive = points_of(points(), "naive_pixel");
+  ASSERT_EQ(naive.size(), 8U);
+  EXPECT_GT(naive.back().shared_use.value(), 0.99);
+  // Sixteen times the nodes, and nothing gained.
+  EXPECT_LT(naive[7].scaling.speed_up.value(), 1.02 * naive[3].scaling.speed_up.value());
+  EXPECT_LT(naive.back().scaling.speed_up.value(), 3.0);
+}
+
+TEST(Arguments, PacketsWithCachesSaturateMuchLater) {
+  const std::vector<ScalingPoint> naive = points_of(points(), "naive_pixel");
+  const std::vector<ScalingPoint> cached = points_of(points(), "marti");
+  EXPECT_GT(half_efficiency_nodes(cached), 4.0 * half_efficiency_nodes(naive));
+  EXPECT_GT(cached.back().hit_ratio.value(), 0.8);
+}
+
+TEST(Arguments, SpaceParallelEfficiencyFalls) {
+  const std::vector<ScalingPoint> space = points_of(points(), "space");
+  ASSERT_EQ(space.size(), 8U);
+  for (std::size_t i = 2; i < space.size(); ++i) {
+    EXPECT_LT(efficiency(space[i]), efficiency(space[i - 1])) << space[i].nodes;
+  }
+  EXPECT_LT(half_efficiency_nodes(space), 40.0);
+  // At sixteen nodes packets with caches are still far ahead.
+  EXPECT_GT(efficiency(points_of(points(), "marti")[4]), 1.3 * efficiency(space[4]));
+}
+
+TEST(Arguments, APipelineIsLimitedByItsSlowestStage) {
+  ASSERT_GT(stages().size(), 1U);
+  for (const StagePoint& point : stages()) {
+    for (std::size_t stage = 0; stage < pipeline_stages; ++stage) {
+      EXPECT_LE(point.busy[stage], point.busy[point.slowest()]);
+    }
+  }
+  // Taking a node from the least busy stage and giving it to the slowest helps, as long as one is.
+  const StagePoint& first = stages().front();
+  EXPECT_GT(first.busy[first.slowest()], 0.8);
+  EXPECT_LT(stages()[1].end, first.end);
+}
+
+TEST(Arguments, TooSmallAndTooLargeCellsBothHurtTheCache) {
+  const std::vector<CellPoint> cells = time_cells(shipped());
+  ASSERT_EQ(cells.size(), 5U);
+  const auto misses = [&](std::size_t i) { return cells[i].references.all_misses(); };
+  EXPECT_GT(misses(0), 2 * misses(1));
+  EXPECT_GT(misses(4), 2 * misses(2));
+  EXPECT_GT(misses(3), misses(2));
+  EXPECT_GT(cells[0].end, cells[2].end);
+  EXPECT_GT(cells[4].end, cells[2].end);
+}
+
+TEST(Arguments, EveryStatementOfTheShippedStudyIsMeasured) {
+  for (const Claim& claim : check_arguments(points(), time_cells(shipped()), stages())) {
+    EXPECT_EQ(claim.verdict, Verdict::agrees) << claim.subject << ": " << claim.here;
+  }
+}
+
+TEST(Arguments, HalfTheEfficiencyIsFoundBetweenPoints) {
+  std::vector<ScalingPoint> machine(3);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    machine[i].nodes = 1U << (2U * i);
+    machine[i].scaling.efficiency = 1.0 - 0.375 * i;
+  }
+  EXPECT_NEAR(half_efficiency_nodes(machine), 6.35, 0.01);  // 2^(2 + 2 * 1/3)
+  machine[2].scaling.efficiency = 0.5;
+  EXPECT_EQ(half_efficiency_nodes(machine), 16.0);
+}
+
+}  // namespace
+}  // namespace marti::tests

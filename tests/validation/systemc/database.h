@@ -1,0 +1,46 @@
+// Where records lie, computed from the rules of docs/model.md.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "accel/topology.h"
+#include "memory/layout.h"
+#include "memory/record_kind.h"
+#include "processors/program/work_log.h"
+
+namespace marti::oracle {
+
+/// Bytes of one record.
+struct Extent {
+  std::uint64_t address = 0;
+  std::uint64_t bytes = 0;
+};
+
+class Database {
+ public:
+  Database(const memory::LayoutConfig& config, const processors::WorkLog& log);
+
+  [[nodiscard]] Extent node(std::uint32_t number) const;
+  /// The first `count` entries of a leaf's list.
+  [[nodiscard]] Extent list(const accel::TopologyNode& leaf, std::uint32_t count) const;
+  [[nodiscard]] Extent primitive(std::uint32_t id) const;
+  [[nodiscard]] Extent material(std::uint32_t number) const;
+  [[nodiscard]] Extent texel(std::uint32_t texture, std::uint32_t texel) const;
+  [[nodiscard]] Extent pixel(std::uint32_t x, std::uint32_t y) const;
+
+ private:
+  void place_children(std::uint32_t branch, std::uint32_t& next);
+
+  memory::LayoutConfig config_;
+  const processors::WorkLog& log_;
+  std::vector<std::uint32_t> record_of_;  // of each tree node
+  std::uint64_t lists_ = 0;
+  std::uint64_t triangles_ = 0;
+  std::uint64_t quadrics_ = 0;
+  std::uint64_t materials_ = 0;
+  std::uint64_t texels_ = 0;
+  std::uint64_t pixels_ = 0;
+};
+
+}  // namespace marti::oracle

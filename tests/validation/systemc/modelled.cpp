@@ -1,0 +1,76 @@
+// Which machines the SystemC model is one of. The bindings name every member of every part of a
+// configuration, so that a new one does not compile before somebody has modelled it or refused it here.
+#include "sim/error.h"
+#include "tests/validation/systemc/machine.h"
+
+namespace marti::oracle {
+
+namespace {
+
+template <class Enum>
+void ensure_one_of(Enum value, std::initializer_list<Enum> modelled, const char* message) {
+  sim::ensure(std::find(modelled.begin(), modelled.end(), value) != modelled.end(), message);
+}
+
+void refuse(const processors::NodeCacheConfig& config) {
+  using memory::Replacement;
+  using processors::CacheOrganisation;
+  [[maybe_unused]] const auto& [organisation, cache, split_sizes, hit_cycles] = config;
+  [[maybe_unused]] const auto& [size, line, ways, replacement, seed] = cache;
+  ensure_one_of(organisation, {CacheOrganisation::none, CacheOrganisation::unified, CacheOrganisation::split},
+                "the SystemC model has no such cache organisation");
+  ensure_one_of(replacement, {Replacement::lru, Replacement::fifo, Replacement::random},
+                "the SystemC model has no such replacement");
+}
+
+void refuse(const memory::InterconnectConfig& config) {
+  using memory::BusMode;
+  using memory::InterconnectKind;
+  [[maybe_unused]] const auto& [kind, mode, clock, width, cycles_per_beat, address_cycles, latency_cycles] =
+      config;
+  ensure_one_of(kind, {InterconnectKind::ideal, InterconnectKind::bus, InterconnectKind::crossbar},
+                "the SystemC model has no such interconnect");
+  ensure_one_of(mode, {BusMode::held, BusMode::split}, "the SystemC model has no such bus");
+}
+
+void refuse(const processors::PacketConfig& packets, const processors::HostConfig& host) {
+  using processors::Assignment;
+  using processors::PacketOrder;
+  [[maybe_unused]] const auto& [width, height, order] = packets;
+  [[maybe_unused]] const auto& [assignment, clock, latency_cycles, occupancy_cycles] = host;
+  ensure_one_of(order, {PacketOrder::scanline, PacketOrder::morton, PacketOrder::hilbert},
+                "the SystemC model has no such order of packets");
+  ensure_one_of(assignment, {Assignment::dynamic, Assignment::interleaved, Assignment::blocks},
+                "the SystemC model has no such assignment");
+}
+
+void refuse(const memory::LayoutConfig& layout, const memory::BankConfig& banks,
+            const processors::LocalMemoryConfig& local) {
+  using memory::NodeOrder;
+  [[maybe_unused]] const auto& [node, entry, primitive, quadric, material, texel, pixel, record_alignment,
+                                section_alignment, order] = layout;
+  [[maybe_unused]] const auto& [count, interleave, clock, access_cycles, busy_cycles] = banks;
+  [[maybe_unused]] const auto& [local_clock, width, local_access_cycles, cycles_per_beat] = local;
+  ensure_one_of(order, {NodeOrder::breadth_first, NodeOrder::depth_first},
+                "the SystemC model has no such order of nodes");
+}
+
+}  // namespace
+
+void refuse_what_is_not_modelled(const processors::MachineConfig& config) {
+  using processors::Placement;
+  // network, messages, pipeline and space have a meaning only in schemes that are refused.
+  [[maybe_unused]] const auto& [clusters, nodes, clock, operations, word_bytes, write_buffer, layout, cache,
+                                placement, local, interconnect, banks, packets, host, build, scheme, network,
+                                messages, pipeline, space] = config;
+  sim::ensure(scheme == processors::Scheme::image, "the SystemC model has the image scheme only");
+  sim::ensure(build.sharing == processors::Sharing::given, "the SystemC model's tree is given");
+  ensure_one_of(placement, {Placement::shared, Placement::replicated},
+                "the SystemC model has no such placement");
+  refuse(cache);
+  refuse(interconnect);
+  refuse(packets, host);
+  refuse(layout, banks, local);
+}
+
+}  // namespace marti::oracle
