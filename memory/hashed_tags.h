@@ -39,6 +39,7 @@ class HashedTags {
     View(HashedTags& tags, std::uint32_t cache) : tags_(&tags), cache_(cache) {}
     bool access(std::uint32_t line) const { return tags_->access(cache_, line); }
     bool touch(std::uint32_t line) const { return tags_->touch(cache_, line); }
+    [[nodiscard]] bool holds(std::uint32_t line) const { return tags_->holds(cache_, line); }
     bool remove(std::uint32_t line) const { return tags_->remove(cache_, line); }
 
    private:
@@ -77,6 +78,11 @@ class HashedTags {
     }
     use(set, way);
     return false;
+  }
+
+  [[nodiscard]] bool holds(std::uint32_t cache, std::uint32_t line) const {
+    const std::size_t set = std::size_t{cache} * sets_ + index_(line);
+    return find(table_.data() + set * slots_, ways_of_sets_.data() + set * ways_, line) != empty;
   }
 
   bool touch(std::uint32_t cache, std::uint32_t line) {

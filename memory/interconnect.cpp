@@ -1,5 +1,6 @@
 #include "memory/interconnect.h"
 
+#include "memory/arbitrated_bus.h"
 #include "memory/bus.h"
 #include "memory/crossbar.h"
 #include "memory/ideal.h"
@@ -9,6 +10,10 @@ namespace marti::memory {
 
 void Interconnect::reply(std::uint32_t /*port*/) {
   throw sim::InternalError("a reply event for an interconnect that posts none");
+}
+
+void Interconnect::proceed(std::uint32_t /*port*/, std::uint32_t /*sequence*/) {
+  throw sim::InternalError("an event of the memory's own for an interconnect that posts none");
 }
 
 std::unique_ptr<Interconnect> make_interconnect(const InterconnectConfig& config, const BankConfig& banks,
@@ -27,6 +32,9 @@ std::unique_ptr<Interconnect> make_interconnect(const InterconnectConfig& config
       return std::make_unique<Crossbar>(config, banks, site);
     case InterconnectKind::bus:
       break;
+  }
+  if (config.arbitration != Arbitration::fifo) {
+    return std::make_unique<ArbitratedBus>(config, banks, site);
   }
   return std::make_unique<Bus>(config, banks, site);
 }

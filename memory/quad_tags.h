@@ -55,6 +55,10 @@ class QuadTags {
       }
       return match != 0;
     }
+    /// As SetTags::View::holds.
+    [[nodiscard]] bool holds(std::uint32_t line) const {
+      return ways_that_hold(sets_[index_(line)], line) != 0;
+    }
     /// As SetTags::View::remove.
     bool remove(std::uint32_t line) const {
       const std::size_t at = index_(line);

@@ -60,6 +60,8 @@ class SetTags {
     bool access(std::uint32_t line) const { return tags_->access(cache_, line); }
     /// The same, but a line that is not there is not brought in.
     bool touch(std::uint32_t line) const { return tags_->touch(cache_, line); }
+    /// Whether `line` is there; changes nothing.
+    [[nodiscard]] bool holds(std::uint32_t line) const { return tags_->holds(cache_, line); }
     /// Takes `line` out; true when it was there. Its way is empty, and empty ways are filled first.
     bool remove(std::uint32_t line) const { return tags_->remove(cache_, line); }
 
@@ -107,6 +109,12 @@ class SetTags {
 
   std::uint32_t* set_of(std::uint32_t cache, std::uint32_t line) {
     return tags_.data() + (std::size_t{cache} * sets_ + index_(line)) * (Ways == 0 ? ways_ : Ways);
+  }
+
+  bool holds(std::uint32_t cache, std::uint32_t line) {
+    const std::uint32_t* const tags = set_of(cache, line);
+    const std::uint32_t* const end = tags + (Ways == 0 ? ways_ : Ways);
+    return std::find(tags, end, line) != end;
   }
 
   bool touch(std::uint32_t cache, std::uint32_t line) {

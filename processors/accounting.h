@@ -46,7 +46,7 @@ struct StepCounts {
   std::int64_t refraction_rays = 0;
   std::int64_t branches = 0;
   std::int64_t leaves = 0;
-  std::int64_t lists = 0;         ///< leaves whose object list was read: those with at least one test
+  std::int64_t lists = 0;         ///< leaves whose object list was read: those of which entries were read
   std::int64_t tests = 0;         ///< all of them
   std::int64_t sphere_tests = 0;  ///< of these, spheres
   std::int64_t cone_tests = 0;    ///< of these, cylinders and cones

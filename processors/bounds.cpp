@@ -146,6 +146,9 @@ void check_bounds(const MachineConfig& config, const MachineResult& result) {
 }
 
 std::optional<Prediction> predict(const MachineConfig& config, const MachineResult& result) {
+  if (config.ports_of_node() > 1) {
+    return std::nullopt;
+  }
   std::optional<Prediction> longest;
   for (std::uint32_t cluster = 0; cluster < result.clusters.size(); ++cluster) {
     if (result.clusters[cluster].interconnect.reads == 0) {

@@ -48,7 +48,7 @@ struct Prediction {
 };
 
 /// Of the cluster for which the mean values predict the longest frame; nothing when no node reads over an
-/// interconnect or the frame takes no time.
+/// interconnect, the frame takes no time, or nodes have several reads outstanding (contexts, prefetching).
 [[nodiscard]] std::optional<Prediction> predict(const MachineConfig& config, const MachineResult& result);
 
 }  // namespace marti::processors

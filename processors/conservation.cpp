@@ -29,6 +29,34 @@ void check_node(const NodeStatistics& node, sim::Ticks end, std::size_t number) 
           "tests of spheres, cylinders and cones are tests");
 }
 
+void check_distributed(const ClusterResult& cluster) {
+  if (!cluster.distributed) {
+    return;
+  }
+  const auto& [accesses, network] = *cluster.distributed;
+  const memory::InterconnectStatistics& traffic = cluster.interconnect;
+  require(traffic.reads == accesses.local_reads + accesses.remote_reads &&
+              traffic.writes == accesses.local_writes + accesses.remote_writes,
+          "every access of a distributed memory is of the node's own or of another's");
+  require(network.messages == 2 * accesses.remote_reads + accesses.remote_writes,
+          "a read of another node's memory is two messages, a write one");
+  std::int64_t served = 0;
+  for (const memory::BankStatistics& bank : cluster.banks) {
+    served += bank.accesses;
+  }
+  require(served == traffic.reads + traffic.writes, "every access is served by one memory");
+}
+
+void check_contexts(const MachineConfig& config, const MachineResult& result) {
+  const sim::Ticks each = config.clock.cycles(config.switch_cycles);
+  for (std::size_t node = 0; node < result.contexts.nodes.size(); ++node) {
+    const ContextCounts& counts = result.contexts.nodes[node];
+    require(part(result.nodes[node].time, Activity::switching) == sim::multiply_ticks(each, counts.switches),
+            "switching is the switches' time");
+    require(counts.useful + counts.useless == counts.issued, "prefetched lines are useful or useless");
+  }
+}
+
 }  // namespace
 
 void check_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result) {
@@ -62,11 +90,13 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
     for (const memory::BankStatistics& bank : cluster.banks) {
       bank_waits += bank.waits.sum;
     }
+    check_distributed(cluster);
   }
   const BuildCounts built = result.build.counts();
-  const std::int64_t misses =
-      config.placement == Placement::shared ? misses_beyond_caches(config, result) - built.local_misses : 0;
-  require(reads == misses + built.locks, "every miss and every lock is one read of the interconnect");
+  const bool own_memories = config.placement == Placement::replicated || config.scheme == Scheme::space;
+  const std::int64_t misses = own_memories ? 0 : misses_beyond_caches(config, result) - built.local_misses;
+  require(reads == misses + built.locks + result.contexts.counts().issued,
+          "every miss, every lock and every prefetch is one read of the interconnect");
   check_second_level_laws(config, result);
   check_counts(result.counts, result.references(), result.time());
   require(writes == steps.pixels + built.writes,
@@ -79,6 +109,7 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
   require(part(time, Activity::interconnect_wait) <= interconnect_waits,
           "nodes wait for the interconnect no longer than its transactions do");
   require(part(time, Activity::bank_wait) <= bank_waits, "nodes wait for banks no longer than accesses do");
+  check_contexts(config, result);
   if (result.build.sharing != Sharing::given) {
     check_build(log, config, result.build);
   }

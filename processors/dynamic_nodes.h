@@ -25,6 +25,7 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
   using Base::input_;
   using Base::interconnect_of;
   using Base::last_write_done_;
+  using Base::make_write;
   using Base::port_of;
   using Base::post;
   using Base::spend;
@@ -63,6 +64,9 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
         break;
       case EventClass::reply:
         interconnect_of(node).reply(port_of(node));
+        break;
+      case EventClass::memory:
+        interconnect_of(node).proceed(port_of(node), event.sequence());
         break;
       case EventClass::read:
         if (cursors_[node].todo == Todo::lock) {
@@ -114,13 +118,21 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
     DynamicCursor& cursor = cursors_[node];
     cursor.before = false;
     start_up_ = std::max(start_up_, cursor.time);
-    if (--builders_left_ == 0) {
+    --builders_left_;
+    begin_frame_if_ready();
+  }
+
+  void writes_are_known() { begin_frame_if_ready(); }
+
+  void begin_frame_if_ready() {
+    if (!begun_ && builders_left_ == 0 && Base::all_writes_known()) {
       start_up_ = std::max(start_up_, end_);
       begin_frame();
     }
   }
 
   void begin_frame() {
+    begun_ = true;
     for (const std::uint32_t node : order_) {
       const sim::Ticks wait = start_up_ - cursors_[node].time;
       spend(node, Activity::dispatch_wait, wait);
@@ -240,7 +252,7 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
     if constexpr (Caches::present) {
       take_out(node, address);
     }
-    interconnect_of(node).write({port_of(node), address, bytes});
+    make_write(node, address, bytes);
     walker_.pass(cursor);
     if (walker_.publishes(cursor)) {
       publish(node);
@@ -278,6 +290,7 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
   sim::LargeVector<BuildCounts> built_;
   std::vector<std::uint32_t> order_;  // in which first events are posted; it changes nothing
   std::uint32_t builders_left_ = 0;
+  bool begun_ = false;
   sim::Ticks start_up_ = 0;
   sim::Ticks start_up_wait_ = 0;
 };

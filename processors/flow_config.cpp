@@ -40,7 +40,7 @@ PipelineConfig default_stages(std::uint32_t nodes) {
   PipelineConfig pipeline;
   const std::uint64_t n = nodes;
   pipeline.shade = static_cast<std::uint32_t>(std::max<std::uint64_t>(1, n * 2 / 16));
-  pipeline.nearest = static_cast<std::uint32_t>(std::max<std::uint64_t>(1, n * 6 / 16));
+  pipeline.nearest = static_cast<std::uint32_t>(std::max<std::uint64_t>(1, n * 9 / 16));
   const std::uint32_t others = pipeline.shade + pipeline.nearest;
   pipeline.search = nodes > others ? nodes - others : 1;
   return pipeline;

@@ -25,8 +25,8 @@ struct MessageConfig {
 /// How many of each cluster's nodes are stages of each kind; the first ones search, then nearest, then shade.
 /// Together they are MachineConfig::nodes, each at least 1.
 struct PipelineConfig {
-  std::uint32_t search = 8;
-  std::uint32_t nearest = 6;
+  std::uint32_t search = 5;
+  std::uint32_t nearest = 9;
   std::uint32_t shade = 2;
   std::uint32_t queue = 16;     ///< rays that wait before each node, at least 1
   std::uint32_t in_flight = 0;  ///< most rays admitted at a time; 0: as many as cannot deadlock

@@ -58,6 +58,7 @@ void check_flow_conservation(const WorkLog& log, const MachineConfig& config, co
 
   FlowCounts sum;
   for (const FlowCounts& node : flow.nodes) {
+    require_equal(node.taken + node.made, node.passed_on + node.ended, "what comes to a node leaves it");
     sim::merge(sum, node);
   }
   std::int64_t messages = 0;

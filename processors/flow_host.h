@@ -24,7 +24,8 @@ class FlowHost {
   /// At most `limit` rays may be in flight in each cluster.
   FlowHost(const WorkLog& log, const PacketList& packets, const MachineConfig& config, std::uint32_t limit);
 
-  /// Whether a camera ray is left for the cluster. Pixels without rays are passed over.
+  /// Whether a camera ray is left for the cluster. Pixels without rays are passed over. Draws a packet when
+  /// the cluster's is used up, so clusters ask in the order of simulated time, from an event each.
   [[nodiscard]] bool has_ray(std::uint32_t cluster);
   /// Not before this may the cluster's next camera ray be sent.
   [[nodiscard]] sim::Ticks ready_at(std::uint32_t cluster) const { return ways_[cluster].ready_at; }

@@ -28,9 +28,10 @@ MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const
     parts.networks.push_back(networks.back().get());
   }
   const std::unique_ptr<FlowNodes> nodes = make(parts);
-  const Interconnects interconnects = connect_memory(config, engine, *nodes);
+  const Interconnects interconnects =
+      connect_memory(config, engine, static_cast<std::uint8_t>(FlowEvent::memory), *nodes);
   for (const FlowEvent c : {FlowEvent::step, FlowEvent::reply, FlowEvent::read, FlowEvent::done,
-                            FlowEvent::wake, FlowEvent::admit}) {
+                            FlowEvent::wake, FlowEvent::admit, FlowEvent::memory}) {
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
   }
   nodes->start(options.start_seed);

@@ -14,15 +14,16 @@
 namespace marti::processors {
 
 /// Event classes of these schemes. At equal times progress inside a node comes first, then what was sent or
-/// has ended, then what wakes a node, then the host. Those they share with the image scheme keep their
-/// numbers, because the memory posts them.
+/// has ended, then what wakes a node, then the host, then the memory. Those they share with the image scheme
+/// keep their numbers, because the memory posts them.
 enum class FlowEvent : std::uint8_t {
   step = static_cast<std::uint8_t>(EventClass::step),
   reply = static_cast<std::uint8_t>(EventClass::reply),
   read = static_cast<std::uint8_t>(EventClass::read),
-  done = 8,   ///< a node has finished what it did for a ray
-  wake = 9,   ///< a node without work looks for some
-  admit = 10  ///< the host looks for camera rays that it may send; the component is the cluster
+  done = 8,    ///< a node has finished what it did for a ray
+  wake = 9,    ///< a node without work looks for some
+  admit = 10,  ///< the host looks for camera rays that it may send; the component is the cluster
+  memory = 11  ///< EventClass::memory
 };
 
 /// The nodes of all clusters, between which rays move.

@@ -53,7 +53,8 @@ struct FlowResult {
   std::int64_t most_in_flight = 0;                  ///< rays at a time, of all clusters
   std::uint64_t regions = 0;                        ///< space: cut out of the tree
   std::uint64_t top_nodes = 0;                      ///< space: tree nodes that every node has
-  std::uint64_t duplicated_primitives = 0;          ///< space: primitive records beyond one of each
+  std::uint64_t duplicated_primitives = 0;          ///< space: records beyond one of each, in a cluster
+  sim::Ticks sampling_work = 0;                     ///< space: computing of a pre-pass before the frame
 };
 
 }  // namespace marti::processors

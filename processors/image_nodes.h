@@ -52,6 +52,9 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
       case EventClass::reply:
         interconnect_of(node).reply(port_of(node));
         break;
+      case EventClass::memory:
+        interconnect_of(node).proceed(port_of(node), event.sequence());
+        break;
       case EventClass::read:
         read(node);
         break;

@@ -34,10 +34,16 @@ struct Cursor {
   Packet packet;
   memory::RecordKind kind = memory::RecordKind::node;
   Origin origin;  ///< of the current record; kept only where it is counted
+  /// Guarded caches only: the branch whose record was visited last and whose children may be prefetched.
+  std::uint32_t branch = no_branch;
+
+  static constexpr std::uint32_t no_branch = 0xffffffffU;
 };
 
-/// Why a walk stopped: after a hit (only without running ahead), at a miss, or at the end of its words.
-enum class Stop : std::uint8_t { hit, miss, end };
+/// Why a walk stopped: after a hit (only without running ahead), at a miss, or at the end of its words. due,
+/// with guarded caches only: the reference that comes next is of a line that may be under way, or a branch
+/// was read whose children are to be prefetched.
+enum class Stop : std::uint8_t { hit, miss, end, due };
 
 inline void spend(Cursor& cursor, sim::Ticks each, std::int64_t count) {
   cursor.time = sim::add_ticks(cursor.time, sim::multiply_ticks(each, count));

@@ -8,6 +8,7 @@
 
 #include "processors/accounting.h"
 #include "processors/cache_counting.h"
+#include "processors/lines_under_way.h"
 #include "processors/local_memory.h"
 #include "processors/log_cursor.h"
 #include "processors/node_caches.h"
@@ -15,13 +16,13 @@
 #include "processors/program/work_log.h"
 #include "processors/replay_input.h"
 #include "processors/second_level.h"
-#include "processors/stages.h"
 #include "processors/step_time.h"
 #include "processors/visit_plan.h"
 
 namespace marti::processors {
 
-/// `Caches` is one of node_caches.h.
+/// `Caches` is one of node_caches.h, those guarded (guarded_caches.h), or those that count
+/// (counted_caches.h).
 template <class Caches>
 class LogWalker {
  public:
@@ -40,15 +41,16 @@ class LogWalker {
         local_database_(input.config.placement == Placement::replicated),
         second_level_(input.config),
         passes_misses_on_(!local_database_ || second_level_.present()) {
-    if (Caches::present && !counted && !input.step_by_step) {
+    if (Caches::present && !counted && !guarded && !input.step_by_step) {
       plan_ = plan_visits(input.log, input.layout, input.node_rank, unit_shift_, ticks_);
       plan_limit_ = plan_.empty() ? 0 : 2U << operand_bits;
     }
   }
 
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
-  [[nodiscard]] const Caches& caches() const { return caches_; }
   [[nodiscard]] const PrivateSecondLevel& second_level() const { return second_level_; }
+  [[nodiscard]] Caches& caches() { return caches_; }
+  [[nodiscard]] const Caches& caches() const { return caches_; }
 
   /// Takes `node` on from its cursor. Without RunAhead it stops after every reference.
   template <bool RunAhead>
@@ -64,45 +66,6 @@ class LogWalker {
     } while (RunAhead);
     flush(tally, statistics);
     return stop;
-  }
-
-  /// Begins a visit to the leaf at cursor.word as far as its own record; `advance` over no words (word equal
-  /// to word_end) reads it. cursor.word stays at the leaf, for begin_objects.
-  void begin_record(Cursor& cursor, NodeStatistics& statistics) const {
-    const std::uint32_t leaf = operand_of(*cursor.word);
-    ++statistics.steps.leaves;
-    spend(cursor, ticks_.leaf, 1);
-    if (const Visit* const visit = planned(*cursor.word)) {
-      const std::uint32_t lines = visit->counts.of(VisitCount::node_line);
-      hits_of(statistics, memory::RecordKind::node) += lines;
-      begin_lines(cursor, visit->begin, lines);
-      return;
-    }
-    cursor.kind = memory::RecordKind::node;
-    cursor.at = input_.layout.address(cursor.kind, rank_ == nullptr ? leaf : rank_[leaf]);
-    cursor.end = cursor.at + node_bytes_;
-  }
-
-  /// Begins the rest of that visit, perhaps at another node: the leaf's list and its tests. cursor.word goes
-  /// behind the leaf; `advance` over no words reads and tests.
-  void begin_objects(Cursor& cursor, NodeStatistics& statistics) const {
-    const std::uint32_t* const word = cursor.word;
-    cursor.word += step_words(word);
-    if (const Visit* const visit = planned(*word)) {
-      // The whole visit but what begin_record counted.
-      const std::uint32_t lines = visit->counts.of(VisitCount::node_line);
-      add_visits(visit->counts, 1, input_.log.mailboxes, statistics);
-      --statistics.steps.leaves;
-      hits_of(statistics, memory::RecordKind::node) -= lines;
-      begin_lines(cursor, visit->begin + lines, visit->lines - lines);
-      return;
-    }
-    cursor.list_count = entries_read(word, input_.log.topology);
-    statistics.steps.lists += cursor.list_count != 0 ? 1 : 0;
-    cursor.entry = entries_ + topology_[operand_of(*word)].first;
-    cursor.entry_end = cursor.entry + cursor.list_count;
-    cursor.tested = step_of(*word) == Step::mailed_leaf ? word + 2 : nullptr;
-    cursor.entry_number = 0;
   }
 
   /// The steps of a pixel are done; what is left is to convert and store it.
@@ -141,25 +104,12 @@ class LogWalker {
     }
   }
 
- private:
+ protected:
   using View = typename Caches::View;
-  static constexpr bool counted = requires { Caches::counted; };  ///< counted_caches.h
+  static constexpr bool guarded = requires { Caches::guarded; };
+  static constexpr bool counted = requires { Caches::counted; };
 
   static bool in_visit(const Cursor& cursor) { return cursor.line != cursor.line_end; }
-
-  // The plan of a whole leaf's visit; null when it has to be taken record by record.
-  [[nodiscard]] const Visit* planned(std::uint32_t word) const {
-    if (word >= plan_limit_) {
-      return nullptr;
-    }
-    const Visit& visit = plan_.visits[operand_of(word)];
-    return visit.lines == 0 ? nullptr : &visit;
-  }
-  void begin_lines(Cursor& cursor, std::uint32_t first, std::uint32_t lines) const {
-    cursor.line = plan_.lines.data() + first;
-    cursor.line_end = cursor.line + lines;
-    cursor.tests_begun = 0;
-  }
 
   void flush(VisitTally& tally, NodeStatistics& statistics) const {
     add_visits(tally.counts, tally.visits, input_.log.mailboxes, statistics);
@@ -174,6 +124,9 @@ class LogWalker {
         !finish_leaf<RunAhead>(cache, cursor, statistics, stop)) {
       return stop;
     }
+    if (branch_read(cache, cursor, stop)) {
+      return stop;
+    }
     while (cursor.word != cursor.word_end) {
       if constexpr (RunAhead && Caches::present) {
         if (!visit_planned(cache, cursor, statistics, tally, stop)) {
@@ -183,11 +136,24 @@ class LogWalker {
           break;
         }
       }
-      if (!take_step<RunAhead>(cache, cursor, statistics, *cursor.word++, stop)) {
+      if (!take_step<RunAhead>(cache, cursor, statistics, *cursor.word++, stop) ||
+          branch_read(cache, cursor, stop)) {
         return stop;
       }
     }
     return Stop::end;
+  }
+
+  // A branch's record has been read: true when the node has to stop to prefetch its children.
+  static bool branch_read(View cache, Cursor& cursor, Stop& stop) {
+    if constexpr (guarded) {
+      if (cursor.branch != Cursor::no_branch && cache.wants_children(cursor.branch)) {
+        stop = Stop::due;
+        return true;
+      }
+      cursor.branch = Cursor::no_branch;
+    }
+    return false;
   }
 
   // Takes all planned visits up to the next step that has to be taken record by record, with what it needs
@@ -237,7 +203,9 @@ class LogWalker {
   }
 
   [[gnu::always_inline]] bool look_up(View cache, const std::uint32_t* line) const {
-    if constexpr (Caches::by_kind) {
+    if constexpr (counted) {
+      return cache.access(kind_of_label(label_of(line)), *line, Origin{});  // never: nothing is planned then
+    } else if constexpr (Caches::by_kind) {
       return cache.access(kind_of_label(label_of(line)), *line);
     } else {
       return cache.access(memory::RecordKind::node, *line);  // such caches do not look at the kind
@@ -306,6 +274,12 @@ class LogWalker {
     while (cursor.at < cursor.end) {
       const memory::Address unit = cursor.at >> unit_shift_;
       cursor.kind = kind;
+      if constexpr (guarded) {
+        if (cache.awaits(kind, static_cast<std::uint32_t>(unit), cursor.time) != LinesUnderWay::none) {
+          stop = Stop::due;
+          return false;
+        }
+      }
       if (access(cache, cursor, static_cast<std::uint32_t>(unit))) {
         ++hits_of(statistics, kind);
         spend(cursor, ticks_.hit, 1);
@@ -403,6 +377,9 @@ class LogWalker {
       case Step::branch:
         ++steps.branches;
         spend(cursor, ticks_.branch, 1);
+        if constexpr (guarded) {
+          cursor.branch = operand;
+        }
         return refer_node<RunAhead>(cache, cursor, statistics, operand, stop);
       case Step::leaf:
         return take_leaf<RunAhead>(cache, cursor, statistics, operand, topology_[operand].count, nullptr,

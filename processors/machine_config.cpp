@@ -5,6 +5,7 @@
 
 #include "memory/tags.h"
 #include "processors/cache_counting.h"
+#include "processors/memory_system.h"
 #include "processors/second_level.h"
 #include "sim/error.h"
 
@@ -19,6 +20,46 @@ std::uint64_t tag_bytes(const memory::CacheConfig& cache) {
   const std::uint64_t tree_bytes =
       cache.replacement == memory::Replacement::plru ? 8 * std::uint64_t{shape.sets} + shape.lines() / 8 : 0;
   return shape.lines() * bytes_a_line + tree_bytes;
+}
+
+// A tree that is built while others read it needs a memory that serves in the order of asking.
+void check_order(const MachineConfig& config) {
+  if (config.build.sharing != Sharing::shared || !writes_done_later(config)) {
+    return;
+  }
+  if (config.placement == Placement::distributed) {
+    throw sim::UserError(
+        "build.sharing: a read may overtake another node's write in the network, so nodes cannot share a "
+        "tree "
+        "that is built in a distributed memory (database.placement = \"distributed\"); use \"private\" or "
+        "\"none\"");
+  }
+  throw sim::UserError(
+      "build.sharing: a read may overtake another node's write on a bus that is not granted first come first "
+      "served, so nodes cannot share a tree that is built; use interconnect.arbitration = \"fifo\", or "
+      "\"private\" or \"none\"");
+}
+
+void check_distribution(const MachineConfig& config) {
+  const DistributionConfig& distribution = config.distribution;
+  if (config.scheme != Scheme::image) {
+    throw sim::UserError(
+        "database.placement: \"distributed\" is for machine.scheme = \"image\"; where rays move, each node "
+        "holds what it needs");
+  }
+  if (!std::has_single_bit(distribution.interleave)) {
+    throw sim::UserError("database.interleave: must be a power of two");
+  }
+  const bool cached = config.cache.organisation != CacheOrganisation::none;
+  const std::uint32_t unit = cached ? config.cache.cache.line : config.banks.interleave;
+  if (distribution.interleave < unit) {
+    throw sim::UserError("database.interleave: must be at least " +
+                         (cached ? "a cache line" : std::string("what one reference reads without a cache")) +
+                         ", " + std::to_string(unit) + " bytes");
+  }
+  if (distribution.header_bytes == 0 || config.network.width == 0) {
+    throw sim::UserError("messages and the links of a network must be at least one byte wide");
+  }
 }
 
 }  // namespace
@@ -50,8 +91,25 @@ std::uint64_t host_bytes(const MachineConfig& config) {
   if (config.l2.sharing == SecondLevel::private_caches) {
     tags += tag_bytes(second_level_cache(config)) + sizeof(memory::CacheCounters);
   }
+  std::uint64_t homes = 0;
+  if (config.placement == Placement::distributed) {
+    constexpr std::uint64_t bytes_a_home = 900;
+    homes = config.all_nodes() * bytes_a_home +
+            config.clusters * memory::network_bytes(config.network, config.nodes);
+  }
+  if (config.scheme != Scheme::image) {
+    constexpr std::uint64_t bytes_a_ray = 96;  // with its part of its pixel's tree
+    homes += config.clusters * memory::network_bytes(config.network, config.nodes) +
+             config.all_nodes() * bytes_a_ray * (1 + std::uint64_t{config.pipeline.queue});
+  }
+  constexpr std::uint64_t bytes_a_context = 200;
+  constexpr std::uint64_t bytes_a_port = 80;
+  const std::uint64_t contexts =
+      config.ports_of_node() == 1 ? 0
+                                  : config.contexts * bytes_a_context + config.ports_of_node() * bytes_a_port;
   // At most 2^24 nodes of five caches of 2^28 lines: this cannot overflow.
-  return config.all_nodes() * (bytes_a_node + config.write_buffer * sizeof(sim::Ticks) + tags);
+  return homes +
+         config.all_nodes() * (bytes_a_node + contexts + config.write_buffer * sizeof(sim::Ticks) + tags);
 }
 
 void check(const MachineConfig& config) {
@@ -61,6 +119,7 @@ void check(const MachineConfig& config) {
   if (std::uint64_t{config.clusters} * config.nodes > most_nodes) {
     throw sim::UserError("a machine of more than 2^24 nodes");
   }
+  check_contexts(config);
   check_flow(config);
   if (config.write_buffer == 0 || config.word_bytes == 0) {
     throw sim::UserError("the write buffer and the word must not be empty");
@@ -70,7 +129,12 @@ void check(const MachineConfig& config) {
         "build.sharing: nodes with a database each (database.placement = \"replicated\") have no tree to "
         "share; use \"private\" or \"none\"");
   }
-  if ((config.placement == Placement::replicated || config.build.sharing == Sharing::private_trees) &&
+  check_order(config);
+  if (config.placement == Placement::distributed) {
+    check_distribution(config);
+  }
+  if ((config.placement != Placement::shared || config.build.sharing == Sharing::private_trees ||
+       config.scheme == Scheme::space) &&
       config.local.width == 0) {
     throw sim::UserError("local memory must be at least one byte wide");
   }

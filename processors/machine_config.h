@@ -12,6 +12,7 @@
 #include "memory/layout.h"
 #include "memory/network.h"
 #include "processors/build_config.h"
+#include "processors/context_config.h"
 #include "processors/cost_model.h"
 #include "processors/count_config.h"
 #include "processors/flow_config.h"
@@ -23,9 +24,16 @@
 namespace marti::processors {
 
 /// Where the database is. shared: one copy in the cluster's memory behind its interconnect. replicated: a
-/// full copy in every node's own memory; only pixels cross the interconnect.
-enum class Placement : std::uint8_t { shared, replicated };
-inline constexpr std::array<std::string_view, 2> placement_names = {"shared", "replicated"};
+/// full copy in every node's own memory; only pixels cross the interconnect. distributed: one copy, frame
+/// buffer included, spread over the memories of the cluster's nodes and reached over their network.
+enum class Placement : std::uint8_t { shared, replicated, distributed };
+inline constexpr std::array<std::string_view, 3> placement_names = {"shared", "replicated", "distributed"};
+
+/// How a distributed database is spread and asked for. Times are those of LocalMemoryConfig.
+struct DistributionConfig {
+  std::uint32_t interleave = 32;   ///< bytes in a row at one node; a power of two, at least a line
+  std::uint32_t header_bytes = 8;  ///< of each message; a request is nothing else
+};
 
 /// none: every reference goes to memory. unified: one cache for all records. split: one for nodes, one for
 /// object lists, one for primitives, one for materials and texels, each with its own size.
@@ -45,7 +53,7 @@ struct NodeCacheConfig {
 };
 
 /// The memory of a replicated database or of private trees: no contention, one line after `access_cycles`
-/// plus its beats.
+/// plus its beats. Of a distributed database: the same, one access after the other.
 struct LocalMemoryConfig {
   sim::Clock clock = sim::Clock::from_hertz(33e6);
   std::uint32_t width = 8;  ///< bytes a beat
@@ -60,10 +68,14 @@ struct MachineConfig {
   OperationCycles operations;
   std::uint32_t word_bytes = 4;    ///< what one load or store moves
   std::uint32_t write_buffer = 4;  ///< posted pixel writes a node may have outstanding, at least 1
+  std::uint32_t contexts = 1;      ///< packets a node works on by turns, 1 to most_contexts
+  std::int64_t switch_cycles = 1;  ///< of the node's clock, to take up another context
+  PrefetchConfig prefetch;
   memory::LayoutConfig layout;
   NodeCacheConfig cache;
   SecondLevelConfig l2;
   Placement placement = Placement::shared;
+  DistributionConfig distribution;
   LocalMemoryConfig local;
   memory::InterconnectConfig interconnect;
   memory::BankConfig banks;
@@ -71,13 +83,17 @@ struct MachineConfig {
   HostConfig host;
   BuildConfig build;
   Scheme scheme = Scheme::image;
-  memory::NetworkConfig network;  ///< pipeline and space
+  memory::NetworkConfig network;  ///< pipeline, space and a distributed database
   MessageConfig messages;         ///< pipeline and space
   PipelineConfig pipeline;
   SpaceConfig space;
   CountConfig count;
 
   [[nodiscard]] std::uint32_t all_nodes() const { return clusters * nodes; }
+  /// Reads a node may have outstanding: one for each context, then one for each prefetch.
+  [[nodiscard]] std::uint32_t ports_of_node() const {
+    return contexts + (prefetch.on() ? prefetch.outstanding : 0);
+  }
 };
 
 /// What a machine's speed-up is measured against: the same with one cluster of one node. A single node has
@@ -90,6 +106,9 @@ inline constexpr std::uint32_t most_nodes = 1U << 24U;
 
 /// Host bytes that a replay of the machine takes for its nodes and their tags, roughly.
 [[nodiscard]] std::uint64_t host_bytes(const MachineConfig& config);
+
+/// The part of check() for contexts and prefetching.
+void check_contexts(const MachineConfig& config);
 
 /// check() for what only schemes other than image have; nothing with the image scheme.
 void check_flow(const MachineConfig& config);

@@ -13,6 +13,7 @@
 #include "processors/accounting.h"
 #include "processors/build_result.h"
 #include "processors/cache_counting.h"
+#include "processors/context_result.h"
 #include "processors/host.h"
 #include "processors/replay_input.h"
 #include "processors/second_level.h"
@@ -22,7 +23,8 @@ namespace marti::processors {
 
 /// Event classes. At equal times local progress comes before requests to the host, replies before new
 /// requests (an interconnect's data do not wait for an address of the same instant), reads before writes.
-enum class EventClass : std::uint8_t { step, dispatch, reply, read, write };
+/// `memory` is last: what the memory system does by itself when all requests of the instant are made.
+enum class EventClass : std::uint8_t { step, dispatch, reply, read, write, memory };
 
 /// The nodes of all clusters as one event handler; node n is port n % nodes of cluster n / nodes.
 class NodeArray : public sim::EventHandler {
@@ -45,6 +47,8 @@ class NodeArray : public sim::EventHandler {
   [[nodiscard]] virtual SecondLevelResult second_level() const { return {}; }
   /// After the run: what was asked to be counted beside hits and misses.
   [[nodiscard]] virtual CacheCountResult cache_counts() const { return {}; }
+  /// After the run: what contexts and prefetches did; nothing where there are none.
+  [[nodiscard]] virtual ContextResult context_result() const { return {}; }
   /// Host bytes per simulated node beside its cache tags.
   [[nodiscard]] virtual std::size_t bytes_per_node() const = 0;
 };

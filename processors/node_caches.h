@@ -32,6 +32,10 @@ class UnifiedCaches {
     [[gnu::always_inline]] bool touch(memory::RecordKind /*kind*/, std::uint32_t line) const {
       return tags_.touch(line);
     }
+    /// Whether a line is there; changes nothing.
+    [[nodiscard]] bool holds(memory::RecordKind /*kind*/, std::uint32_t line) const {
+      return tags_.holds(line);
+    }
     /// Takes a line out, whatever kinds of record it holds; how many copies there were.
     [[nodiscard]] std::int64_t remove(std::uint32_t line) const { return tags_.remove(line) ? 1 : 0; }
 
@@ -65,6 +69,9 @@ class SplitCaches {
     bool touch(memory::RecordKind kind, std::uint32_t line) const {
       return tags_[split_cache_of[static_cast<std::size_t>(kind)]].view(node_).touch(line);
     }
+    [[nodiscard]] bool holds(memory::RecordKind kind, std::uint32_t line) const {
+      return tags_[split_cache_of[static_cast<std::size_t>(kind)]].view(node_).holds(line);
+    }
     [[nodiscard]] std::int64_t remove(std::uint32_t line) const {
       std::int64_t removed = 0;
       for (Tags& tags : tags_) {
@@ -90,6 +97,7 @@ struct NoCaches {
   struct View {
     static bool access(memory::RecordKind /*kind*/, std::uint32_t /*line*/) { return false; }
     static bool touch(memory::RecordKind /*kind*/, std::uint32_t /*line*/) { return false; }
+    static bool holds(memory::RecordKind /*kind*/, std::uint32_t /*line*/) { return false; }
     static std::int64_t remove(std::uint32_t /*line*/) { return 0; }
   };
   [[nodiscard]] static View view(std::uint32_t /*node*/) { return {}; }

@@ -13,6 +13,8 @@ namespace marti::processors {
 
 [[nodiscard]] std::unique_ptr<NodeArray> make_image_nodes(const ReplayInput& input, sim::Engine& engine,
                                                           Host& host);
+[[nodiscard]] std::unique_ptr<NodeArray> make_context_nodes(const ReplayInput& input, sim::Engine& engine,
+                                                            Host& host);
 [[nodiscard]] std::unique_ptr<NodeArray> make_dynamic_nodes(const ReplayInput& input, sim::Engine& engine,
                                                             Host& host);
 

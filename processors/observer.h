@@ -6,7 +6,8 @@
 //     time at the end. Pieces of one node come in the order of time and without gaps from 0 to the end of the
 //     frame; pieces of no length may be left out. Nodes come in any order.
 //   - `missed` for the cache misses of a pixel, at the latest when the pixel or ray is done with.
-//   - `began_packet` when the host gives a node a packet, by schemes that have packets.
+//   - `began_packet` when a node begins a packet that the host gave it, by schemes that have packets.
+//   - `resumed_packet` when a node with several contexts goes back to a packet it has begun before.
 // Replay itself calls `begin` and `end`. Watching changes nothing that is simulated.
 #pragma once
 
@@ -65,6 +66,8 @@ class Observer {
   virtual void missed(std::uint32_t /*node*/, std::int64_t /*misses*/, PixelPlace /*pixel*/) {}
   /// The node has been given packet `packet` of ReplayInput::packets, and begins it at `start`.
   virtual void began_packet(std::uint32_t /*node*/, std::uint64_t /*packet*/, sim::Ticks /*start*/) {}
+  /// What the node does from now on is for this packet, which it has begun before.
+  virtual void resumed_packet(std::uint32_t /*node*/, std::uint64_t /*packet*/) {}
   /// The frame took until `time`; nothing comes after it.
   virtual void end(sim::Ticks /*time*/) {}
 };

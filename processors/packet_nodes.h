@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <random>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "processors/memory_system.h"
 #include "processors/node_array.h"
 #include "processors/observer.h"
 #include "sim/large_pages.h"
@@ -18,7 +20,8 @@ namespace marti::processors {
 
 /// `Derived` has run(node), which lets a node work until it needs something shared, read_done(node, service),
 /// and for_pixel(cursor), whether what the node does now is for the pixel at its cursor. `Cursor` has time,
-/// word, word_end, writes, x, y and packet.
+/// word, word_end, writes, x, y and packet. Where a node has several ports (MachineConfig::ports_of_node),
+/// read_done gets the port, counted through all clusters.
 template <class Derived, class Cursor>
 class PacketNodes : public NodeArray {
  public:
@@ -36,10 +39,12 @@ class PacketNodes : public NodeArray {
         host_(host),
         cursors_(input.config.all_nodes()),
         statistics_(input.config.all_nodes()),
-        writes_(std::size_t{input.config.all_nodes()} * input.config.write_buffer) {
+        ports_(input.config.ports_of_node()),
+        writes_(std::size_t{input.config.all_nodes()} * input.config.write_buffer),
+        late_(writes_done_later(input.config) ? input.config.all_nodes() : 0) {
     clients_.reserve(input.config.clusters);
     for (std::uint32_t cluster = 0; cluster < input.config.clusters; ++cluster) {
-      clients_.emplace_back(derived(), cluster * input.config.nodes);
+      clients_.emplace_back(derived(), cluster * input.config.nodes * ports_, ports_);
     }
   }
 
@@ -57,7 +62,10 @@ class PacketNodes : public NodeArray {
   std::uint32_t cluster_of(std::uint32_t node) const {
     return interconnects_.size() == 1 ? 0 : node / input_.config.nodes;
   }
-  std::uint32_t port_of(std::uint32_t node) const { return node - cluster_of(node) * input_.config.nodes; }
+  // The first of the node's ports, which posts its writes.
+  std::uint32_t port_of(std::uint32_t node) const {
+    return (node - cluster_of(node) * input_.config.nodes) * ports_;
+  }
   memory::Interconnect& interconnect_of(std::uint32_t node) { return *interconnects_[cluster_of(node)]; }
   void post(EventClass event_class, sim::Ticks time, std::uint32_t node) {
     engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(event_class), node));
@@ -107,12 +115,21 @@ class PacketNodes : public NodeArray {
   /// What all nodes take each: the cursor, statistics, an event, and the write buffer.
   [[nodiscard]] std::size_t common_bytes() const {
     return sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(sim::Event) +
-           input_.config.write_buffer * sizeof(sim::Ticks);
+           input_.config.write_buffer * sizeof(sim::Ticks) + (late_.empty() ? 0 : sizeof(LateWrites));
+  }
+
+  [[nodiscard]] PixelPlace place_of(std::uint32_t node) const { return {cursors_[node].x, cursors_[node].y}; }
+
+  void begin_pixel(Cursor& cursor) const {
+    const std::span<const std::uint32_t> words = input_.log.pixel(cursor.x, cursor.y);
+    cursor.word = words.data();
+    cursor.word_end = words.data() + words.size();
   }
 
   // Gives the node its next packet, or ends it.
   void dispatch(std::uint32_t node) {
     Cursor& cursor = cursors_[node];
+    watch_misses(node, {});  // those before the frame are no pixel's
     const std::optional<Grant> grant = host_.next(node, cursor.time);
     if (!grant) {
       statistics_[node].finish = cursor.time;
@@ -124,7 +141,6 @@ class PacketNodes : public NodeArray {
     const sim::Ticks asked = std::exchange(cursor.time, grant->start);
     if (input_.observer != nullptr) {
       watch(node, NodeState::dispatch_wait, asked, false);
-      watch_misses(node, {});
       input_.observer->began_packet(node, grant->packet, grant->start);
     }
     cursor.packet = input_.packets[grant->packet];
@@ -142,20 +158,34 @@ class PacketNodes : public NodeArray {
     if (room_at <= cursor.time) {
       return true;
     }
-    spend(node, Activity::queue_full_wait, room_at - cursor.time);
-    const sim::Ticks from = std::exchange(cursor.time, room_at);
-    watch(node, NodeState::queue_full_wait, from, derived().for_pixel(cursor));
-    post(EventClass::write, room_at, node);
+    if (room_at == not_known) {
+      late_[node].stalled = true;
+    } else {
+      wait_for_room(node, room_at);
+    }
     return false;
   }
+
+  // Posts a write for which there is room.
+  void make_write(std::uint32_t node, memory::Address address, std::uint32_t bytes) {
+    if (!late_.empty()) {
+      enter_write(node, not_known);
+      ++late_writes_;
+    }
+    interconnect_of(node).write({port_of(node), address, bytes});
+  }
+  // Whether it is known of every write when it is done.
+  [[nodiscard]] bool all_writes_known() const { return late_writes_ == 0; }
+  // The last of the writes of which it was not known is done. Derived may have its own.
+  void writes_are_known() {}
 
   // Posts the finished pixel and goes on to the next.
   void write_pixel(std::uint32_t node) {
     Cursor& cursor = cursors_[node];
     ++statistics_[node].writes;
     const std::uint64_t pixel = std::uint64_t{cursor.y} * input_.log.width + cursor.x;
-    interconnect_of(node).write({port_of(node), input_.layout.address(memory::RecordKind::pixel, pixel),
-                                 input_.layout.record_bytes(memory::RecordKind::pixel)});
+    make_write(node, input_.layout.address(memory::RecordKind::pixel, pixel),
+               input_.layout.record_bytes(memory::RecordKind::pixel));
     watch_misses(node, place_of(node));
     if (++cursor.x == cursor.packet.x1) {
       cursor.x = cursor.packet.x0;
@@ -175,45 +205,75 @@ class PacketNodes : public NodeArray {
   sim::LargeVector<NodeStatistics> statistics_;
   sim::Ticks end_ = 0;
   sim::Ticks last_write_done_ = 0;  // of the write posted last
+  std::uint32_t ports_;             // of each node
 
  private:
   // One cluster's ports, with port numbers turned into node numbers.
   class Client final : public memory::InterconnectClient {
    public:
-    Client(Derived& nodes, std::uint32_t first) : nodes_(nodes), first_(first) {}
+    Client(Derived& nodes, std::uint32_t first, std::uint32_t ports)
+        : nodes_(nodes), first_(first), ports_(ports) {}
     void read_done(std::uint32_t port, const memory::Service& service) override {
       nodes_.read_done(first_ + port, service);
     }
     void write_done(std::uint32_t port, sim::Ticks done) override {
-      static_cast<PacketNodes&>(nodes_).write_done(first_ + port, done);
+      const std::uint32_t all = first_ + port;
+      static_cast<PacketNodes&>(nodes_).write_done(ports_ == 1 ? all : all / ports_, done);
     }
 
    private:
     Derived& nodes_;
     std::uint32_t first_;
+    std::uint32_t ports_;
   };
 
   Derived& derived() { return static_cast<Derived&>(*this); }
 
-  [[nodiscard]] PixelPlace place_of(std::uint32_t node) const { return {cursors_[node].x, cursors_[node].y}; }
-
-  void begin_pixel(Cursor& cursor) const {
-    const std::span<const std::uint32_t> words = input_.log.pixel(cursor.x, cursor.y);
-    cursor.word = words.data();
-    cursor.word_end = words.data() + words.size();
+  void wait_for_room(std::uint32_t node, sim::Ticks room_at) {
+    Cursor& cursor = cursors_[node];
+    spend(node, Activity::queue_full_wait, room_at - cursor.time);
+    const sim::Ticks from = std::exchange(cursor.time, room_at);
+    watch(node, NodeState::queue_full_wait, from, derived().for_pixel(cursor));
+    post(EventClass::write, room_at, node);
   }
 
-  // Interconnects serve first come, first served, so they say during the write when it will be done.
-  void write_done(std::uint32_t node, sim::Ticks done) {
+  void enter_write(std::uint32_t node, sim::Ticks done) {
     Cursor& cursor = cursors_[node];
     const std::uint32_t depth = input_.config.write_buffer;
     writes_[std::size_t{node} * depth + cursor.writes] = done;
     cursor.writes = cursor.writes + 1 == depth ? 0 : cursor.writes + 1;
-    last_write_done_ = done;
-    end_ = std::max(end_, done);
   }
 
+  // Said during the write by what serves first come, first served; else later, for the oldest write first.
+  void write_done(std::uint32_t node, sim::Ticks done) {
+    last_write_done_ = done;
+    end_ = std::max(end_, done);
+    if (late_.empty()) {
+      enter_write(node, done);
+      return;
+    }
+    LateWrites& late = late_[node];
+    const std::uint32_t depth = input_.config.write_buffer;
+    writes_[std::size_t{node} * depth + late.oldest] = done;
+    late.oldest = late.oldest + 1 == depth ? 0 : late.oldest + 1;
+    if (std::exchange(late.stalled, false)) {
+      wait_for_room(node, done);
+    }
+    if (--late_writes_ == 0) {
+      derived().writes_are_known();
+    }
+  }
+
+  // Of a node whose writes may be done at a time that is not known when they are posted.
+  struct LateWrites {
+    std::uint32_t oldest = 0;  // entry of the write buffer of which it is known next
+    bool stalled = false;      // the node waits for that entry
+  };
+  static constexpr sim::Ticks not_known = std::numeric_limits<sim::Ticks>::max();
+
   sim::LargeVector<sim::Ticks> writes_;  // when each entry of each node's write buffer is free
+  sim::LargeVector<LateWrites> late_;    // empty where writes say at once when they are done
+  std::int64_t late_writes_ = 0;         // of which it is not known
   std::vector<Client> clients_;
   std::vector<memory::Interconnect*> interconnects_;
   std::vector<std::int64_t> seen_misses_;  // that the observer has been told of; empty without one

@@ -30,9 +30,7 @@ PipelineCore::PipelineCore(const FlowParts& parts)
 
 void PipelineCore::start(std::uint64_t seed) {
   for (const std::uint32_t cluster : first_order(seed)) {
-    if (host_.has_ray(cluster)) {
-      post(FlowEvent::admit, host_.ready_at(cluster), cluster);
-    }
+    post(FlowEvent::admit, host_.ready_at(cluster), cluster);
   }
 }
 
@@ -56,6 +54,9 @@ void PipelineCore::handle(const sim::Event& event) {
       break;
     case FlowEvent::admit:
       admit(component, event.time);
+      break;
+    case FlowEvent::memory:
+      interconnect_of(component).proceed(port_of(component), event.sequence());
       break;
   }
 }

@@ -18,6 +18,7 @@ struct FlowRay {
   std::uint32_t next = 0;    ///< in the queue, or in the list of free entries
   std::uint32_t tree = 0;    ///< of its pixel
   std::uint32_t number = 0;  ///< in the tree
+  std::uint32_t from = 0;    ///< who sends it when a slot is free
   RayKind kind = RayKind::camera;
   bool record_read = false;  ///< of the leaf at `word`
   bool lit = false;          ///< a light's contribution was added
@@ -41,6 +42,8 @@ class RayPool {
     rays_[ray].next = free_;
     free_ = ray;
   }
+  /// Host bytes of all entries.
+  [[nodiscard]] std::size_t bytes() const { return rays_.size() * sizeof(FlowRay); }
   [[nodiscard]] FlowRay& operator[](std::uint32_t ray) { return rays_[ray]; }
   [[nodiscard]] const FlowRay& operator[](std::uint32_t ray) const { return rays_[ray]; }
 

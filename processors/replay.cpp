@@ -10,6 +10,7 @@
 #include "processors/packets.h"
 #include "processors/pipeline.h"
 #include "processors/replay_parts.h"
+#include "processors/space.h"
 #include "sim/engine.h"
 #include "sim/error.h"
 
@@ -66,20 +67,21 @@ TimeDivision MachineResult::time() const {
 
 MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
   check(config);
+  check_prefetch(config.prefetch, log.traversal);
   switch (config.scheme) {
     case Scheme::image:
       break;
     case Scheme::pipeline:
       return replay_pipeline(log, config, options);
     case Scheme::space:
-      throw sim::UserError("machine.scheme: \"space\" cannot be timed");
+      return replay_space(log, config, options);
   }
   std::optional<TreePlan> plan = plan_of(log, config, options);
   const memory::Layout layout = layout_of(log, config, plan);
   const PacketList packets(log.width, log.height, config.packets);
   const std::vector<std::uint32_t> rank = node_ranks(log, config);
   sim::Engine engine;
-  engine.reserve(std::size_t{config.all_nodes()} + 1);
+  engine.reserve(std::size_t{config.all_nodes()} * config.contexts + 1);
   Host host(config.host, packets.size(), config.all_nodes());
   const ReplayInput input = {log,
                              config,
@@ -89,14 +91,16 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
                              options.step_by_step,
                              plan ? &*plan : nullptr,
                              options.report_built,
-                             options.observer};
+                             options.observer,
+                             options.with_contexts};
   if (options.observer != nullptr) {
     options.observer->begin(input);
   }
   const std::unique_ptr<NodeArray> nodes = make_node_array(input, engine, host);
-  const Interconnects interconnects = connect_memory(config, engine, *nodes);
-  for (const EventClass c :
-       {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read, EventClass::write}) {
+  const Interconnects interconnects =
+      connect_memory(config, engine, static_cast<std::uint8_t>(EventClass::memory), *nodes);
+  for (const EventClass c : {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read,
+                             EventClass::write, EventClass::memory}) {
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
   }
   nodes->start(options.start_seed);

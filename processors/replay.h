@@ -2,13 +2,16 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "memory/distributed.h"
 #include "memory/interconnect.h"
 #include "processors/accounting.h"
 #include "processors/build_result.h"
 #include "processors/build_start.h"
 #include "processors/cache_counting.h"
+#include "processors/context_result.h"
 #include "processors/flow_result.h"
 #include "processors/host.h"
 #include "processors/machine_config.h"
@@ -19,10 +22,18 @@ namespace marti::processors {
 
 class Observer;
 
-/// What one cluster's interconnect and banks counted.
+/// What a cluster's distributed memory counted beside what every interconnect does.
+struct DistributedResult {
+  memory::DistributedStatistics accesses;
+  memory::NetworkStatistics network;
+};
+
+/// What one cluster's interconnect and banks counted. Of a distributed memory: its network and each node's
+/// memory.
 struct ClusterResult {
   memory::InterconnectStatistics interconnect;
   std::vector<memory::BankStatistics> banks;
+  std::optional<DistributedResult> distributed{};
 };
 
 /// A timed frame. All figures are integers; ratios are left to whoever prints them.
@@ -33,6 +44,7 @@ struct MachineResult {
   HostStatistics host;
   BuildResult build;        ///< empty when the tree is given
   FlowResult flow;          ///< empty with the image scheme
+  ContextResult contexts;   ///< empty with one context and no prefetch
   SecondLevelResult l2;     ///< empty without a second level
   CacheCountResult counts;  ///< what MachineConfig::count asks for
   std::uint64_t packets = 0;
@@ -55,6 +67,8 @@ struct ReplayOptions {
   std::vector<BranchStart> starts{};
   bool report_built = false;     ///< fill BuildResult::built; empty all the same when the tree is given
   Observer* observer = nullptr;  ///< watches (processors/observer.h); same result
+  bool with_contexts = false;    ///< with a given tree: nodes that can hold several contexts, even for one;
+                                 ///< same result
 };
 
 /// Times `config` on `log`. Deterministic, single-threaded; many replays may share one log. Before it

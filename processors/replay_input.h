@@ -25,6 +25,7 @@ struct ReplayInput {
   const TreePlan* tree = nullptr;            ///< how the tree is built; null when it is given
   bool report_built = false;                 ///< say which branches are built at the end
   Observer* observer = nullptr;              ///< who watches; null: nobody
+  bool with_contexts = false;                ///< nodes that can hold several contexts, even for one
 };
 
 }  // namespace marti::processors

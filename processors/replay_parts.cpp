@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "memory/set_tags.h"
+#include "processors/memory_system.h"
 #include "processors/node_order.h"
 #include "sim/error.h"
 
@@ -36,14 +37,15 @@ std::vector<std::uint32_t> node_ranks(const WorkLog& log, const MachineConfig& c
                                                                     : std::vector<std::uint32_t>{};
 }
 
-Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine, NodeArray& nodes) {
+Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine, std::uint8_t memory_class,
+                             NodeArray& nodes) {
   Interconnects interconnects;
   std::vector<memory::Interconnect*> links;
+  const std::uint32_t ports = config.nodes * config.ports_of_node();
   for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
-    interconnects.push_back(memory::make_interconnect(
-        config.interconnect, banks_of(config),
-        {engine, nodes.client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * config.nodes,
-         config.nodes}));
+    interconnects.push_back(make_memory_system(
+        config, {engine, nodes.client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * ports,
+                 ports, memory_class}));
     links.push_back(interconnects.back().get());
   }
   nodes.connect(links);
@@ -57,6 +59,9 @@ MachineResult common_result(const MachineConfig& config, const sim::Engine& engi
   result.nodes = nodes.statistics();
   for (const auto& interconnect : interconnects) {
     result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
+    if (const memory::DistributedStatistics* const accesses = interconnect->distribution()) {
+      result.clusters.back().distributed = {*accesses, *interconnect->network_statistics()};
+    }
     if (const memory::SharedCacheStatistics* const cache = interconnect->cache_statistics()) {
       result.l2.caches.push_back(cache->lookups);
       result.l2.waits.push_back(cache->waits);
@@ -67,6 +72,7 @@ MachineResult common_result(const MachineConfig& config, const sim::Engine& engi
   }
   result.counts = nodes.cache_counts();
   result.build = nodes.build_result();
+  result.contexts = nodes.context_result();
   result.database_bytes = layout.database_bytes();
   result.copies = config.placement == Placement::replicated ? config.all_nodes() : config.clusters;
   result.events = engine.events();

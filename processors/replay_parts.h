@@ -29,9 +29,10 @@ namespace marti::processors {
 /// Each cluster's shared memory.
 using Interconnects = std::vector<std::unique_ptr<memory::Interconnect>>;
 
-/// Builds the interconnects of all clusters and connects the nodes to them.
+/// Builds the memory systems of all clusters, whose own events are of `memory_class`, and connects the nodes
+/// to them.
 [[nodiscard]] Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine,
-                                           NodeArray& nodes);
+                                           std::uint8_t memory_class, NodeArray& nodes);
 
 /// What every scheme's result has: the nodes after NodeArray::finish(), the memory, the database.
 [[nodiscard]] MachineResult common_result(const MachineConfig& config, const sim::Engine& engine,

@@ -29,15 +29,10 @@ void check_second_level(const MachineConfig& config) {
           "an ideal interconnect (interconnect.kind) has no memory behind it that a shared second "
           "level could stand before");
     }
-    if (config.scheme == Scheme::space) {
+    if (config.placement != Placement::shared || config.scheme == Scheme::space) {
       throw sim::UserError(
-          "with machine.scheme = \"space\" nodes read nothing from the shared memory; use \"private\" or "
-          "\"none\"");
-    }
-    if (config.placement == Placement::replicated) {
-      throw sim::UserError(
-          "nodes with a database each (database.placement = \"replicated\") read nothing from the "
-          "shared memory; use \"private\" or \"none\"");
+          "nodes read nothing from a shared memory with database.placement = \"replicated\" or "
+          "\"distributed\" or with machine.scheme = \"space\"; use \"private\" or \"none\"");
     }
   }
   try {

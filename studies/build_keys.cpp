@@ -82,6 +82,13 @@ BuildConfig read_build(sim::Config& config) {
                 "nodes with a database each (database.placement = \"replicated\") have no tree to share; use "
                 "\"private\" or \"none\"");
   }
+  if (build.sharing == Sharing::shared && config.choice_name("database.placement") == "distributed") {
+    config.fail(
+        "build.sharing",
+        "a read may overtake another node's write in the network, so nodes cannot share a tree that is "
+        "built in a distributed memory (database.placement = \"distributed\"); use \"private\" or "
+        "\"none\"");
+  }
   if (build.sharing == Sharing::none) {
     config.mark_unused_reason("build", chosen, "build.sharing");
     return build;
@@ -99,7 +106,7 @@ BuildConfig read_dynamic_build(sim::Config& config) {
     config.fail("build.sharing", "the study builds on demand: it must be \"shared\" or \"private\"");
   }
   build.sharing =
-      config.choice_name("database.placement") == "replicated" ? Sharing::private_trees : Sharing::shared;
+      config.choice_name("database.placement") == "shared" ? Sharing::shared : Sharing::private_trees;
   read_initial_tree(config, build);
   return build;
 }

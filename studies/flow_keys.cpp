@@ -88,7 +88,7 @@ void declare_flow_keys(sim::Schema& schema) {
   schema.section("pipeline", "stages of nodes between which rays go round (machine.scheme = \"pipeline\")");
   schema.integer(stages[0].first, 0, {0, processors::most_nodes}, "",
                  "of each cluster's nodes, those that walk the structure to the next leaf with objects; 0 in "
-                 "all three stages: 8, 6 and 2 sixteenths of the nodes");
+                 "all three stages: 5, 9 and 2 sixteenths of the nodes");
   schema.integer(stages[1].first, 0, {0, processors::most_nodes}, "", "those that test a leaf's objects");
   schema.integer(stages[2].first, 0, {0, processors::most_nodes}, "",
                  "those that shade hit points and make rays there");

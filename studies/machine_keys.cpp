@@ -11,8 +11,10 @@
 #include "sim/error.h"
 #include "studies/build_keys.h"
 #include "studies/cache_detail_keys.h"
+#include "studies/context_keys.h"
 #include "studies/flow_keys.h"
 #include "studies/network_keys.h"
+#include "studies/space_keys.h"
 
 namespace marti::studies {
 
@@ -70,11 +72,13 @@ void declare_node(Schema& schema) {
   schema.integer("machine.clusters", 1, {1, processors::most_nodes}, "",
                  "clusters, each with a copy of the database in its own shared memory");
   schema.integer("machine.nodes", 16, {1, processors::most_nodes}, "", "processor nodes in each cluster");
-  schema.section("node", "one processor node; it works in order and stalls on a miss");
+  schema.section("node",
+                 "one processor node; it works in order and stalls on a miss, unless it has other contexts");
   clock(schema, "node.clock", "clock of the node and its cache");
   schema.size("node.word", "4 B", {"1 B", "64 B"}, "what one load or store moves");
   schema.integer("node.write_buffer", 4, {1, 4096}, "",
                  "posted pixel writes a node may have outstanding before it stalls");
+  declare_context_keys(schema);
   schema.section("costs", "cycles of one operation; steps are priced by counted operation mixes");
   std::vector<std::string> presets;
   for (const std::string_view preset : processors::cost_presets()) {
@@ -124,11 +128,21 @@ void declare_memory(Schema& schema) {
                  "seed of random replacement");
   cycles(schema, "cache.hit_cycles", 1, "cycles of a reference that hits");
   declare_second_level_keys(schema);
+  declare_prefetch_keys(schema);
   schema.section("database", "where the scene database is");
   schema.choice("database.placement", "shared", names(processors::placement_names),
-                "shared: one copy in each cluster's memory; replicated: a copy in every node's own memory");
+                "shared: one copy in each cluster's memory; replicated: a copy in every node's own memory; "
+                "distributed: one copy in each cluster, spread with the frame buffer over its nodes' own "
+                "memories and reached over their network");
+  schema.size("database.interleave", "0 B", {"0 B", "1 GiB"},
+              "distributed: bytes in a row at one node, a power of two, at least a line; 0: a cache line, or "
+              "32 B without a cache");
+  schema.size(
+      "database.header", "8 B", {"1 B", "64 KiB"},
+      "distributed: bytes of a request to another node; data and writes carry as many beside their own");
   schema.section("local",
-                 "a node's own memory, for a replicated database or private trees; it serves nobody else");
+                 "a node's own memory, for a replicated or distributed database, private trees or a part of "
+                 "space; only a distributed database's serves others");
   clock(schema, "local.clock", "clock of the local memory");
   schema.size("local.width", "8 B", {"1 B", "64 KiB"}, "bytes of a beat");
   cycles(schema, "local.access_cycles", 4, "cycles until the first beat");
@@ -142,6 +156,9 @@ void declare_interconnect(Schema& schema) {
       "ideal: fixed latency, no queue; bus: one transaction at a time; crossbar: a queue for each bank");
   schema.choice("interconnect.mode", "split", {"held", "split"},
                 "whether a read holds the bus while its bank works or asks for it again");
+  schema.choice("interconnect.arbitration", "fifo", names(memory::arbitration_names),
+                "bus: whom it is granted to; fifo: who asked first; round_robin: nodes by turns; "
+                "fixed_priority: data before requests, then the lowest node");
   clock(schema, "interconnect.clock", "clock of the interconnect");
   schema.size("interconnect.width", "8 B", {"1 B", "64 KiB"}, "bytes of a beat");
   cycles(schema, "interconnect.cycles_per_beat", 1, "cycles of each beat of data");
@@ -257,9 +274,32 @@ void read_cache(sim::Config& config, processors::NodeCacheConfig& cache) {
   }
 }
 
+// Bytes that one reference reads at most: the unit in which memory is shared out unless a key says more.
+std::uint32_t reference_bytes(const processors::MachineConfig& machine) {
+  return machine.cache.organisation == processors::CacheOrganisation::none ? memory::BankConfig{}.interleave
+                                                                           : machine.cache.cache.line;
+}
+
+void read_distribution(const sim::Config& config, processors::MachineConfig& machine) {
+  processors::DistributionConfig& distribution = machine.distribution;
+  const std::uint32_t unit = reference_bytes(machine);
+  distribution.interleave = unit;
+  if (config.size("database.interleave") != 0) {
+    distribution.interleave = power_of_two(config, "database.interleave");
+  }
+  if (distribution.interleave < unit) {
+    config.fail("database.interleave", "must be at least what one reference reads, " + std::to_string(unit) +
+                                           " bytes, so that no reference needs two nodes");
+  }
+  distribution.header_bytes = static_cast<std::uint32_t>(config.size("database.header"));
+}
+
 void read_local(sim::Config& config, processors::MachineConfig& machine) {
-  machine.placement = config.choice_as<processors::Placement>("database.placement");
-  if (machine.placement == processors::Placement::replicated ||
+  const bool space = machine.scheme == processors::Scheme::space;
+  if (!space) {
+    machine.placement = config.choice_as<processors::Placement>("database.placement");
+  }
+  if (space || machine.placement != processors::Placement::shared ||
       machine.build.sharing == processors::Sharing::private_trees) {
     machine.local.clock = clock(config, "local.clock");
     machine.local.width = static_cast<std::uint32_t>(config.size("local.width"));
@@ -267,26 +307,38 @@ void read_local(sim::Config& config, processors::MachineConfig& machine) {
     machine.local.cycles_per_beat = config.integer("local.cycles_per_beat");
   }
   config.mark_unused_reason(
-      "local", "it has no effect without database.placement = \"replicated\" or build.sharing = \"private\"",
+      "local",
+      "it has no effect without database.placement = \"replicated\" or \"distributed\", build.sharing = "
+      "\"private\" or machine.scheme = \"space\"",
       "database.placement");
+  if (machine.placement == processors::Placement::distributed) {
+    read_distribution(config, machine);
+  }
+  config.mark_unused_reason("database", "it has no effect without database.placement = \"distributed\"",
+                            "database.placement");
 }
 
 void read_interconnect(sim::Config& config, processors::MachineConfig& machine) {
   memory::InterconnectConfig& interconnect = machine.interconnect;
+  machine.banks.interleave = reference_bytes(machine);
+  if (machine.placement == processors::Placement::distributed) {
+    const std::string_view reason =
+        "a distributed database is in the nodes' own memories ([local]) and reached over [network]";
+    config.mark_unused_reason("interconnect", reason, "database.placement");
+    config.mark_unused_reason("memory", reason, "database.placement");
+    return;
+  }
   interconnect.kind = config.choice_as<memory::InterconnectKind>("interconnect.kind");
   interconnect.clock = clock(config, "interconnect.clock");
   const bool ideal = interconnect.kind == memory::InterconnectKind::ideal;
   const bool bus = interconnect.kind == memory::InterconnectKind::bus;
   if (bus) {
     interconnect.mode = config.choice_as<memory::BusMode>("interconnect.mode");
+    interconnect.arbitration = config.choice_as<memory::Arbitration>("interconnect.arbitration");
     interconnect.address_cycles = config.integer("interconnect.address_cycles");
   } else {
     interconnect.latency_cycles = config.integer("interconnect.latency_cycles");
   }
-  const std::uint32_t unit = machine.cache.organisation == processors::CacheOrganisation::none
-                                 ? memory::BankConfig{}.interleave
-                                 : machine.cache.cache.line;
-  machine.banks.interleave = unit;
   if (!ideal) {
     interconnect.width = static_cast<std::uint32_t>(config.size("interconnect.width"));
     interconnect.cycles_per_beat = config.integer("interconnect.cycles_per_beat");
@@ -303,14 +355,17 @@ void read_interconnect(sim::Config& config, processors::MachineConfig& machine) 
   config.mark_unused_reason("memory", "there are no banks " + kind, "interconnect.kind");
 }
 
-// Only where rays move from node to node are messages sent.
+// Messages are sent where rays move from node to node, and for a distributed database.
 void read_messages(sim::Config& config, processors::MachineConfig& machine) {
-  if (machine.scheme != processors::Scheme::image) {
+  if (machine.scheme != processors::Scheme::image ||
+      machine.placement == processors::Placement::distributed) {
     machine.network = read_network(config);
     return;
   }
-  config.mark_unused_reason("network", "no messages are sent with machine.scheme = \"image\"",
-                            "machine.scheme");
+  config.mark_unused_reason(
+      "network",
+      "no messages are sent with machine.scheme = \"image\" and a database that is not distributed",
+      "database.placement");
 }
 
 }  // namespace
@@ -324,6 +379,7 @@ void declare_machine_keys(sim::Schema& schema) {
   declare_build_keys(schema);
   declare_count_keys(schema);
   declare_flow_keys(schema);
+  declare_space_keys(schema);
 }
 
 processors::MachineConfig read_machine(sim::Config& config) {
@@ -345,10 +401,14 @@ processors::MachineConfig read_machine(sim::Config& config) {
   read_cache(config, machine.cache);
   machine.build = read_build(config);
   read_local(config, machine);
-  read_interconnect(config, machine);
+  read_contexts(config, machine);
+  if (machine.scheme != processors::Scheme::space) {
+    read_interconnect(config, machine);
+  }
   read_second_level(config, machine);
   read_flow(config, machine);
   read_messages(config, machine);
+  read_space(config, machine);
   read_count(config, machine);
   machine.packets = {count(config, "packets.width"), count(config, "packets.height"),
                      config.choice_as<processors::PacketOrder>("packets.order")};

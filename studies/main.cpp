@@ -1,6 +1,7 @@
 // The command line. Exit status: 0 done, 2 the user's input is wrong, 1 a fault of ours.
 #include <CLI/CLI.hpp>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -15,6 +16,7 @@
 #include "sim/error.h"
 #include "sim/files.h"
 #include "sim/schema.h"
+#include "sim/units.h"
 #include "studies/frames/frames.h"
 #include "studies/image_file.h"
 #include "studies/operations/operations.h"
@@ -24,6 +26,7 @@
 #include "studies/run_result.h"
 #include "studies/schemes/schemes.h"
 #include "studies/schemes/schemes_keys.h"
+#include "studies/trace/trace.h"
 #include "studies/version.h"
 
 namespace {
@@ -128,6 +131,40 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
   schemes->callback([&] { run_study(arguments, studies::schemes_schema(), studies::run_schemes); });
 }
 
+struct TraceArguments {
+  std::string config;
+  std::vector<std::string> assignments;
+  std::string directory;
+  std::string format = "din";
+  std::string limit = "4 GiB";
+  studies::TraceOptions options;
+};
+
+void add_trace_command(CLI::App& app, TraceArguments& arguments) {
+  CLI::App* trace = app.add_subcommand("trace", "Writes each node's references, for other cache simulators");
+  trace->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
+  trace->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
+      ->allow_extra_args(false);
+  trace->add_option("-o,--output", arguments.directory, "directory for node-00000.din and so on")
+      ->check(no_empty_directory)
+      ->required();
+  trace->add_option("--format", arguments.format, "din: label and address, as Dinero reads them")
+      ->check(CLI::IsMember({"din"}));
+  trace->add_option("--nodes", arguments.options.nodes, "which nodes, as 0-3 or 0,2,8-9; all if not given");
+  trace->add_option("--limit", arguments.limit, "refuse to write more than this, as \"4 GiB\"");
+  trace->callback([&] {
+    try {
+      arguments.options.most_bytes = static_cast<std::uint64_t>(sim::parse_size(arguments.limit));
+    } catch (const sim::UserError& error) {
+      throw sim::UserError("--limit: " + std::string(error.what()));
+    }
+    sim::Config config =
+        sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
+    studies::prepare_output(arguments.directory);
+    print(studies::write_traces(config, arguments.options, arguments.directory));
+  });
+}
+
 void list_scenes() {
   std::string text;
   for (const scenes::ProceduralScene& scene : scenes::procedural_scenes()) {
@@ -208,6 +245,9 @@ int parse_and_run(int argc, char** argv) {
   StudyArguments study_arguments;
   add_study_commands(app, study_arguments);
 
+  TraceArguments trace_arguments;
+  add_trace_command(app, trace_arguments);
+
   bool markdown = false;
   CLI::App* config = app.add_subcommand("config", "Prints every configuration key");
   config->add_flag("--markdown", markdown, "as Markdown, as in docs/configuration.md");
@@ -233,6 +273,8 @@ int parse_and_run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // A reader that goes away is an error of writing like a full disk.
+  std::signal(SIGPIPE, SIG_IGN);
   try {
     return parse_and_run(argc, argv);
   } catch (const marti::sim::UserError& error) {

@@ -16,7 +16,7 @@ void declare_record_keys(sim::Schema& schema) {
   schema.duration("record.timeline_to", "0 ps", {"0 ps", std::nullopt},
                   "timeline: simulated time up to which it shows them; 0: to the end of the frame");
   schema.integer("record.timeline_events", 1'000'000, {1, 1'000'000'000}, "slices",
-                 "timeline: slices written at most, of about 130 bytes each; the rest is left out");
+                 "timeline: slices written at most, of about 120 bytes each; the rest is left out");
   schema.boolean(
       "record.heat_maps", false,
       "write what each pixel cost: heat.exr and three maps in false colours, of cycles, misses and "

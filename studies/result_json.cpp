@@ -5,7 +5,9 @@
 
 #include "studies/build_output.h"
 #include "studies/cache_output.h"
+#include "studies/context_output.h"
 #include "studies/count_output.h"
+#include "studies/flow_output.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
 #include "studies/version.h"
@@ -172,12 +174,21 @@ Json clusters_json(const processors::MachineResult& result) {
   for (const processors::ClusterResult& cluster : result.clusters) {
     Json interconnect = counters_json(cluster.interconnect);
     interconnect["waits"] = wait_json(cluster.interconnect.waits);
-    Json banks = Json::array();
-    for (const memory::BankStatistics& bank : cluster.banks) {
-      banks.push_back(counters_json(bank));
-      banks.back()["waits"] = wait_json(bank.waits);
+    Json banks = nullptr;
+    if (cluster.banks.size() <= most_listed) {
+      banks = Json::array();
+      for (const memory::BankStatistics& bank : cluster.banks) {
+        banks.push_back(counters_json(bank));
+        banks.back()["waits"] = wait_json(bank.waits);
+      }
     }
     clusters.push_back({{"interconnect", interconnect}, {"banks", banks}});
+    if (cluster.distributed) {
+      Json network = counters_json(cluster.distributed->network);
+      network["waits"] = wait_json(cluster.distributed->network.waits);
+      clusters.back()["distributed"] = counters_json(cluster.distributed->accesses);
+      clusters.back()["distributed"]["network"] = network;
+    }
   }
   return clusters;
 }
@@ -204,7 +215,7 @@ std::string json_of(const RunResult& r) {
   const processors::MachineResult& timed = r.timed;
   const Utilisation used = utilisation_of(r.machine, timed);
   Json machine = {
-      {"scheme", "image"},
+      {"scheme", processors::scheme_names[static_cast<std::size_t>(r.machine.scheme)]},
       {"clusters", r.machine.clusters},
       {"nodes", r.machine.nodes},
       {"frame_time_ps", timed.end},
@@ -233,11 +244,17 @@ std::string json_of(const RunResult& r) {
   if (timed.build.sharing != processors::Sharing::given) {
     machine["build"] = build_json(timed.build, timed.nodes.size() <= most_listed);
   }
+  if (r.machine.scheme != processors::Scheme::image) {
+    machine["flow"] = flow_json(r.machine, timed, timed.nodes.size() <= most_listed);
+  }
   if (r.machine.l2.sharing != processors::SecondLevel::none) {
     machine["l2"] = second_level_json(r.machine, timed, timed.l2.caches.size() <= most_listed);
   }
   if (r.machine.count.any()) {
     machine["counts"] = counts_json(r.machine, timed.counts);
+  }
+  if (!timed.contexts.nodes.empty()) {
+    machine["contexts"] = context_json(r.machine, timed.contexts, timed.nodes.size() <= most_listed);
   }
   const Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
                        {"config", config_json(r)},

@@ -9,15 +9,14 @@
 
 namespace marti::studies {
 
-namespace {
-
-void refuse_beyond_memory(const sim::Config& config, const RunResult& result) {
-  const std::uint64_t bytes = processors::host_bytes(result.machine);
-  if (bytes > static_cast<std::uint64_t>(result.frame_config.memory_limit)) {
-    config.fail("machine.nodes", "simulating these nodes and their caches takes about " +
-                                     sim::print_size(static_cast<std::int64_t>(bytes >> 20U << 20U)) +
-                                     ", more than host_machine.memory_limit = " +
-                                     sim::print_size(result.frame_config.memory_limit));
+void refuse_beyond_memory(const sim::Config& config, const FrameConfig& frame,
+                          const processors::MachineConfig& machine) {
+  const std::uint64_t bytes = processors::host_bytes(machine);
+  if (bytes > static_cast<std::uint64_t>(frame.memory_limit)) {
+    config.fail("machine.nodes",
+                "simulating these nodes and their caches takes about " +
+                    sim::print_size(static_cast<std::int64_t>(bytes >> 20U << 20U)) +
+                    ", more than host_machine.memory_limit = " + sim::print_size(frame.memory_limit));
   }
 }
 
@@ -27,6 +26,19 @@ void refuse_several_frames(const sim::Config& config, const FrameRange& frames) 
                                     " frames are asked for, but `marti run` renders one, that of "
                                     "frames.first; set frames.count = 1, or "
                                     "use `marti study frames`");
+  }
+}
+
+namespace {
+
+void refuse_maps_beyond_memory(const sim::Config& config, const RecordConfig& record,
+                               const FrameConfig& frame) {
+  const std::uint64_t bytes = HeatMap::host_bytes(std::uint64_t{frame.render.width} * frame.render.height);
+  if (record.heat_maps && bytes > static_cast<std::uint64_t>(frame.memory_limit)) {
+    config.fail("record.heat_maps",
+                "maps of this image take about " +
+                    sim::print_size(static_cast<std::int64_t>(bytes >> 20U << 20U)) +
+                    ", more than host_machine.memory_limit = " + sim::print_size(frame.memory_limit));
   }
 }
 
@@ -65,7 +77,8 @@ RunResult run(sim::Config& config, const std::filesystem::path& directory) {
   result.machine = read_machine(config);
   const RecordConfig record = read_record(config, !directory.empty());
   config.refuse_unused();
-  refuse_beyond_memory(config, result);
+  refuse_beyond_memory(config, result.frame_config, result.machine);
+  refuse_maps_beyond_memory(config, record, result.frame_config);
   result.values = config.effective_values();
 
   result.functional = run_functional(result.frame_config);

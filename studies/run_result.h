@@ -41,6 +41,12 @@ struct RunResult {
 /// machine runs goes to `directory`, which must exist; without one nothing may be recorded.
 [[nodiscard]] RunResult run(sim::Config& config, const std::filesystem::path& directory = {});
 
+/// Throws UserError when the simulated machine would take more of the computer's memory than the frame may.
+void refuse_beyond_memory(const sim::Config& config, const FrameConfig& frame,
+                          const processors::MachineConfig& machine);
+/// Throws UserError when more than one frame is asked for.
+void refuse_several_frames(const sim::Config& config, const FrameRange& frames);
+
 /// The schema of `marti run`.
 [[nodiscard]] sim::Schema run_schema();
 

@@ -6,6 +6,8 @@
 #include <array>
 #include <numeric>
 
+#include "studies/flow_figures.h"
+
 namespace marti::studies {
 
 using processors::Activity;
@@ -17,7 +19,8 @@ double share(sim::Ticks part, double whole) { return whole > 0.0 ? static_cast<d
 std::string describe(Limit limit, double part, const Utilisation& used,
                      const processors::MachineConfig& machine, const processors::MachineResult& result) {
   const double percent = 100.0 * part;
-  const bool bus = machine.interconnect.kind == memory::InterconnectKind::bus;
+  const bool distributed = machine.placement == processors::Placement::distributed;
+  const bool bus = !distributed && machine.interconnect.kind == memory::InterconnectKind::bus;
   switch (limit) {
     case Limit::nothing:
       return "nothing to do";
@@ -25,8 +28,15 @@ std::string describe(Limit limit, double part, const Utilisation& used,
       return fmt::format(
           "the {} is {:.1f} % busy and nodes spend {:.1f} % of their time waiting for it; fewer misses "
           "(larger cache), a wider {} or more clusters would help",
-          bus ? "bus" : "crossbar", 100.0 * used.interconnect.value_or(0.0), percent, bus ? "bus" : "link");
+          interconnect_name(machine), 100.0 * used.interconnect.value_or(0.0), percent, bus ? "bus" : "link");
     case Limit::bank:
+      if (distributed) {
+        return fmt::format(
+            "the busiest node's memory is {:.1f} % busy and nodes spend {:.1f} % of their time waiting for "
+            "each other's memories; fewer misses (larger cache), faster memories or another "
+            "database.interleave would help",
+            100.0 * used.bank, percent);
+      }
       return fmt::format(
           "the busiest bank is {:.1f} % busy and nodes spend {:.1f} % of their time waiting for banks; more "
           "or "
@@ -56,6 +66,33 @@ std::string describe(Limit limit, double part, const Utilisation& used,
           "imbalance: nodes are idle {:.1f} % of the time, {} packet(s) for {} nodes; smaller packets would "
           "help",
           percent, result.packets, result.nodes.size());
+    case Limit::slowest_part: {
+      const FlowFigures figures = flow_figures(machine, result);
+      const StageLoad& slowest = figures.slowest();
+      if (figures.stages.empty()) {
+        return fmt::format(
+            "imbalance: the busiest node is {:.1f} % busy, a node on average {:.1f} %, and nodes spend "
+            "{:.1f} % of their time waiting for rays and queues; a division that is better balanced would "
+            "help",
+            100.0 * slowest.busiest, 100.0 * slowest.busy, percent);
+      }
+      return fmt::format(
+          "the slowest stage: {} is {:.1f} % busy, and nodes spend {:.1f} % of their time waiting for rays "
+          "and queues; more of the nodes in pipeline.{} would help",
+          slowest.name, 100.0 * slowest.busy, percent, slowest.name);
+    }
+    case Limit::queues:
+      return fmt::format(
+          "full queues: nodes spend {:.1f} % of their time waiting for room in another's queue; longer "
+          "queues would help",
+          percent);
+    case Limit::messages: {
+      const FlowFigures figures = flow_figures(machine, result);
+      return fmt::format(
+          "messages: nodes spend {:.1f} % of their time waiting for rays; links are {:.1f} % busy and {} "
+          "rays were in flight at most; a faster network or more rays in flight would help",
+          percent, 100.0 * figures.network.value_or(0.0), result.flow.most_in_flight);
+    }
     case Limit::write_buffer:
       return fmt::format("full write buffers: nodes spend {:.1f} % of their time on them", percent);
     case Limit::compute:
@@ -66,6 +103,28 @@ std::string describe(Limit limit, double part, const Utilisation& used,
 }
 
 }  // namespace
+
+std::string interconnect_name(const processors::MachineConfig& machine) {
+  if (machine.placement == processors::Placement::distributed) {
+    const auto kind = static_cast<std::size_t>(machine.network.kind);
+    return std::string(memory::network_kind_names[kind]) + " network";
+  }
+  switch (machine.interconnect.kind) {
+    case memory::InterconnectKind::ideal:
+      return "ideal interconnect";
+    case memory::InterconnectKind::crossbar:
+      return "crossbar";
+    case memory::InterconnectKind::bus:
+      break;
+  }
+  return "bus";
+}
+
+bool has_links(const processors::MachineConfig& machine) {
+  return machine.placement == processors::Placement::distributed
+             ? machine.network.kind != memory::NetworkKind::ideal
+             : machine.interconnect.kind != memory::InterconnectKind::ideal;
+}
 
 Scaling scaling_of(sim::Ticks one_node_end, sim::Ticks end, std::uint32_t nodes) {
   Scaling scaling;
@@ -90,7 +149,7 @@ Utilisation utilisation_of(const processors::MachineConfig& machine,
   double busy = 0.0;
   const double end = static_cast<double>(result.end);
   for (const processors::ClusterResult& cluster : result.clusters) {
-    if (machine.interconnect.kind != memory::InterconnectKind::ideal) {
+    if (has_links(machine)) {
       const double links = static_cast<double>(cluster.interconnect.links);
       used.interconnect =
           std::max(used.interconnect.value_or(0.0), share(cluster.interconnect.busy, end * links));
@@ -117,7 +176,8 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
       return sum + static_cast<double>(time[static_cast<std::size_t>(activity)]);
     });
   };
-  const std::array<std::pair<Limit, double>, 9> candidates = {{
+  const FlowWaits waits = flow_waits(machine, result);
+  const std::array<std::pair<Limit, double>, 12> candidates = {{
       {Limit::interconnect, part({Activity::interconnect_wait})},
       {Limit::bank, part({Activity::bank_wait})},
       {Limit::memory_latency, part({Activity::transfer, Activity::bank_access})},
@@ -125,9 +185,14 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
       {Limit::start_up, static_cast<double>(result.build.start_up_wait)},
       {Limit::lock, part({Activity::lock_wait})},
       {Limit::imbalance, part({Activity::idle})},
-      {Limit::write_buffer, part({Activity::queue_full_wait})},
+      {Limit::write_buffer,
+       machine.scheme == processors::Scheme::image ? part({Activity::queue_full_wait}) : 0.0},
+      {Limit::slowest_part, waits.slowest},
+      {Limit::queues, waits.queues},
+      {Limit::messages, waits.messages},
       {Limit::compute, part({Activity::traversal, Activity::intersection, Activity::shading,
-                             Activity::building, Activity::cache_access})},
+                             Activity::building, Activity::cache_access, Activity::switching,
+                             Activity::messaging})},
   }};
   const auto largest = std::max_element(candidates.begin(), candidates.end(),
                                         [](const auto& a, const auto& b) { return a.second < b.second; });
@@ -159,6 +224,12 @@ std::string_view name_of(Limit limit) {
       return "imbalance";
     case Limit::write_buffer:
       return "write_buffer";
+    case Limit::slowest_part:
+      return "slowest_part";
+    case Limit::queues:
+      return "queues";
+    case Limit::messages:
+      return "messages";
     case Limit::compute:
       break;
   }

@@ -21,12 +21,19 @@ struct Scaling {
 
 [[nodiscard]] Scaling scaling_of(sim::Ticks one_node_end, sim::Ticks end, std::uint32_t nodes);
 
+/// What connects the nodes to their memory: "ideal interconnect", "bus", "crossbar", or of a distributed
+/// database "mesh network" and the like.
+[[nodiscard]] std::string interconnect_name(const processors::MachineConfig& machine);
+
+/// Whether it has links that can be busy; an ideal one has not.
+[[nodiscard]] bool has_links(const processors::MachineConfig& machine);
+
 /// How busy interconnects and banks were, as shares of the frame time.
 struct Utilisation {
-  /// Transfer time over links times frame time, the busiest cluster's; nothing for an ideal interconnect,
-  /// which has no links to be busy.
+  /// Transfer time over links times frame time, the busiest cluster's; nothing for an ideal interconnect or
+  /// network, which has no links to be busy.
   std::optional<double> interconnect;
-  double bank = 0.0;  ///< the busiest bank's
+  double bank = 0.0;  ///< the busiest bank's; of a distributed database, the busiest node's memory's
   double mean_bank = 0.0;
 };
 
@@ -43,6 +50,9 @@ enum class Limit {
   lock,
   imbalance,
   write_buffer,
+  slowest_part,
+  queues,
+  messages,
   compute
 };
 

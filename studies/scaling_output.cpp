@@ -117,9 +117,9 @@ std::string record_lines(const RunResult& r) {
     for (std::size_t i = 0; i < heats; ++i) {
       const Legend legend = legend_of(r.heat_map->figures(static_cast<Heat>(i)));
       text += fmt::format(
-          "{:<14}{:<6} dark 0 to bright {:.0f} or more (99 % of the pixels are below); mean {:.1f}, "
-          "largest {:.0f}\n",
-          i == 0 ? "\nheat map" : "", heat_names[i], legend.brightest, legend.mean, legend.largest);
+          "{}{:<14}{:<6} dark 0, bright {:.0f} or more (1 % of the pixels); mean {:.1f}, most {:.0f}\n",
+          i == 0 ? "\n" : "", i == 0 ? "heat map" : "", heat_names[i], legend.brightest, legend.mean,
+          legend.largest);
     }
   }
   if (r.timeline) {

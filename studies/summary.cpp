@@ -8,7 +8,9 @@
 #include "sim/units.h"
 #include "studies/build_output.h"
 #include "studies/cache_output.h"
+#include "studies/context_output.h"
 #include "studies/count_output.h"
+#include "studies/flow_output.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
 #include "studies/text_units.h"
@@ -131,13 +133,18 @@ void voxel_lines(Lines out, const RunResult& r) {
 
 void machine_lines(Lines out, const RunResult& r) {
   const processors::MachineConfig& machine = r.machine;
-  fmt::format_to(out, "machine       {} of {}, image scheme, {} of {} x {}\n",
+  fmt::format_to(out, "machine       {} of {}, {} scheme, {} of {} x {}\n",
                  counted(machine.clusters, "cluster"), counted(machine.nodes, "node"),
+                 processors::scheme_names[static_cast<std::size_t>(machine.scheme)],
                  counted(r.timed.packets, "packet"), machine.packets.width, machine.packets.height);
-  fmt::format_to(out, "database      {}, {} cop{}: {} in all\n",
+  const bool spread = machine.placement == processors::Placement::distributed;
+  fmt::format_to(out, "database      {}, {} cop{}: {} in all{}\n",
                  bytes(static_cast<double>(r.timed.database_bytes)), grouped(r.timed.copies),
                  r.timed.copies == 1 ? "y" : "ies",
-                 bytes(static_cast<double>(r.timed.database_bytes) * static_cast<double>(r.timed.copies)));
+                 bytes(static_cast<double>(r.timed.database_bytes) * static_cast<double>(r.timed.copies)),
+                 spread ? fmt::format(", spread over {} in units of {}", counted(machine.nodes, "node"),
+                                      bytes(machine.distribution.interleave))
+                        : "");
   fmt::format_to(out, "\nframe time    {} = {} node cycles\n", seconds(r.timed.end),
                  grouped(r.timed.end / machine.clock.period()));
   fmt::format_to(out, "speed-up      {} on {}, efficiency {}, serial fraction (Karp-Flatt) {}\n",
@@ -158,6 +165,44 @@ void time_lines(Lines out, const RunResult& r) {
   }
 }
 
+// "mean wait 0.1 us, ..." of what waited at a queue.
+std::string waiting(const memory::WaitStatistics& w) {
+  if (w.count == 0) {
+    return "no transactions";
+  }
+  return fmt::format("mean wait {}, 95 % below {}, longest {}", seconds(w.sum / w.count),
+                     seconds(w.histogram.percentile(95.0).value_or(0)), seconds(w.max));
+}
+
+void gather(memory::WaitStatistics& into, const memory::WaitStatistics& from) {
+  into.count += from.count;
+  into.sum = sim::add_ticks(into.sum, from.sum);
+  into.max = std::max(into.max, from.max);
+  into.histogram.merge(from.histogram);
+}
+
+void distribution_lines(Lines out, const RunResult& r, const Utilisation& used) {
+  memory::DistributedStatistics accesses;
+  memory::NetworkStatistics network;
+  for (const processors::ClusterResult& cluster : r.timed.clusters) {
+    sim::merge(accesses, cluster.distributed->accesses);
+    sim::merge(network, cluster.distributed->network);
+    gather(network.waits, cluster.distributed->network.waits);
+  }
+  const std::int64_t remote = accesses.remote_reads + accesses.remote_writes;
+  const std::int64_t all = remote + accesses.local_reads + accesses.local_writes;
+  fmt::format_to(out,
+                 "\n{:<14}{} messages, {} with their headers, {:.1f} hops each; {} of the accesses remote\n",
+                 "network", grouped(network.messages), bytes(static_cast<double>(network.bytes)),
+                 sim::ratio(network.hops, network.messages).value_or(0.0),
+                 percent(static_cast<double>(remote), static_cast<double>(all)));
+  if (used.interconnect) {
+    fmt::format_to(out, "  {:<12}{:.1f} % of its links busy, {}\n",
+                   memory::network_kind_names[static_cast<std::size_t>(r.machine.network.kind)],
+                   100.0 * *used.interconnect, waiting(network.waits));
+  }
+}
+
 void memory_lines(Lines out, const RunResult& r) {
   const processors::ReferenceCounts references = r.timed.references();
   fmt::format_to(out, "\nreferences    {:>15} {:>15} {:>10}\n", "lines", "misses", "hit ratio");
@@ -172,16 +217,13 @@ void memory_lines(Lines out, const RunResult& r) {
   }
   line("all", references.all_hits(), references.all_misses());
   fmt::format_to(out, "{}", second_level_line(r.machine, r.timed));
+  if (r.machine.scheme == processors::Scheme::space) {
+    return;  // nodes share no memory
+  }
 
   const Utilisation used = utilisation_of(r.machine, r.timed);
   memory::WaitStatistics waits;
   memory::WaitStatistics bank_waits;
-  const auto gather = [](memory::WaitStatistics& into, const memory::WaitStatistics& from) {
-    into.count += from.count;
-    into.sum = sim::add_ticks(into.sum, from.sum);
-    into.max = std::max(into.max, from.max);
-    into.histogram.merge(from.histogram);
-  };
   std::int64_t moved = 0;
   for (const processors::ClusterResult& cluster : r.timed.clusters) {
     gather(waits, cluster.interconnect.waits);
@@ -190,24 +232,21 @@ void memory_lines(Lines out, const RunResult& r) {
       gather(bank_waits, bank.waits);
     }
   }
-  const auto waiting = [&](const memory::WaitStatistics& w) {
-    if (w.count == 0) {
-      return std::string("no transactions");
-    }
-    return fmt::format("mean wait {}, 95 % below {}, longest {}", seconds(w.sum / w.count),
-                       seconds(w.histogram.percentile(95.0).value_or(0)), seconds(w.max));
-  };
+  const bool distributed = r.machine.placement == processors::Placement::distributed;
   const bool ideal = r.machine.interconnect.kind == memory::InterconnectKind::ideal;
-  const bool bus = r.machine.interconnect.kind == memory::InterconnectKind::bus;
-  fmt::format_to(out, "\n{:<14}", ideal ? "interconnect" : (bus ? "bus" : "crossbar"));
-  if (ideal) {
-    fmt::format_to(out, "ideal, {} moved\n", bytes(static_cast<double>(moved)));
+  if (ideal && !distributed) {
+    fmt::format_to(out, "\ninterconnect  ideal, {} moved\n", bytes(static_cast<double>(moved)));
     return;
   }
-  fmt::format_to(out, "{:.1f} % busy, {}, {} moved\n", 100.0 * used.interconnect.value_or(0.0),
-                 waiting(waits), bytes(static_cast<double>(moved)));
-  fmt::format_to(out, "banks         {:.1f} % busy (the busiest {:.1f} %), {}\n", 100.0 * used.mean_bank,
-                 100.0 * used.bank, waiting(bank_waits));
+  if (distributed) {
+    distribution_lines(out, r, used);
+  } else {
+    fmt::format_to(out, "\n{:<14}{:.1f} % busy, {}, {} moved\n", interconnect_name(r.machine),
+                   100.0 * used.interconnect.value_or(0.0), waiting(waits),
+                   bytes(static_cast<double>(moved)));
+  }
+  fmt::format_to(out, "{:<14}{:.1f} % busy (the busiest {:.1f} %), {}\n", distributed ? "memories" : "banks",
+                 100.0 * used.mean_bank, 100.0 * used.bank, waiting(bank_waits));
 }
 
 }  // namespace
@@ -222,7 +261,9 @@ std::string summary_of(const RunResult& r) {
   time_lines(out, r);
   memory_lines(out, r);
   text += counts_lines(r.machine, r.timed.counts);
+  text += context_lines(r.machine, r.timed.contexts);
   text += build_lines(r.timed);
+  text += flow_lines(r.machine, r.timed);
   text += bound_lines(r);
   text += record_lines(r);
   fmt::format_to(out, "\nlimited by    {}\n", r.finding.sentence);

@@ -20,6 +20,14 @@ void rays_of_pixel(std::span<const std::uint32_t> words, std::vector<LoggedRay>&
   rays.clear();
   const std::uint32_t* const end = words.data() + words.size();
   for (const std::uint32_t* word = words.data(); word != end; word += step_words(word)) {
+    while (whole_visit(*word)) {
+      if (++word == end) {
+        break;
+      }
+    }
+    if (word == end) {
+      break;
+    }
     if (step_of(*word) == Step::ray) {
       LoggedRay ray;
       ray.begin = rays.empty() ? words.data() : word;

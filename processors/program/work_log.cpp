@@ -1,5 +1,6 @@
 #include "processors/program/work_log.h"
 
+#include <algorithm>
 #include <string>
 
 #include "sim/error.h"
@@ -152,18 +153,33 @@ void check_log_capacity(std::size_t nodes, std::size_t materials, std::size_t li
 
 LogTotals totals_of(const WorkLog& log) {
   LogTotals totals;
+  std::vector<std::uint32_t> tests(log.topology.nodes.size());  // of a visit to each whole leaf
+  std::transform(log.topology.nodes.begin(), log.topology.nodes.end(), tests.begin(),
+                 [](const accel::TopologyNode& node) { return node.leaf ? node.count : 0; });
   for (const LogRow& row : log.rows) {
     totals.bytes += (row.words.size() + row.begin.size()) * sizeof(std::uint32_t);
-    for (std::size_t at = 0; at < row.words.size(); at += step_words(row.words.data() + at)) {
+    const std::size_t size = row.words.size();
+    for (std::size_t at = 0; at < size; at += step_words(row.words.data() + at)) {
+      // Visits come in no order that a processor could predict, so they are counted without a decision.
+      std::uint64_t visits = 0;
+      std::uint64_t leaves = 0;
+      std::uint64_t tested = 0;
+      for (; at < size && whole_visit(row.words[at]); ++at) {
+        ++visits;
+        leaves += static_cast<std::uint32_t>(step_of(row.words[at]));
+        tested += tests[operand_of(row.words[at])];
+      }
+      totals.branches += visits - leaves;
+      totals.leaves += leaves;
+      totals.tests += tested;
+      totals.lookups += log.mailboxes ? tested : 0;
+      if (at == size) {
+        break;
+      }
       const std::uint32_t word = row.words[at];
       switch (step_of(word)) {
         case Step::branch:
-          ++totals.branches;
-          break;
         case Step::leaf:
-          ++totals.leaves;
-          totals.tests += log.topology.nodes[operand_of(word)].count;
-          totals.lookups += log.mailboxes ? log.topology.nodes[operand_of(word)].count : 0;
           break;
         case Step::partial_leaf:
           ++totals.leaves;

@@ -55,8 +55,17 @@ inline constexpr std::uint32_t max_operand = (1U << operand_bits) - 1U;
 [[nodiscard]] constexpr std::uint32_t mask_words(std::uint32_t entries) {
   return entries / 32 + (entries % 32 != 0 ? 1 : 0);
 }
+/// Whether a step is the visit to a branch or to a whole leaf, as nearly all are: one word, and the two
+/// lowest steps, so that one comparison tells.
+[[nodiscard]] constexpr bool whole_visit(std::uint32_t word) {
+  static_assert(static_cast<std::uint32_t>(Step::branch) == 0 && static_cast<std::uint32_t>(Step::leaf) == 1);
+  return word < make_word(Step::partial_leaf, 0);
+}
 /// How many words the step that begins at `word` has, with those that follow it raw.
 [[nodiscard]] constexpr std::size_t step_words(const std::uint32_t* word) {
+  if (whole_visit(*word)) {
+    return 1;
+  }
   switch (step_of(*word)) {
     case Step::partial_leaf:
     case Step::texel:
@@ -66,6 +75,11 @@ inline constexpr std::uint32_t max_operand = (1U << operand_bits) - 1U;
     default:
       return 1;
   }
+}
+/// Whether a step reads a tree node, which is its operand.
+[[nodiscard]] constexpr bool visits_node(Step step) {
+  return step == Step::branch || step == Step::leaf || step == Step::partial_leaf ||
+         step == Step::mailed_leaf || step == Step::cut;
 }
 /// Whether the entry of that number was tested, by a mailed_leaf's mask.
 [[nodiscard]] constexpr bool tested_in_mask(const std::uint32_t* mask, std::uint32_t entry) {

@@ -101,7 +101,7 @@ PaperConfig read_paper(sim::Config& config) {
     config.fail("structure.kind", "the study builds octrees, and BSP trees beside them");
   }
   paper.machine = read_machine(config);
-  if (paper.machine.placement == processors::Placement::replicated) {
+  if (paper.machine.placement != processors::Placement::shared) {
     config.fail("database.placement", "the study builds one tree that all nodes share");
   }
   paper.scenes = config.texts("paper.scenes");

@@ -23,6 +23,9 @@ inline constexpr std::array<std::string_view, heats> heat_names = {"cycles", "mi
 
 class HeatMap final : public processors::Observer {
  public:
+  /// Bytes of the computer's memory that recording and writing maps of so many pixels takes, roughly.
+  [[nodiscard]] static std::uint64_t host_bytes(std::uint64_t pixels) { return 64 * pixels; }
+
   void begin(const processors::ReplayInput& input) override;
   void spent(std::uint32_t node, processors::NodeState state, sim::Ticks from, sim::Ticks to,
              processors::PixelPlace pixel) override;

@@ -34,6 +34,12 @@ void Observers::began_packet(std::uint32_t node, std::uint64_t packet, sim::Tick
   }
 }
 
+void Observers::resumed_packet(std::uint32_t node, std::uint64_t packet) {
+  for (processors::Observer* const observer : observers_) {
+    observer->resumed_packet(node, packet);
+  }
+}
+
 void Observers::end(sim::Ticks time) {
   for (const sim::Ticks told : told_) {
     sim::ensure(told == time, "a node's time line does not reach the end of the frame");

@@ -18,6 +18,7 @@ class Observers final : public processors::Observer {
              processors::PixelPlace pixel) override;
   void missed(std::uint32_t node, std::int64_t misses, processors::PixelPlace pixel) override;
   void began_packet(std::uint32_t node, std::uint64_t packet, sim::Ticks start) override;
+  void resumed_packet(std::uint32_t node, std::uint64_t packet) override;
   /// Throws InternalError unless the pieces of each node reached from 0 to `time` without a gap.
   void end(sim::Ticks time) override;
 

@@ -49,6 +49,8 @@ void Timeline::began_packet(std::uint32_t node, std::uint64_t packet, sim::Ticks
   tracks_[node].packet = packet;
 }
 
+void Timeline::resumed_packet(std::uint32_t node, std::uint64_t packet) { tracks_[node].packet = packet; }
+
 void Timeline::end(sim::Ticks /*time*/) {
   for (std::uint32_t node = 0; node < tracks_.size(); ++node) {
     put(node);

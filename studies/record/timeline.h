@@ -32,6 +32,7 @@ class Timeline final : public processors::Observer {
   void spent(std::uint32_t node, processors::NodeState state, sim::Ticks from, sim::Ticks to,
              processors::PixelPlace pixel) override;
   void began_packet(std::uint32_t node, std::uint64_t packet, sim::Ticks start) override;
+  void resumed_packet(std::uint32_t node, std::uint64_t packet) override;
   /// Completes and closes the file, still under its temporary name.
   void end(sim::Ticks time) override;
   void commit() { stream_.commit(); }

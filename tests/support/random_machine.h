@@ -335,6 +335,20 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
   machine.host.clock = sim::Clock::from_period(pick(random, 1, 40));
   machine.host.latency_cycles = pick(random, 0, 20);
   machine.host.occupancy_cycles = pick(random, 0, 5);
+  machine.interconnect.arbitration = static_cast<memory::Arbitration>(pick(random, 0, 2));
+  if (machine.placement == processors::Placement::shared && pick(random, 0, 3) == 0) {
+    machine.placement = processors::Placement::distributed;
+  }
+  const std::uint32_t unit = machine.cache.organisation == processors::CacheOrganisation::none
+                                 ? machine.banks.interleave
+                                 : machine.cache.cache.line;
+  machine.distribution.interleave = unit << pick(random, 0, 4);
+  machine.distribution.header_bytes = static_cast<std::uint32_t>(pick(random, 1, 16));
+  machine.network.kind = static_cast<memory::NetworkKind>(pick(random, 0, 4));
+  machine.network.clock = sim::Clock::from_period(pick(random, 1, 40));
+  machine.network.width = static_cast<std::uint32_t>(pick(random, 1, 16));
+  machine.network.cycles_per_beat = pick(random, 0, 2);
+  machine.network.hop_cycles = pick(random, 0, 4);
   return machine;
 }
 

@@ -7,13 +7,33 @@
 #include "accel/structure.h"
 #include "processors/program/render.h"
 #include "scenes/procedural.h"
+#include "sim/error.h"
 #include "tests/support/random_machine.h"
+#include "tests/validation/systemc/machine.h"
 
 namespace marti::oracle {
 
 namespace {
 
 using processors::MachineConfig;
+
+bool is_modelled(const MachineConfig& config) {
+  try {
+    refuse_what_is_not_modelled(config);
+  } catch (const sim::InternalError&) {
+    return false;
+  }
+  return true;
+}
+
+MachineConfig random_modelled_machine(test::Random& random) {
+  for (;;) {
+    const MachineConfig config = test::random_machine(random);
+    if (is_modelled(config)) {
+      return config;
+    }
+  }
+}
 
 // What random_machine() leaves at its defaults.
 void vary_the_rest(test::Random& random, MachineConfig& config) {
@@ -87,7 +107,7 @@ std::deque<ComparedMachine> random_machines(std::uint64_t seed, std::uint32_t co
     const auto height = static_cast<std::uint32_t>(test::pick(random, 1, 12));
     const std::uint32_t words = i % 4 == 3 ? 1 : 25;
     machines.push_back({"seed " + std::to_string(seed + i), test::random_log(random, width, height, words),
-                        test::random_machine(random)});
+                        random_modelled_machine(random)});
     MachineConfig& config = machines.back().config;
     vary_the_rest(random, config);
     if (i % 4 == 1) {

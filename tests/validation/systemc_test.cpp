@@ -2,10 +2,11 @@
 // docs/model.md. Other random machines: --gtest_random_seed=N.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
+#include <deque>
 #include <functional>
-#include <numeric>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "processors/replay.h"
@@ -44,25 +45,50 @@ const Compared& compared() {
   return all;
 }
 
-// One simulation for all tests that are run in this process: SystemC allows no second one.
-const std::vector<MachineFigures>& simulated() {
-  static const std::vector<MachineFigures> all = [] {
-    std::vector<Job> jobs;
-    for (const ComparedMachine& machine : compared().machines) {
-      jobs.push_back({&machine.log, &machine.config});
-    }
-    return simulate(jobs).machines;
-  }();
-  return all;
+// Each change of one figure of a machine whose banks are used is found.
+void expect_changes_found(const MachineResult& replay, const MachineFigures& systemc) {
+  const std::array<std::function<void(MachineFigures&)>, 14> changes = {
+      [](MachineFigures& m) { ++m.end; },
+      [](MachineFigures& m) { ++m.packets; },
+      [](MachineFigures& m) { ++m.host.busy; },
+      [](MachineFigures& m) { ++m.nodes.back().finish; },
+      [](MachineFigures& m) { ++m.nodes.back().steps.lookups; },
+      [](MachineFigures& m) { ++m.nodes.back().time[3]; },
+      [](MachineFigures& m) { ++m.nodes.back().references.hits[1]; },
+      [](MachineFigures& m) { ++m.nodes.back().references.misses[5]; },
+      [](MachineFigures& m) { m.nodes.pop_back(); },
+      [](MachineFigures& m) { ++m.clusters.back().interconnect.bytes; },
+      [](MachineFigures& m) { ++m.clusters[0].banks[0].statistics.accesses; },
+      [](MachineFigures& m) { m.clusters[0].banks.pop_back(); },
+      [](MachineFigures& m) { ++m.clusters[0].banks[0].waits.begin()->second; },
+      [](MachineFigures& m) { --m.clusters[0].waits.begin()->second; }};
+  for (std::size_t change = 0; change < changes.size(); ++change) {
+    MachineFigures figures = systemc;
+    changes[change](figures);
+    EXPECT_FALSE(differences(replay, figures).empty()) << "change " << change;
+  }
 }
 
 TEST(SystemC, EqualsTheReplayInEveryFigure) {
-  ASSERT_EQ(simulated().size(), compared().machines.size());
-  for (std::size_t i = 0; i < simulated().size(); ++i) {
-    const std::vector<std::string> lines = differences(compared().replays[i], simulated()[i]);
-    EXPECT_TRUE(lines.empty()) << compared().machines[i].name << ": " << lines.size()
-                               << " figures differ, the first is " << lines.front();
+  const Compared& all = compared();
+  std::vector<Job> jobs;
+  for (const ComparedMachine& machine : all.machines) {
+    jobs.push_back({&machine.log, &machine.config});
   }
+  const std::vector<MachineFigures> simulated = simulate(jobs).machines;
+  ASSERT_EQ(simulated.size(), all.machines.size());
+  const MachineFigures* with_banks = nullptr;
+  for (std::size_t i = 0; i < simulated.size(); ++i) {
+    const std::vector<std::string> lines = differences(all.replays[i], simulated[i]);
+    EXPECT_TRUE(lines.empty()) << all.machines[i].name << ": " << lines.size()
+                               << " figures differ, the first is " << lines.front();
+    const std::vector<BankFigures>& banks = simulated[i].clusters[0].banks;
+    if (with_banks == nullptr && !banks.empty() && !banks[0].waits.empty()) {
+      with_banks = &simulated[i];
+      expect_changes_found(all.replays[i], simulated[i]);
+    }
+  }
+  EXPECT_NE(with_banks, nullptr);
 }
 
 // No use in being equal where nothing happens.
@@ -73,7 +99,7 @@ TEST(SystemC, TheMachinesDoWhatTheModelCanDo) {
     for (std::size_t i = 0; i < all.machines.size(); ++i) {
       count += does(all.machines[i].config, all.replays[i]) ? 1U : 0U;
     }
-    EXPECT_GE(count, 8U) << what;
+    EXPECT_GE(count, 3U) << what;
   };
   const auto waited = [](Activity activity) {
     return [activity](const MachineConfig&, const MachineResult& result) {
@@ -100,8 +126,8 @@ TEST(SystemC, TheMachinesDoWhatTheModelCanDo) {
   }
   for (const auto organisation :
        {processors::CacheOrganisation::unified, processors::CacheOrganisation::split}) {
-    for (const auto replacement :
-         {memory::Replacement::lru, memory::Replacement::fifo, memory::Replacement::random}) {
+    for (const auto replacement : {memory::Replacement::lru, memory::Replacement::fifo,
+                                   memory::Replacement::random, memory::Replacement::plru}) {
       expect_some("hits and misses of each cache", [=](const MachineConfig& c, const MachineResult& r) {
         return c.cache.organisation == organisation && c.cache.cache.replacement == replacement &&
                c.cache.cache.ways != 1 && r.references().all_hits() > 0 &&
@@ -128,34 +154,6 @@ TEST(SystemC, TheMachinesDoWhatTheModelCanDo) {
   }
   sim::for_each_counter(
       steps, [](const auto& counter, std::int64_t value) { EXPECT_GT(value, 100) << counter.name; });
-}
-
-TEST(SystemC, OneFigureThatDiffersIsFound) {
-  // A machine whose banks are used, so that there is a wait to change.
-  std::size_t at = 0;
-  while (simulated()[at].clusters[0].banks.empty() || simulated()[at].clusters[0].banks[0].waits.empty()) {
-    ++at;
-  }
-  const std::array<std::function<void(MachineFigures&)>, 14> changes = {
-      [](MachineFigures& m) { ++m.end; },
-      [](MachineFigures& m) { ++m.packets; },
-      [](MachineFigures& m) { ++m.host.busy; },
-      [](MachineFigures& m) { ++m.nodes.back().finish; },
-      [](MachineFigures& m) { ++m.nodes.back().steps.lookups; },
-      [](MachineFigures& m) { ++m.nodes.back().time[3]; },
-      [](MachineFigures& m) { ++m.nodes.back().references.hits[1]; },
-      [](MachineFigures& m) { ++m.nodes.back().references.misses[5]; },
-      [](MachineFigures& m) { m.nodes.pop_back(); },
-      [](MachineFigures& m) { ++m.clusters.back().interconnect.bytes; },
-      [](MachineFigures& m) { ++m.clusters[0].banks[0].statistics.accesses; },
-      [](MachineFigures& m) { m.clusters[0].banks.pop_back(); },
-      [](MachineFigures& m) { ++m.clusters[0].banks[0].waits.begin()->second; },
-      [](MachineFigures& m) { --m.clusters[0].waits.begin()->second; }};
-  for (std::size_t change = 0; change < changes.size(); ++change) {
-    MachineFigures figures = simulated()[at];
-    changes[change](figures);
-    EXPECT_FALSE(differences(compared().replays[at], figures).empty()) << "change " << change;
-  }
 }
 
 TEST(SystemC, RefusesWhatItDoesNotModel) {

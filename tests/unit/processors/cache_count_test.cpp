@@ -15,7 +15,7 @@
 #include "processors/replay.h"
 #include "sim/error.h"
 #include "tests/support/random_machine.h"
-#include "tests/support/reference_trace.h"
+#include "tests/support/traced_lines.h"
 
 namespace marti::processors {
 namespace {

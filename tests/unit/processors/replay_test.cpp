@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <set>
 
@@ -71,8 +72,8 @@ RC_GTEST_PROP(Replay, ScalingEveryDurationScalesEveryTimeExactly, (std::uint64_t
   const MachineResult base = replay(log, machine);
   for (std::int64_t scale = 10; scale <= 1'000'000'000; scale *= 10) {
     MachineConfig slow = machine;
-    for (sim::Clock* clock :
-         {&slow.clock, &slow.interconnect.clock, &slow.banks.clock, &slow.host.clock, &slow.local.clock}) {
+    for (sim::Clock* clock : {&slow.clock, &slow.interconnect.clock, &slow.banks.clock, &slow.host.clock,
+                              &slow.local.clock, &slow.network.clock}) {
       *clock = sim::Clock::from_period(clock->period() * scale);
     }
     const MachineResult scaled = replay(log, slow);
@@ -335,6 +336,107 @@ TEST(Replay, PixelWritesThatSwampACrossbarKeepTheLawsToo) {
   machine.banks.count = 1;
   machine.banks.busy_cycles = 0;
   EXPECT_GT(replay(log, machine).end, 0) << "replay checks its result itself";
+}
+
+TEST(Replay, OneNodeOfADistributedMachineHasAllInItsOwnMemory) {
+  // One pixel, so the only write comes last; then the database is as near as a replicated one.
+  test::Random random(20);
+  for (int round = 0; round < 60; ++round) {
+    const WorkLog log = test::random_log(random, 1, 1, 500);
+    MachineConfig machine = test::random_machine(random);
+    machine.clusters = 1;
+    machine.nodes = 1;
+    machine.distribution.interleave = 1U << 12U;
+    machine.placement = Placement::distributed;
+    const MachineResult distributed = replay(log, machine);
+    machine.placement = Placement::replicated;
+    const MachineResult replicated = replay(log, machine);
+    EXPECT_EQ(distributed.nodes[0].finish, replicated.nodes[0].finish);
+    EXPECT_EQ(distributed.nodes[0].time[static_cast<std::size_t>(Activity::transfer)],
+              replicated.nodes[0].time[static_cast<std::size_t>(Activity::transfer)]);
+    EXPECT_EQ(distributed.clusters[0].distributed->network.messages, 0);
+    EXPECT_EQ(distributed.references().misses, replicated.references().misses);
+  }
+}
+
+TEST(Replay, ADistributedDatabaseIsReadWithoutWaitingWhereNobodyIsInTheWay) {
+  // One node works, the others only hold the database: each miss costs its way to its home.
+  test::Random random(21);
+  for (int round = 0; round < 30; ++round) {
+    const WorkLog log = test::random_log(random, 1, 1, 500);
+    MachineConfig machine;
+    machine.nodes = 9;
+    machine.placement = Placement::distributed;
+    machine.network.kind = static_cast<memory::NetworkKind>(test::pick(random, 0, 4));
+    const MachineResult result = replay(log, machine);
+    const TimeDivision time = result.time();
+    EXPECT_EQ(time[static_cast<std::size_t>(Activity::interconnect_wait)], 0);
+    EXPECT_EQ(time[static_cast<std::size_t>(Activity::bank_wait)], 0);
+    const DistributedResult& distributed = *result.clusters[0].distributed;
+    EXPECT_EQ(time[static_cast<std::size_t>(Activity::bank_access)],
+              result.references().all_misses() * machine.local.clock.cycles(machine.local.access_cycles));
+    EXPECT_EQ(distributed.accesses.local_reads + distributed.accesses.remote_reads,
+              result.references().all_misses());
+  }
+}
+
+TEST(Replay, SixtyFiveThousandNodesMayHoldADatabaseTogether) {
+  test::Random random(22);
+  const WorkLog log = test::random_log(random, 16, 16);
+  for (const memory::NetworkKind kind : {memory::NetworkKind::mesh, memory::NetworkKind::hypercube}) {
+    MachineConfig machine;
+    machine.nodes = 65536;
+    machine.packets = {1, 1, PacketOrder::scanline};
+    machine.placement = Placement::distributed;
+    machine.network.kind = kind;
+    EXPECT_GT(replay(log, machine).end, 0);
+    EXPECT_LT(host_bytes(machine), std::uint64_t{1} << 30U);
+  }
+}
+
+TEST(Replay, RefusesADistributedDatabaseThatCannotBeSpread) {
+  test::Random random(23);
+  const WorkLog log = test::random_log(random, 2, 2);
+  for (const auto& spoil :
+       {+[](MachineConfig& m) { m.distribution.interleave = 48; },
+        +[](MachineConfig& m) { m.distribution.interleave = 16; },
+        +[](MachineConfig& m) { m.distribution.header_bytes = 0; },
+        +[](MachineConfig& m) { m.network.width = 0; }, +[](MachineConfig& m) { m.local.width = 0; },
+        +[](MachineConfig& m) { m.scheme = Scheme::space; }}) {
+    MachineConfig machine;
+    machine.placement = Placement::distributed;
+    spoil(machine);
+    EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  }
+}
+
+TEST(Replay, ArbitrationChangesWhoWaitsNotWhatIsDone) {
+  test::Random random(24);
+  const WorkLog log = test::random_log(random, 24, 24);
+  MachineConfig machine;
+  machine.nodes = 12;
+  machine.write_buffer = 1;
+  machine.host.assignment = Assignment::interleaved;
+  machine.packets = {2, 2, PacketOrder::scanline};
+  machine.interconnect.cycles_per_beat = 20;
+  const MachineResult fifo = replay(log, machine);
+  machine.interconnect.arbitration = memory::Arbitration::fixed_priority;
+  const MachineResult fixed = replay(log, machine);
+  machine.interconnect.arbitration = memory::Arbitration::round_robin;
+  const MachineResult turns = replay(log, machine);
+  for (const MachineResult* other : {&fixed, &turns}) {
+    EXPECT_EQ(other->references().misses, fifo.references().misses);
+    EXPECT_EQ(other->clusters[0].interconnect.busy, fifo.clusters[0].interconnect.busy);
+    EXPECT_EQ(other->clusters[0].interconnect.bytes, fifo.clusters[0].interconnect.bytes);
+  }
+  const auto spread = [](const MachineResult& result) {
+    const auto [first, last] =
+        std::minmax_element(result.nodes.begin(), result.nodes.end(),
+                            [](const auto& a, const auto& b) { return a.finish < b.finish; });
+    return static_cast<double>(last->finish - first->finish) / static_cast<double>(result.end);
+  };
+  EXPECT_GT(spread(fixed), 2 * spread(turns)) << "low nodes finish early, the high ones starve";
+  EXPECT_GT(turns.time()[static_cast<std::size_t>(Activity::queue_full_wait)], 0);
 }
 
 TEST(Replay, AnEmptyImageTakesNoTime) {

@@ -18,6 +18,7 @@ class NaiveCache {
         replacement_(config.replacement),
         sets_(size / config.line / ways_) {
     for (std::uint64_t set = 0; set < sets_.size(); ++set) {
+      sets_[set].points_right.resize(config.replacement == memory::Replacement::plru ? ways_ : 0);
       sets_[set].draws = config.seed + (cache * sets_.size() + set) * 0xd1342543de82ef95ULL;
     }
   }
@@ -29,26 +30,52 @@ class NaiveCache {
     if (found != set.lines.end()) {
       if (replacement_ == memory::Replacement::lru) {
         set.lines.splice(set.lines.end(), set.lines, found);
+      } else if (replacement_ == memory::Replacement::plru) {
+        turn_away(set, static_cast<std::uint64_t>(std::distance(set.lines.begin(), found)));
       }
       return true;
     }
-    if (set.lines.size() < ways_) {
-      set.lines.push_back(line);
-    } else if (replacement_ == memory::Replacement::random) {
-      *std::next(set.lines.begin(), static_cast<std::ptrdiff_t>(draw(set))) = line;
-    } else {
-      set.lines.pop_front();
-      set.lines.push_back(line);
-    }
+    bring_in(set, line);
     return false;
   }
 
  private:
-  /// Lines in the order of their last use (lru), of their coming in (fifo), or way by way (random).
+  /// Lines in the order of their last use (lru), of their coming in (fifo), or way by way (random, plru).
   struct Set {
     std::list<std::uint64_t> lines;
-    std::uint64_t draws = 0;
+    std::uint64_t draws = 0;         ///< random: the state of the stream
+    std::vector<bool> points_right;  ///< plru: each node of the tree; the root is 1, below n are 2 n, 2 n + 1
   };
+
+  void bring_in(Set& set, std::uint64_t line) const {
+    std::uint64_t way = set.lines.size();
+    if (way < ways_) {
+      set.lines.push_back(line);
+    } else if (replacement_ == memory::Replacement::random || replacement_ == memory::Replacement::plru) {
+      way = replacement_ == memory::Replacement::random ? draw(set) : pointed_at(set);
+      *std::next(set.lines.begin(), static_cast<std::ptrdiff_t>(way)) = line;
+    } else {
+      set.lines.pop_front();
+      set.lines.push_back(line);
+    }
+    if (replacement_ == memory::Replacement::plru) {
+      turn_away(set, way);
+    }
+  }
+
+  // The ways are the leaves of the tree: ways_ + way.
+  std::uint64_t pointed_at(const Set& set) const {
+    std::uint64_t node = 1;
+    while (node < ways_) {
+      node = 2 * node + (set.points_right[node] ? 1 : 0);
+    }
+    return node - ways_;
+  }
+  void turn_away(Set& set, std::uint64_t way) const {
+    for (std::uint64_t node = ways_ + way; node > 1; node /= 2) {
+      set.points_right[node / 2] = node % 2 == 0;
+    }
+  }
 
   // SplitMix64, and the high half of a product as the way.
   std::uint64_t draw(Set& set) const {

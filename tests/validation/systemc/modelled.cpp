@@ -19,7 +19,7 @@ void refuse(const processors::NodeCacheConfig& config) {
   [[maybe_unused]] const auto& [size, line, ways, replacement, seed] = cache;
   ensure_one_of(organisation, {CacheOrganisation::none, CacheOrganisation::unified, CacheOrganisation::split},
                 "the SystemC model has no such cache organisation");
-  ensure_one_of(replacement, {Replacement::lru, Replacement::fifo, Replacement::random},
+  ensure_one_of(replacement, {Replacement::lru, Replacement::fifo, Replacement::random, Replacement::plru},
                 "the SystemC model has no such replacement");
 }
 

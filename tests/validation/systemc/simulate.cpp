@@ -1,6 +1,6 @@
 #include "tests/validation/systemc/simulate.h"
 
-#include <chrono>
+#include <ctime>
 #include <exception>
 #include <memory>
 #include <string>
@@ -29,10 +29,9 @@ void run() {
     machines.push_back(std::make_unique<Machine>(name.c_str(), *job.log, *job.config));
   }
   sc_core::sc_start(sc_core::SC_ZERO_TIME);  // builds what SystemC builds before the first event
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   sc_core::sc_start();
-  exchange->simulation.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  exchange->simulation.seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   for (const auto& machine : machines) {
     exchange->simulation.machines.push_back(machine->figures());
   }

@@ -18,7 +18,7 @@ struct Job {
 
 struct Simulation {
   std::vector<MachineFigures> machines;  ///< one for each job
-  double seconds = 0.0;                  ///< of the host, without building the modules
+  double seconds = 0.0;                  ///< processor time, without building the modules
 };
 
 /// Each machine begins at time 0 and knows nothing of the others. Can be called once in a process; throws

@@ -1,0 +1,135 @@
+// How fast each parallel scheme is timed: replay of one frame on one host core, beside the native render of
+// the same frame by the same tracer. They are timed in turns.
+//   bench_schemes [SIZE [REPEATS]]    64 nodes; default: 512 5
+//   bench_schemes many SCHEME [SIZE]  65,536 nodes of one scheme: time and the process's peak memory
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "accel/structure.h"
+#include "processors/program/render.h"
+#include "processors/replay.h"
+#include "scenes/procedural.h"
+#include "sim/error.h"
+
+namespace {
+
+using namespace marti;
+using processors::Scheme;
+
+// Every scheme, so that a new one is measured too.
+constexpr std::array schemes = {Scheme::image, Scheme::pipeline, Scheme::space};
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// bench_replay's machine: 4-way 16 KiB private caches on a split bus, messages over a mesh.
+processors::MachineConfig machine_of(Scheme scheme, std::uint32_t nodes) {
+  processors::MachineConfig machine;
+  machine.scheme = scheme;
+  machine.nodes = nodes;
+  machine.pipeline = processors::default_stages(nodes);
+  machine.clock = sim::Clock::from_hertz(100e6);
+  machine.operations = processors::cost_preset("unit");
+  return machine;
+}
+
+struct Work {
+  scenes::Scene scene = scenes::make_procedural("teapot:12");
+  std::shared_ptr<const accel::TriangleSet> triangles = std::make_shared<const accel::TriangleSet>(scene);
+  std::unique_ptr<accel::Structure> structure = accel::make_structure("octree", triangles);
+  processors::RenderOptions options;
+
+  explicit Work(std::uint32_t size) : options{.width = size, .height = size, .max_depth = 2} {}
+  [[nodiscard]] processors::Frame render(bool record) const {
+    processors::RenderOptions with = options;
+    with.record = record;
+    return processors::render(scene, *triangles, *structure, with, 1);
+  }
+};
+
+std::string_view name_of(Scheme scheme) {
+  return processors::scheme_names[static_cast<std::size_t>(scheme)];
+}
+
+std::int64_t messages_of(const processors::MachineResult& result) {
+  std::int64_t messages = 0;
+  for (const memory::NetworkStatistics& network : result.flow.networks) {
+    messages += network.messages;
+  }
+  return messages;
+}
+
+void print(std::string_view name, const processors::MachineResult& result, double seconds, double render) {
+  const auto references = static_cast<double>(result.references().references());
+  std::printf("%-10.*s %8.1f ms %7.1f M references/s %10lld messages %10llu events %7.3f x render\n",
+              static_cast<int>(name.size()), name.data(), 1e3 * seconds, references / seconds / 1e6,
+              static_cast<long long>(messages_of(result)), static_cast<unsigned long long>(result.events),
+              seconds / render);
+}
+
+void compare(std::uint32_t size, int repeats) {
+  const Work work(size);
+  const processors::Frame frame = work.render(true);
+  double render = 1e300;
+  std::vector<double> best(schemes.size(), 1e300);
+  std::vector<processors::MachineResult> results(schemes.size());
+  for (int repeat = 0; repeat < repeats; ++repeat) {
+    double start = now();
+    (void)work.render(false);
+    render = std::min(render, now() - start);
+    for (std::size_t i = 0; i < schemes.size(); ++i) {
+      start = now();
+      results[i] = processors::replay(*frame.log, machine_of(schemes[i], 64));
+      best[i] = std::min(best[i], now() - start);
+    }
+  }
+  std::printf("teapot:12, %u x %u, depth 2; native render on one thread %.1f ms (best of %d); 64 nodes\n",
+              size, size, 1e3 * render, repeats);
+  for (std::size_t i = 0; i < schemes.size(); ++i) {
+    print(name_of(schemes[i]), results[i], best[i], render);
+  }
+}
+
+void many(std::string_view name, std::uint32_t size) {
+  const auto at = std::find_if(schemes.begin(), schemes.end(), [&](Scheme s) { return name_of(s) == name; });
+  if (at == schemes.end()) {
+    throw sim::UserError("there is no scheme \"" + std::string(name) + "\"");
+  }
+  const Work work(size);
+  const double start = now();
+  const processors::Frame frame = work.render(true);
+  const double render = now() - start;
+  const double begin = now();
+  const processors::MachineResult result = processors::replay(*frame.log, machine_of(*at, 65536));
+  print(name, result, now() - begin, render);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::printf("65,536 nodes, %u x %u: peak memory of the process %.2f GiB\n", size, size,
+              static_cast<double>(usage.ru_maxrss) / (1024.0 * 1024.0));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    if (argc > 2 && std::string_view(argv[1]) == "many") {
+      many(argv[2], argc > 3 ? static_cast<std::uint32_t>(std::atoi(argv[3])) : 512U);
+    } else {
+      compare(argc > 1 ? static_cast<std::uint32_t>(std::atoi(argv[1])) : 512U,
+              std::max(1, argc > 2 ? std::atoi(argv[2]) : 5));
+    }
+  } catch (const sim::UserError& error) {
+    std::fprintf(stderr, "bench_schemes: %s\n", error.what());
+    return 2;
+  }
+  return 0;
+}

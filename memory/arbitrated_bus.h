@@ -1,0 +1,73 @@
+// One bus for a cluster, granted by round robin or by fixed priority.
+#pragma once
+
+#include <vector>
+
+#include "memory/interconnect.h"
+#include "memory/link.h"
+#include "memory/port_set.h"
+
+namespace marti::memory {
+
+/// Transfers are those of Bus. Whoever wants the bus waits; when it is free, one event of the site's memory
+/// class grants it, so that all who ask for it at that instant compete. A port offers one thing at a time:
+/// data that are ready for it, else the oldest of its requests, reads and writes in the order in which they
+/// were made, so that no read of a port overtakes its writes.
+class ArbitratedBus final : public Interconnect {
+ public:
+  ArbitratedBus(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site);
+
+  void read(const Transaction& transaction) override;
+  void write(const Transaction& transaction) override;
+  void reply(std::uint32_t port) override;
+  void proceed(std::uint32_t port, std::uint32_t sequence) override;
+  [[nodiscard]] const InterconnectStatistics& statistics() const override { return statistics_; }
+  [[nodiscard]] const std::vector<BankStatistics>& bank_statistics() const override {
+    return banks_.statistics();
+  }
+  [[nodiscard]] const SharedCacheStatistics* cache_statistics() const override {
+    return banks_.cache_statistics();
+  }
+  [[nodiscard]] sim::Ticks unloaded_read(std::uint32_t bytes) const override;
+
+ private:
+  struct Request {
+    Transaction transaction;
+    sim::Ticks asked = 0;
+    bool write = false;
+  };
+  struct Port {
+    std::vector<Request> requests;  // oldest first; few: what the write buffer holds and one read
+    Service service;                // of the split read whose data are awaited
+    std::uint32_t bytes = 0;
+    sim::Ticks ready = 0;  // when the data began to wait
+  };
+
+  void ask(const Transaction& transaction, bool write);
+  // Posts the event that grants the bus, unless it is posted.
+  void call_for_grant();
+  // Who has it next; the sets are not both empty.
+  [[nodiscard]] std::uint32_t choose() const;
+  // Begins a tenure of `length` for somebody who asked at `asked`.
+  void take(sim::Ticks asked, sim::Ticks length);
+  void grant_data(std::uint32_t port);
+  void grant_read(const Request& request);
+  void grant_write(const Request& request);
+
+  InterconnectSite site_;
+  BusMode mode_;
+  Arbitration arbitration_;
+  BeatTime beats_;
+  sim::Ticks address_;
+  sim::Ticks bank_access_;
+  Banks banks_;
+  std::vector<Port> ports_;
+  PortSet data_;        // ports whose data are ready
+  PortSet asking_;      // ports with data or requests
+  std::uint32_t last_;  // who had the bus last
+  sim::Ticks free_at_ = 0;
+  bool called_ = false;
+  InterconnectStatistics statistics_;
+};
+
+}  // namespace marti::memory

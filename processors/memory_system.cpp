@@ -1,0 +1,32 @@
+#include "processors/memory_system.h"
+
+#include "processors/second_level.h"
+
+namespace marti::processors {
+
+memory::DistributedConfig distributed_config(const MachineConfig& config) {
+  return {config.nodes,
+          config.distribution.interleave,
+          config.distribution.header_bytes,
+          config.local.clock,
+          config.local.width,
+          config.local.access_cycles,
+          config.local.cycles_per_beat,
+          config.network};
+}
+
+std::unique_ptr<memory::Interconnect> make_memory_system(const MachineConfig& config,
+                                                         const memory::InterconnectSite& site) {
+  if (config.placement == Placement::distributed) {
+    return std::make_unique<memory::Distributed>(distributed_config(config), site);
+  }
+  return memory::make_interconnect(config.interconnect, banks_of(config), site);
+}
+
+bool writes_done_later(const MachineConfig& config) {
+  return config.placement == Placement::distributed ||
+         (config.interconnect.kind == memory::InterconnectKind::bus &&
+          config.interconnect.arbitration != memory::Arbitration::fifo);
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,19 @@
+// The configuration keys of what hides a node's misses: contexts and prefetching.
+#pragma once
+
+#include "processors/machine_config.h"
+#include "sim/config.h"
+#include "sim/schema.h"
+
+namespace marti::studies {
+
+/// Those of the section `node`.
+void declare_context_keys(sim::Schema& schema);
+/// The section `prefetch`.
+void declare_prefetch_keys(sim::Schema& schema);
+
+/// Reads both into a machine whose cache, placement and building have been read, and marks those without
+/// effect. Throws UserError naming file, line and key.
+void read_contexts(sim::Config& config, processors::MachineConfig& machine);
+
+}  // namespace marti::studies

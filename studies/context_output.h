@@ -1,0 +1,20 @@
+// What is said about contexts and prefetching: in the summary and in result.json.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "processors/machine_config.h"
+#include "processors/replay.h"
+
+namespace marti::studies {
+
+/// The field machine.contexts, as docs/result-schema.md describes it; the nodes one by one when `per_node`.
+[[nodiscard]] nlohmann::ordered_json context_json(const processors::MachineConfig& machine,
+                                                  const processors::ContextResult& result, bool per_node);
+
+/// Lines of the summary; empty with one context and no prefetch.
+[[nodiscard]] std::string context_lines(const processors::MachineConfig& machine,
+                                        const processors::ContextResult& result);
+
+}  // namespace marti::studies

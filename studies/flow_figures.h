@@ -1,0 +1,61 @@
+// Figures of the schemes in which rays move: how busy stages and nodes are, and what their waits are due to.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "processors/replay.h"
+
+namespace marti::studies {
+
+/// The nodes of one stage of all clusters, or all nodes where there are no stages.
+struct StageLoad {
+  std::string name;  ///< "search", "nearest", "shade"; "nodes" where there are no stages
+  std::uint64_t nodes = 0;
+  double busy = 0.0;     ///< mean share of the frame that a node neither waits for rays or queues nor idles
+  double busiest = 0.0;  ///< of the busiest node
+  double queue_full = 0.0;  ///< mean share of the frame that a node waits for a full queue
+  std::int64_t longest_queue = 0;
+
+  /// Largest over mean busy time; nothing when no node was busy.
+  [[nodiscard]] std::optional<double> imbalance() const {
+    return busy > 0.0 ? std::optional(busiest / busy) : std::nullopt;
+  }
+};
+
+struct FlowFigures {
+  StageLoad all;
+  std::vector<StageLoad> stages;  ///< empty where there are none
+  std::int64_t messages = 0;      ///< that went through the networks
+  std::int64_t bytes = 0;
+  double hops_a_message = 0.0;
+  /// Busy time over links times frame time, of the busiest cluster's network; nothing for an ideal one.
+  std::optional<double> network;
+  std::uint64_t least_memory = 0;  ///< bytes of the database in a node's own memory: least, mean, most
+  double mean_memory = 0.0;
+  std::uint64_t most_memory = 0;
+
+  /// The stage whose nodes are busiest; where there are no stages, all nodes.
+  [[nodiscard]] const StageLoad& slowest() const;
+};
+
+/// `result` is of a scheme in which rays move.
+[[nodiscard]] FlowFigures flow_figures(const processors::MachineConfig& machine,
+                                       const processors::MachineResult& result);
+
+/// What the nodes' waits for rays and for queues are due to: the part that is always busy, if there is one
+/// (the slowest stage; without stages the busiest node), else full queues and messages. Ticks; all are 0 with
+/// the image scheme.
+struct FlowWaits {
+  double slowest = 0.0;
+  double queues = 0.0;
+  double messages = 0.0;
+};
+[[nodiscard]] FlowWaits flow_waits(const processors::MachineConfig& machine,
+                                   const processors::MachineResult& result);
+
+/// Above this share of the frame a stage or a node counts as always busy.
+inline constexpr double always_busy = 0.8;
+
+}  // namespace marti::studies

@@ -1,0 +1,19 @@
+// What is said about the schemes in which rays move: in the summary and in result.json.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "processors/replay.h"
+
+namespace marti::studies {
+
+/// The field machine.flow, as docs/result-schema.md describes it; the nodes one by one when `per_node`.
+[[nodiscard]] nlohmann::ordered_json flow_json(const processors::MachineConfig& machine,
+                                               const processors::MachineResult& result, bool per_node);
+
+/// Lines of the summary; empty with the image scheme.
+[[nodiscard]] std::string flow_lines(const processors::MachineConfig& machine,
+                                     const processors::MachineResult& result);
+
+}  // namespace marti::studies

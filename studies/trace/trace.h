@@ -1,0 +1,28 @@
+// `marti trace`: the references of each node as a file for other cache simulators.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "sim/config.h"
+
+namespace marti::studies {
+
+struct TraceOptions {
+  std::string nodes;                                   ///< "0-3", "5", "0,2,8-9"; empty: all
+  std::uint64_t most_bytes = std::uint64_t{4} << 30U;  ///< of all files together
+};
+
+/// Runs the configuration's machine once and writes node-00000.din and so on to `directory`, which must
+/// exist. A line is
+///     label address kind
+/// in the traditional din format (M. D. Hill, Dinero III; J. Edler, M. D. Hill, Dinero IV): label 0 for a
+/// read, 1 for a write; the address in hexadecimal digits; the kind of record, which such readers skip.
+/// Returns what to tell the user. Throws UserError, and leaves no file behind, for a machine whose nodes have
+/// no references of their own (another scheme than `image`, a tree that is built), for nodes that are not
+/// there, and when the files would be longer than allowed or cannot be written.
+[[nodiscard]] std::string write_traces(sim::Config& config, const TraceOptions& options,
+                                       const std::filesystem::path& directory);
+
+}  // namespace marti::studies

@@ -1,0 +1,165 @@
+// What a run records beside its result, and traces for other cache simulators.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/cli/shell.h"
+#include "tests/support/temporary_directory.h"
+
+namespace marti::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string small = " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
+const std::string machine = quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") + small;
+
+TEST(ObserveCommand, ARunRecordsATimelineAndHeatMaps) {
+  const TemporaryDirectory directory;
+  const Outcome outcome =
+      marti("run " + machine + " --set record.timeline=true --set record.heat_maps=true -o " +
+            quoted(directory.path() / "out"));
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  for (const char* line :
+       {"lost speed-up", "extra misses", "bounds ", "predicted ", "heat map ", "timeline "}) {
+    EXPECT_NE(outcome.output.find(line), std::string::npos) << line;
+  }
+  for (const char* name :
+       {"timeline.json", "heat.exr", "heat-cycles.png", "heat-misses.png", "heat-waits.png"}) {
+    EXPECT_TRUE(fs::exists(directory.path() / "out" / name)) << name;
+  }
+  const auto timeline = nlohmann::json::parse(read(directory.path() / "out" / "timeline.json"));
+  EXPECT_GT(timeline["traceEvents"].size(), 100U);
+  const auto result = nlohmann::json::parse(read(directory.path() / "out" / "result.json"))["machine"];
+  std::int64_t parts = 0;
+  for (const auto& part : result["speed_up_loss"]["parts_ps"]) {
+    parts += part.get<std::int64_t>();
+  }
+  EXPECT_EQ(parts, 16 * result["frame_time_ps"].get<std::int64_t>() -
+                       result["one_node_time_ps"].get<std::int64_t>());
+  EXPECT_EQ(parts, result["speed_up_loss"]["total_ps"]);
+  double lost = 0.0;
+  for (const auto& part : result["speed_up_loss"]["lost_speed_up"]) {
+    lost += part.get<double>();
+  }
+  EXPECT_NEAR(lost, 16.0 - result["speed_up"].get<double>(), 1e-9);
+  EXPECT_LE(result["bounds"]["frame_time_at_least_ps"], result["frame_time_ps"]);
+  EXPECT_GT(result["bounds"]["prediction"]["mean_value_ps"], 0.0);
+}
+
+TEST(ObserveCommand, RecordingChangesNoResultAndNeedsADirectory) {
+  const TemporaryDirectory directory;
+  const fs::path plain = directory.path() / "plain";
+  const fs::path watched = directory.path() / "watched";
+  ASSERT_EQ(marti("run " + machine + " -o " + quoted(plain)).status, 0);
+  ASSERT_EQ(marti("run " + machine + " --set record.heat_maps=true -o " + quoted(watched)).status, 0);
+  auto a = nlohmann::json::parse(read(plain / "result.json"));
+  auto b = nlohmann::json::parse(read(watched / "result.json"));
+  EXPECT_EQ(a["machine"], b["machine"]);
+  for (const char* key : {"record.timeline", "record.heat_maps"}) {
+    const Outcome outcome = marti("run " + machine + " --set " + key + "=true");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.output.find("give one with -o"), std::string::npos) << outcome.output;
+  }
+  const Outcome unused = marti("run " + machine + " --set record.timeline_events=5 -o " + quoted(plain));
+  EXPECT_EQ(unused.status, 2);
+  EXPECT_NE(unused.output.find("record.timeline = false"), std::string::npos) << unused.output;
+  const Outcome large = marti("run " + machine + " --set record.heat_maps=true --set image.width=32768" +
+                              " --set image.height=32768 -o " + quoted(plain));
+  EXPECT_EQ(large.status, 2);
+  EXPECT_NE(large.output.find("maps of this image take about 64 GiB"), std::string::npos) << large.output;
+  const Outcome backwards = marti("run " + machine +
+                                  " --set record.timeline=true --set record.timeline_from=2ms"
+                                  " --set record.timeline_to=1ms -o " +
+                                  quoted(plain));
+  EXPECT_EQ(backwards.status, 2);
+  EXPECT_NE(backwards.output.find("must lie before"), std::string::npos) << backwards.output;
+}
+
+struct Counts {
+  std::int64_t hits = 0;
+  std::int64_t misses = 0;
+  std::int64_t writes = 0;
+};
+
+// What a simulator of one LRU cache makes of a din file: labels 0 and 1, four bytes from a multiple of four
+// on; writes go past the cache.
+Counts simulate(const fs::path& file, std::uint64_t size, std::uint64_t line, std::uint64_t ways) {
+  std::map<std::uint64_t, std::vector<std::uint64_t>> sets;
+  Counts counts;
+  std::ifstream in(file);
+  for (std::string text; std::getline(in, text);) {
+    const char label = text.at(0);
+    const std::uint64_t number = (std::stoull(text.substr(2), nullptr, 16) & ~std::uint64_t{3}) / line;
+    if (label == '1') {
+      ++counts.writes;
+      continue;
+    }
+    EXPECT_EQ(label, '0');
+    std::vector<std::uint64_t>& set = sets[number % (size / line / ways)];
+    const auto at = std::find(set.begin(), set.end(), number);
+    ++(at != set.end() ? counts.hits : counts.misses);
+    if (at != set.end()) {
+      set.erase(at);
+    } else if (set.size() == ways) {
+      set.erase(set.begin());
+    }
+    set.push_back(number);
+  }
+  return counts;
+}
+
+TEST(TraceCommand, GivesAnotherSimulatorTheHitsAndMissesOfEachNode) {
+  const TemporaryDirectory directory;
+  const std::string options = machine + " --set machine.nodes=3 --set cache.size=2KiB --set cache.ways=2";
+  const Outcome run = marti("run " + options + " --json");
+  ASSERT_EQ(run.status, 0) << run.output;
+  const Outcome trace = marti("trace " + options + " --format din -o " + quoted(directory.path()));
+  ASSERT_EQ(trace.status, 0) << trace.output;
+  const auto nodes = nlohmann::json::parse(run.output)["machine"]["per_node"];
+  ASSERT_EQ(nodes.size(), 3U);
+  for (std::size_t node = 0; node < 3; ++node) {
+    const fs::path file = directory.path() / ("node-0000" + std::to_string(node) + ".din");
+    const Counts counts = simulate(file, 2048, 32, 2);
+    EXPECT_EQ(counts.hits, nodes[node]["hits"]);
+    EXPECT_EQ(counts.misses, nodes[node]["misses"]);
+    EXPECT_EQ(counts.writes, nodes[node]["writes"]);
+    EXPECT_GT(counts.misses, 0);
+  }
+}
+
+TEST(TraceCommand, SaysWhyItCannotAndLeavesNothing) {
+  const TemporaryDirectory directory;
+  const std::string out = " -o " + quoted(directory.path() / "out");
+  const auto refused = [&](const std::string& arguments, const std::string& why) {
+    const Outcome outcome = marti("trace " + arguments + out);
+    EXPECT_EQ(outcome.status, 2) << outcome.output;
+    EXPECT_NE(outcome.output.find(why), std::string::npos) << outcome.output;
+    EXPECT_TRUE(!fs::exists(directory.path() / "out") || fs::is_empty(directory.path() / "out"));
+  };
+  refused(machine + " --limit 1KiB", "more than --limit = 1 KiB");
+  refused(machine + " --limit 5kB", "--limit");
+  refused(machine + " --nodes 3-16", "no node 16");
+  refused(machine + " --format xml", "xml");
+  refused(machine + " --set build.sharing=shared", "build.sharing");
+  const Outcome full =
+      shell("trap '' XFSZ; ulimit -f 8; " + quoted(MARTI_PROGRAM) + " trace " + machine + out);
+  EXPECT_EQ(full.status, 2) << full.output;
+  EXPECT_NE(full.output.find("cannot be written"), std::string::npos) << full.output;
+  EXPECT_TRUE(fs::is_empty(directory.path() / "out"));
+}
+
+TEST(Command, AReaderThatGoesAwayIsAnErrorOfWriting) {
+  const Outcome outcome =
+      shell("( sleep 0.3; " + quoted(MARTI_PROGRAM) + " config; echo status $? >&2 ) | true");
+  EXPECT_NE(outcome.output.find("standard output cannot be written"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("status 2"), std::string::npos) << outcome.output;
+}
+
+}  // namespace
+}  // namespace marti::test

@@ -1,0 +1,481 @@
+// A second model of the space scheme, for comparison: plain structures, an event for everything, no running
+// ahead, no pools. It shares with the first one only the log's reader, step costs, the layout, the regions
+// and the network.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <tuple>
+#include <vector>
+
+#include "memory/cache.h"
+#include "memory/network.h"
+#include "processors/node_caches.h"
+#include "processors/node_order.h"
+#include "processors/program/ray_tree.h"
+#include "processors/replay.h"
+#include "processors/space.h"
+#include "processors/space_plan.h"
+#include "processors/step_time.h"
+
+namespace marti::test {
+
+class NaiveSpace {
+ public:
+  /// Caches of random replacement draw from a stream for each node and are not for this model.
+  NaiveSpace(const processors::WorkLog& log, const processors::MachineConfig& machine)
+      : log_(log),
+        machine_(machine),
+        layout_(
+            machine.layout,
+            {log.topology.nodes.size(), log.topology.entries.size(), log.primitives, log.materials,
+             log.texture_begin.empty() ? 0 : log.texture_begin.back(), std::uint64_t{log.width} * log.height},
+            log.quadrics.size()),
+        plan_(processors::plan_space(log, machine, layout_)),
+        ticks_(processors::step_ticks(machine, log)),
+        packets_(log.width, log.height, machine.packets),
+        nodes_(machine.all_nodes()),
+        clusters_(machine.clusters) {
+    if (machine.layout.node_order == memory::NodeOrder::depth_first) {
+      rank_ = processors::depth_first_rank(log.topology);
+    }
+    for (Node& node : nodes_) {
+      make_caches(node);
+    }
+    for (Cluster& cluster : clusters_) {
+      cluster.network = memory::make_network(machine.network, machine.nodes);
+      cluster.ready_at = machine.host.clock.cycles(machine.host.latency_cycles);
+    }
+  }
+
+  processors::MachineResult run() {
+    for (std::uint32_t c = 0; c < machine_.clusters; ++c) {
+      post(clusters_[c].ready_at, admit_class, c, {});
+    }
+    while (!events_.empty()) {
+      const auto [time, event_class, component, sequence, ray] = *events_.begin();
+      events_.erase(events_.begin());
+      switch (event_class) {
+        case arrive_class:
+          nodes_[component].queue.push_back({time, ray});
+          if (nodes_[component].idle) {
+            post(time, look_class, component, {});
+          }
+          break;
+        case done_class:
+          done(component, time);
+          break;
+        case look_class:
+          if (nodes_[component].idle) {
+            look(component, time);
+          }
+          break;
+        default:
+          admit(component, time);
+      }
+    }
+    return result();
+  }
+
+ private:
+  enum : int { arrive_class, done_class, look_class, admit_class };
+
+  struct Ray {
+    std::shared_ptr<std::vector<processors::LoggedRay>> tree;
+    std::uint32_t number = 0;
+    const std::uint32_t* word = nullptr;
+    [[nodiscard]] const processors::LoggedRay& logged() const { return (*tree)[number]; }
+    [[nodiscard]] bool over() const { return word == logged().end; }
+    [[nodiscard]] bool contributes() const {
+      bool lit = logged().kind != processors::RayKind::shadow;
+      for (const std::uint32_t* w = logged().begin; w != logged().end; w += processors::step_words(w)) {
+        lit = lit || processors::step_of(*w) == processors::Step::light;
+      }
+      return lit;
+    }
+  };
+  using RayPointer = std::shared_ptr<Ray>;
+  struct Queued {
+    sim::Ticks arrival;
+    RayPointer ray;
+  };
+  struct Waiting {
+    std::optional<std::uint32_t> from;  // nothing: the host
+    RayPointer ray;
+  };
+  struct Node {
+    std::deque<Queued> queue;
+    std::deque<Waiting> waiting;
+    std::vector<RayPointer> made;
+    RayPointer current;
+    bool idle = true;
+    std::int64_t slots = 0;
+    std::int64_t set_aside = 0;
+    sim::Ticks free_at = 0;
+    std::vector<memory::Cache> caches;
+    processors::NodeStatistics statistics;
+    processors::FlowCounts counts;
+  };
+  struct Cluster {
+    std::unique_ptr<memory::Network> network;
+    sim::Ticks ready_at = 0;
+    std::int64_t in_flight = 0;
+    std::deque<std::pair<std::uint32_t, std::uint32_t>> pixels;  // of the packet it has drawn
+  };
+
+  void post(sim::Ticks time, int event_class, std::uint32_t component, RayPointer ray) {
+    events_.insert({time, event_class, component, sequence_++, std::move(ray)});
+  }
+  std::uint32_t base(std::uint32_t node) const { return node / machine_.nodes * machine_.nodes; }
+  Cluster& cluster_of(std::uint32_t node) { return clusters_[node / machine_.nodes]; }
+
+  std::optional<std::uint32_t> owner(const std::uint32_t* word) const {
+    using processors::Step;
+    const Step step = processors::step_of(*word);
+    if (step != Step::branch && step != Step::leaf && step != Step::partial_leaf &&
+        step != Step::mailed_leaf && step != Step::cut) {
+      return std::nullopt;
+    }
+    const std::uint32_t region = plan_.regions.region_of[processors::operand_of(*word)];
+    if (region == processors::RegionMap::top) {
+      return std::nullopt;
+    }
+    return plan_.node_of_region[region];
+  }
+
+  // --- host ---
+
+  bool draw(Cluster& cluster) {
+    while (cluster.pixels.empty() && next_packet_ < packets_.size()) {
+      const processors::Packet packet = packets_[next_packet_++];
+      for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
+        for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
+          if (!log_.pixel(x, y).empty()) {
+            cluster.pixels.emplace_back(x, y);
+          }
+        }
+      }
+    }
+    return !cluster.pixels.empty();
+  }
+
+  void admit(std::uint32_t number, sim::Ticks now) {
+    Cluster& cluster = clusters_[number];
+    while (cluster.in_flight < processors::admission_limit(machine_) && draw(cluster)) {
+      if (cluster.ready_at > now) {
+        post(cluster.ready_at, admit_class, number, {});
+        return;
+      }
+      const auto [x, y] = cluster.pixels.front();
+      cluster.pixels.pop_front();
+      const sim::Ticks occupancy = machine_.host.clock.cycles(machine_.host.occupancy_cycles);
+      cluster.ready_at = now + occupancy;
+      host_busy_ += occupancy;
+      const auto ray = std::make_shared<Ray>();
+      ray->tree = std::make_shared<std::vector<processors::LoggedRay>>();
+      processors::rays_of_pixel(log_.pixel(x, y), *ray->tree);
+      ray->word = ray->logged().begin;
+      std::optional<std::uint32_t> to;
+      for (const std::uint32_t* w = ray->word; w != ray->logged().end && !to;
+           w += processors::step_words(w)) {
+        to = owner(w);
+      }
+      enter(cluster);
+      offer(std::nullopt, number * machine_.nodes + to.value_or(sent_ % machine_.nodes), ray, now);
+      ++sent_;
+    }
+  }
+
+  void enter(Cluster& cluster) {
+    ++cluster.in_flight;
+    std::int64_t all = 0;
+    for (const Cluster& each : clusters_) {
+      all += each.in_flight;
+    }
+    most_in_flight_ = std::max(most_in_flight_, all);
+  }
+
+  // --- messages ---
+
+  void offer(std::optional<std::uint32_t> from, std::uint32_t to, const RayPointer& ray, sim::Ticks now) {
+    if (nodes_[to].slots < machine_.space.queue) {
+      send(from, to, ray, now);
+      return;
+    }
+    nodes_[to].waiting.push_back({from, ray});
+    if (from) {
+      Node& sender = nodes_[*from];
+      sender.counts.most_set_aside = std::max(sender.counts.most_set_aside, ++sender.set_aside);
+    }
+  }
+
+  void send(std::optional<std::uint32_t> from, std::uint32_t to, const RayPointer& ray, sim::Ticks now) {
+    Node& receiver = nodes_[to];
+    receiver.counts.longest_queue = std::max(receiver.counts.longest_queue, ++receiver.slots);
+    const std::uint32_t bytes = machine_.messages.ray_bytes;
+    std::uint32_t port = machine_.nodes;
+    if (from) {
+      port = *from - base(*from);
+      ++nodes_[*from].counts.passed_on;
+      nodes_[*from].counts.bytes_sent += bytes;
+    }
+    post(cluster_of(to).network->send(now, port, to - base(to), bytes).arrival, arrive_class, to, ray);
+  }
+
+  // --- nodes ---
+
+  void look(std::uint32_t number, sim::Ticks now) {
+    Node& node = nodes_[number];
+    time_of(node, processors::Activity::message_wait) += now - node.free_at;
+    node.free_at = now;
+    sim::Ticks time = now;
+    if (!node.made.empty()) {
+      node.current = node.made.back();
+      node.made.pop_back();
+    } else if (!node.queue.empty()) {
+      node.current = node.queue.front().ray;
+      node.counts.queued += now - node.queue.front().arrival;
+      node.queue.pop_front();
+      --node.slots;
+      ++node.counts.taken;
+      node.idle = false;
+      const sim::Ticks receive = machine_.clock.cycles(machine_.messages.receive_cycles);
+      time_of(node, processors::Activity::messaging) += receive;
+      time += receive;
+      if (!node.waiting.empty()) {
+        const Waiting waited = node.waiting.front();
+        node.waiting.pop_front();
+        if (waited.from) {
+          --nodes_[*waited.from].set_aside;
+        }
+        send(waited.from, number, waited.ray, now);
+      }
+    } else {
+      node.idle = true;
+      return;
+    }
+    node.idle = false;
+    Ray& ray = *node.current;
+    const std::uint32_t port = number - base(number);
+    while (!ray.over() && owner(ray.word).value_or(port) == port) {
+      time += take_step(node, ray.word);
+      ray.word += processors::step_words(ray.word);
+    }
+    if (!ray.over() || ray.contributes()) {
+      const sim::Ticks send = machine_.clock.cycles(machine_.messages.send_cycles);
+      time_of(node, processors::Activity::messaging) += send;
+      time += send;
+    }
+    post(time, done_class, number, {});
+  }
+
+  void done(std::uint32_t number, sim::Ticks now) {
+    Node& node = nodes_[number];
+    const RayPointer ray = std::move(node.current);
+    node.statistics.finish = now;
+    node.free_at = now;
+    if (!ray->over()) {
+      offer(number, base(number) + owner(ray->word).value(), ray, now);
+    } else {
+      Cluster& cluster = cluster_of(number);
+      ++node.counts.ended;
+      if (ray->contributes()) {
+        const std::uint32_t bytes = machine_.messages.contribution_bytes;
+        ++node.counts.contributions;
+        node.counts.bytes_sent += bytes;
+        const sim::Ticks arrival =
+            cluster.network->send(now, number - base(number), machine_.nodes, bytes).arrival;
+        last_arrival_ = std::max(last_arrival_, arrival);
+      }
+      --cluster.in_flight;
+      std::vector<RayPointer> children;
+      for (std::uint32_t child = ray->logged().first_child; child != processors::LoggedRay::none;
+           child = (*ray->tree)[child].next_sibling) {
+        children.push_back(std::make_shared<Ray>(Ray{ray->tree, child, (*ray->tree)[child].begin}));
+        enter(cluster);
+        ++node.counts.made;
+      }
+      node.made.insert(node.made.end(), children.rbegin(), children.rend());
+      post(now, admit_class, number / machine_.nodes, {});
+    }
+    look(number, now);
+  }
+
+  static sim::Ticks& time_of(Node& node, processors::Activity activity) {
+    return node.statistics.time[static_cast<std::size_t>(activity)];
+  }
+
+  // --- steps ---
+
+  void make_caches(Node& node) const {
+    using processors::CacheOrganisation;
+    if (machine_.cache.organisation == CacheOrganisation::unified) {
+      node.caches.emplace_back(machine_.cache.cache);
+    } else if (machine_.cache.organisation == CacheOrganisation::split) {
+      for (const std::uint64_t size : machine_.cache.split_sizes) {
+        memory::CacheConfig part = machine_.cache.cache;
+        part.size = size;
+        node.caches.emplace_back(part);
+      }
+    }
+  }
+
+  sim::Ticks local(Node& node, std::uint64_t bytes) const {
+    const sim::Ticks access = machine_.local.clock.cycles(machine_.local.access_cycles);
+    const std::uint64_t beats = (bytes + machine_.local.width - 1) / machine_.local.width;
+    const sim::Ticks transfer =
+        machine_.local.clock.cycles(machine_.local.cycles_per_beat) * static_cast<sim::Ticks>(beats);
+    time_of(node, processors::Activity::bank_access) += access;
+    time_of(node, processors::Activity::transfer) += transfer;
+    return access + transfer;
+  }
+
+  sim::Ticks refer(Node& node, memory::RecordKind kind, std::uint64_t index, std::uint64_t bytes) const {
+    const auto k = static_cast<std::size_t>(kind);
+    const memory::Address begin = layout_.address(kind, index);
+    const bool cached = !node.caches.empty();
+    const std::uint64_t unit = cached ? machine_.cache.cache.line : machine_.banks.interleave;
+    sim::Ticks time = 0;
+    for (memory::Address at = begin; at < begin + bytes;) {
+      const memory::Address next = std::min((at / unit + 1) * unit, begin + bytes);
+      const bool hit =
+          cached && node.caches[node.caches.size() == 1 ? 0 : processors::split_cache_of[k]].read(at, 1) == 0;
+      if (hit) {
+        ++node.statistics.references.hits[k];
+        time_of(node, processors::Activity::cache_access) += ticks_.hit;
+        time += ticks_.hit;
+      } else {
+        ++node.statistics.references.misses[k];
+        time += local(node, cached ? unit : next - at);
+      }
+      at = next;
+    }
+    return time;
+  }
+  sim::Ticks refer(Node& node, memory::RecordKind kind, std::uint64_t index) const {
+    return refer(node, kind, index, layout_.record_bytes(kind, index));
+  }
+  sim::Ticks refer_node(Node& node, std::uint32_t tree_node) const {
+    return refer(node, memory::RecordKind::node, rank_.empty() ? tree_node : rank_[tree_node]);
+  }
+  static sim::Ticks compute(Node& node, processors::Activity activity, sim::Ticks time) {
+    time_of(node, activity) += time;
+    return time;
+  }
+
+  sim::Ticks take_leaf(Node& node, const std::uint32_t* word) const {
+    using processors::Activity;
+    using processors::Step;
+    processors::StepCounts& steps = node.statistics.steps;
+    const accel::TopologyNode& leaf = log_.topology.nodes[processors::operand_of(*word)];
+    const std::uint32_t entries = processors::step_of(*word) == Step::leaf ? leaf.count : word[1];
+    ++steps.leaves;
+    sim::Ticks time = compute(node, Activity::traversal, ticks_.leaf);
+    time += refer_node(node, processors::operand_of(*word));
+    if (entries == 0) {
+      return time;
+    }
+    ++steps.lists;
+    time += refer(node, memory::RecordKind::list, leaf.first,
+                  std::uint64_t{entries} * layout_.record_bytes(memory::RecordKind::list));
+    for (std::uint32_t entry = 0; entry < entries; ++entry) {
+      if (log_.mailboxes) {
+        ++steps.lookups;
+        time += compute(node, Activity::intersection, ticks_.lookup);
+        if (processors::step_of(*word) == Step::mailed_leaf &&
+            ((word[2 + entry / 32] >> entry % 32) & 1U) == 0) {
+          continue;
+        }
+      }
+      const std::uint32_t primitive = log_.topology.entries[leaf.first + entry];
+      time += compute(node, Activity::intersection,
+                      processors::count_test(ticks_, log_.kind_of(primitive), steps));
+      time += refer(node, memory::RecordKind::primitive, primitive);
+    }
+    return time;
+  }
+
+  sim::Ticks take_step(Node& node, const std::uint32_t* word) const {
+    using memory::RecordKind;
+    using processors::Activity;
+    using processors::Step;
+    processors::StepCounts& steps = node.statistics.steps;
+    const std::uint32_t operand = processors::operand_of(*word);
+    switch (processors::step_of(*word)) {
+      case Step::branch:
+        ++steps.branches;
+        return compute(node, Activity::traversal, ticks_.branch) + refer_node(node, operand);
+      case Step::leaf:
+      case Step::partial_leaf:
+      case Step::mailed_leaf:
+        return take_leaf(node, word);
+      case Step::ray:
+        ++(steps.*processors::ray_counters[operand & 3U]);
+        return compute(node, Activity::traversal, ticks_.ray[operand & 3U]);
+      case Step::shade:
+        ++steps.shades;
+        return compute(node, Activity::shading, ticks_.shade) + refer(node, RecordKind::material, operand);
+      case Step::light:
+        ++steps.lights;
+        return compute(node, Activity::shading, ticks_.light);
+      case Step::texel:
+        ++steps.texels;
+        return compute(node, Activity::shading, ticks_.texel) +
+               refer(node, RecordKind::texel, log_.texture_begin[operand] + word[1]);
+      case Step::cut:
+        ++steps.cuts;
+        return compute(node, Activity::traversal, ticks_.cut) + refer_node(node, operand);
+      case Step::pass:
+        ++steps.passes;
+        return compute(node, Activity::traversal, ticks_.pass) + refer(node, RecordKind::material, operand);
+    }
+    throw std::logic_error("a step that does not exist");
+  }
+
+  processors::MachineResult result() {
+    processors::MachineResult result;
+    result.end = last_arrival_;
+    for (const Node& node : nodes_) {
+      result.end = std::max(result.end, node.statistics.finish);
+    }
+    for (Node& node : nodes_) {
+      time_of(node, processors::Activity::idle) = result.end - node.statistics.finish;
+      result.nodes.push_back(node.statistics);
+      result.flow.nodes.push_back(node.counts);
+      result.flow.collected += node.counts.contributions;
+      result.flow.rays += node.counts.made;
+    }
+    for (const Cluster& cluster : clusters_) {
+      result.flow.networks.push_back(cluster.network->statistics());
+    }
+    result.host.requests = static_cast<std::int64_t>(sent_);
+    result.host.busy = host_busy_;
+    result.flow.rays += result.host.requests;
+    result.flow.most_in_flight = most_in_flight_;
+    return result;
+  }
+
+  const processors::WorkLog& log_;
+  const processors::MachineConfig& machine_;
+  memory::Layout layout_;
+  processors::SpacePlan plan_;
+  processors::StepTicks ticks_;
+  processors::PacketList packets_;
+  std::vector<std::uint32_t> rank_;
+  std::vector<Node> nodes_;
+  std::vector<Cluster> clusters_;
+  std::set<std::tuple<sim::Ticks, int, std::uint32_t, std::uint64_t, RayPointer>> events_;
+  std::uint64_t sequence_ = 0;
+  std::uint64_t next_packet_ = 0;
+  std::uint64_t sent_ = 0;
+  sim::Ticks host_busy_ = 0;
+  std::int64_t most_in_flight_ = 0;
+  sim::Ticks last_arrival_ = 0;
+};
+
+}  // namespace marti::test

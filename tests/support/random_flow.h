@@ -1,0 +1,85 @@
+// Random machines in which rays move, and logs with large trees of rays.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "tests/support/random_machine.h"
+
+namespace marti::test {
+
+/// Any messages and any network.
+inline void add_random_messages(Random& random, processors::MachineConfig& machine) {
+  machine.messages.ray_bytes = static_cast<std::uint32_t>(pick(random, 1, 80));
+  machine.messages.contribution_bytes = static_cast<std::uint32_t>(pick(random, 1, 20));
+  machine.messages.send_cycles = pick(random, 0, 4);
+  machine.messages.receive_cycles = pick(random, 0, 4);
+  machine.network.kind = static_cast<memory::NetworkKind>(pick(random, 0, 4));
+  machine.network.clock = sim::Clock::from_period(pick(random, 1, 40));
+  machine.network.width = static_cast<std::uint32_t>(pick(random, 1, 16));
+  machine.network.cycles_per_beat = pick(random, 0, 2);
+  machine.network.hop_cycles = pick(random, 0, 5);
+  machine.host.occupancy_cycles = pick(random, 0, 1) * pick(random, 0, 30);
+}
+
+/// A pipeline of at most a few nodes, small queues and any admissible number of rays in flight.
+inline void make_random_pipeline(Random& random, processors::MachineConfig& machine) {
+  add_random_messages(random, machine);
+  machine.scheme = processors::Scheme::pipeline;
+  if (machine.placement == processors::Placement::distributed) {
+    machine.placement = processors::Placement::shared;
+  }
+  processors::PipelineConfig& pipeline = machine.pipeline;
+  pipeline.search = static_cast<std::uint32_t>(pick(random, 1, 3));
+  pipeline.nearest = static_cast<std::uint32_t>(pick(random, 1, 3));
+  pipeline.shade = static_cast<std::uint32_t>(pick(random, 1, 3));
+  machine.nodes = pipeline.search + pipeline.nearest + pipeline.shade;
+  pipeline.queue = static_cast<std::uint32_t>(pick(random, 1, 3));
+  pipeline.in_flight =
+      pick(random, 0, 2) == 0 ? 0 : static_cast<std::uint32_t>(pick(random, 1, most_in_flight(pipeline)));
+}
+
+/// Any division of space, small queues and any number of rays in flight.
+inline void make_random_space(Random& random, processors::MachineConfig& machine) {
+  add_random_messages(random, machine);
+  machine.scheme = processors::Scheme::space;
+  processors::SpaceConfig& space = machine.space;
+  space.policy = static_cast<processors::RegionPolicy>(pick(random, 0, 3));
+  space.level = static_cast<std::uint32_t>(pick(random, 1, 6));
+  space.queue = static_cast<std::uint32_t>(pick(random, 0, 1) == 0 ? 1 : pick(random, 1, 9));
+  space.in_flight = static_cast<std::uint32_t>(std::array{0, 1, 2, 30}[random() % 4]);
+  space.sample_step = static_cast<std::uint32_t>(pick(random, 1, 4));
+}
+
+/// A log whose pixels have trees of up to `most_rays` rays, up to `deepest` bounces deep, each with a short
+/// walk; a ray at a hit point has several children.
+inline processors::WorkLog random_ray_trees(Random& random, std::uint32_t width, std::uint32_t height,
+                                            std::int64_t most_rays, std::int64_t deepest) {
+  using processors::make_word;
+  using processors::RayKind;
+  using processors::Step;
+  processors::WorkLog log = random_tree_log(random, width, height);
+  for (processors::LogRow& row : log.rows) {
+    row = {};
+    for (std::uint32_t x = 0; x < width; ++x) {
+      row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+      std::int64_t bounce = 0;
+      for (std::int64_t rays = pick(random, 1, most_rays); rays > 0; --rays) {
+        const auto kind = bounce == 0 ? RayKind::camera : static_cast<RayKind>(pick(random, 1, 3));
+        row.words.push_back(make_word(
+            Step::ray, static_cast<std::uint32_t>(kind) | static_cast<std::uint32_t>(bounce) << 2U));
+        append_walk(random, log.topology, log.mailboxes, 0, row.words);
+        if (kind != RayKind::shadow) {
+          row.words.push_back(make_word(Step::shade, 0));
+        } else if (random() % 2 == 0) {
+          row.words.push_back(make_word(Step::light, 0));
+        }
+        bounce = std::clamp<std::int64_t>(bounce + pick(random, -1, 1), 1, deepest);
+      }
+    }
+    row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+  }
+  return log;
+}
+
+}  // namespace marti::test

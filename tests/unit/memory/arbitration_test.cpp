@@ -1,0 +1,378 @@
+// The bus that is granted by round robin or fixed priority: by hand, against the bus that serves first come
+// first served, and against what no arbitration may change.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "memory/interconnect.h"
+#include "memory/port_set.h"
+
+namespace marti::memory {
+namespace {
+
+constexpr std::uint8_t reply_class = 2;
+constexpr std::uint8_t issue_class = 3;
+constexpr std::uint8_t memory_class = 4;
+
+struct Issue {
+  sim::Ticks at = 0;
+  Transaction transaction;
+  bool write = false;
+};
+
+// Issues given transactions at given times and remembers what came of them.
+class Ports final : public InterconnectClient, public sim::EventHandler {
+ public:
+  Ports(const InterconnectConfig& config, const BankConfig& banks, std::vector<Issue> issues,
+        std::uint32_t ports = 64)
+      : issues_(std::move(issues)), services(ports), written(ports) {
+    interconnect = make_interconnect(config, banks, {engine, *this, reply_class, 0, ports, memory_class});
+    for (const std::uint8_t c : {reply_class, issue_class, memory_class}) {
+      engine.attach(c, *this);
+    }
+    for (std::uint32_t i = 0; i < issues_.size(); ++i) {
+      engine.post(sim::Event::make(issues_[i].at, issue_class, issues_[i].transaction.port, i));
+    }
+    engine.run(100'000);
+  }
+  void handle(const sim::Event& event) override {
+    if (event.event_class() == reply_class) {
+      interconnect->reply(event.component());
+    } else if (event.event_class() == memory_class) {
+      interconnect->proceed(event.component(), event.sequence());
+    } else {
+      const Issue& issue = issues_[event.sequence()];
+      issue.write ? interconnect->write(issue.transaction) : interconnect->read(issue.transaction);
+    }
+  }
+  void read_done(std::uint32_t port, const Service& service) override {
+    services[port].push_back(service);
+    end = std::max(end, service.done);
+  }
+  void write_done(std::uint32_t port, sim::Ticks done) override {
+    written[port].push_back(done);
+    end = std::max(end, done);
+  }
+
+ private:
+  std::vector<Issue> issues_;
+
+ public:
+  sim::Engine engine;
+  std::unique_ptr<Interconnect> interconnect;
+  std::vector<std::vector<Service>> services;  // of each port, in order
+  std::vector<std::vector<sim::Ticks>> written;
+  sim::Ticks end = 0;
+};
+
+// 8 bytes a beat of 10, 10 an address, two banks of 40 to the data and 60 to the next access.
+InterconnectConfig bus(Arbitration arbitration, BusMode mode) {
+  InterconnectConfig config;
+  config.arbitration = arbitration;
+  config.mode = mode;
+  config.clock = sim::Clock::from_period(10);
+  return config;
+}
+
+BankConfig two_banks() {
+  BankConfig banks;
+  banks.count = 2;
+  banks.clock = sim::Clock::from_period(10);
+  return banks;
+}
+
+constexpr std::array arbitrated = {Arbitration::round_robin, Arbitration::fixed_priority};
+
+TEST(Arbitration, RoundRobinGoesOnFromThePortThatHadTheBusLast) {
+  // Held reads of 90 on alternate banks; port 2 has the bus, then 3 is next although 0 and 1 ask, too.
+  Ports ports(bus(Arbitration::round_robin, BusMode::held), two_banks(),
+              {{0, {2, 0, 32}}, {5, {0, 32, 32}}, {6, {1, 0, 32}}, {7, {3, 32, 32}}});
+  EXPECT_EQ(ports.services[2][0].done, 90);
+  EXPECT_EQ(ports.services[3][0].done, 180);
+  EXPECT_EQ(ports.services[0][0].done, 270);
+  EXPECT_EQ(ports.services[1][0].done, 360);
+  EXPECT_EQ(ports.services[1][0].wait_interconnect, 270 - 6);
+}
+
+TEST(Arbitration, FixedPriorityServesTheLowestPortThatAsks) {
+  Ports ports(bus(Arbitration::fixed_priority, BusMode::held), two_banks(),
+              {{0, {2, 0, 32}}, {5, {3, 32, 32}}, {6, {1, 0, 32}}, {7, {0, 32, 32}}});
+  EXPECT_EQ(ports.services[2][0].done, 90);
+  EXPECT_EQ(ports.services[0][0].done, 180);
+  EXPECT_EQ(ports.services[1][0].done, 270);
+  EXPECT_EQ(ports.services[3][0].done, 360);
+}
+
+TEST(Arbitration, AllWhoAskAtTheInstantAtWhichTheBusIsFreeCompete) {
+  for (const Arbitration arbitration : arbitrated) {
+    // Port 5 has the bus from 0 to 90; 7 asks before that, 6 at 90 itself.
+    Ports ports(bus(arbitration, BusMode::held), two_banks(),
+                {{0, {5, 0, 32}}, {10, {7, 32, 32}}, {90, {6, 0, 32}}});
+    EXPECT_EQ(ports.services[6][0].done, 180);
+    EXPECT_EQ(ports.services[6][0].wait_interconnect, 0);
+    EXPECT_EQ(ports.services[7][0].done, 270);
+  }
+}
+
+TEST(Arbitration, DataComeBeforeRequestsUnderFixedPriorityAndInTurnUnderRoundRobin) {
+  // Port 1 sends its address from 0 to 10, its data are ready at 50. Port 0's write of 5 beats and an address
+  // has the bus from 20 to 80; at 80 the data of port 1 and port 0's next request wait.
+  const std::vector<Issue> issues = {{0, {1, 0, 32}}, {20, {0, 32, 40}, true}, {30, {0, 32, 8}, true}};
+  Ports fixed(bus(Arbitration::fixed_priority, BusMode::split), two_banks(), issues);
+  EXPECT_EQ(fixed.services[1][0].done, 80 + 40);
+  EXPECT_EQ(fixed.services[1][0].wait_interconnect, 30);
+  EXPECT_EQ(fixed.written[0][0], 80 + 40);
+  EXPECT_EQ(fixed.written[0][1], 140 + 40) << "granted at 120, at its bank at 140, which is free then";
+  // Round robin: port 0 had the bus last, so it is the turn of port 1 as well.
+  Ports turns(bus(Arbitration::round_robin, BusMode::split), two_banks(), issues);
+  EXPECT_EQ(turns.services[1][0].done, 120);
+  // With the write at port 2 and its next request at port 3, the turn of 3 comes before the data of 1.
+  Ports later(bus(Arbitration::round_robin, BusMode::split), two_banks(),
+              {{0, {1, 0, 32}}, {20, {2, 32, 40}, true}, {30, {3, 32, 8}, true}});
+  EXPECT_EQ(later.services[1][0].done, 100 + 40);
+  EXPECT_EQ(later.written[3][0], 140 + 40) << "at its bank at 100, which the first write keeps to 140";
+}
+
+TEST(Arbitration, NoReadOfAPortOvertakesItsWrites) {
+  for (const Arbitration arbitration : arbitrated) {
+    Ports ports(bus(arbitration, BusMode::held), two_banks(),
+                {{0, {0, 0, 8}, true}, {0, {0, 32, 8}, true}, {1, {0, 64, 32}}, {2, {1, 96, 8}, true}});
+    EXPECT_EQ(ports.written[0].size(), 2U);
+    EXPECT_GT(ports.services[0][0].wait_interconnect, 0);
+    EXPECT_EQ(ports.services[0][0].done - ports.services[0][0].transfer - ports.services[0][0].bank -
+                  ports.services[0][0].wait_bank - ports.services[0][0].wait_interconnect,
+              1);
+    EXPECT_GE(ports.services[0][0].wait_interconnect, 2 * 20 - 1) << "both writes of 20 come first";
+  }
+}
+
+// Ports that ask again as soon as they are served, for ever or for a number of rounds.
+class Greedy final : public InterconnectClient, public sim::EventHandler {
+ public:
+  Greedy(Arbitration arbitration, std::uint32_t ports, std::int64_t reads) : left_(reads), served(ports) {
+    interconnect_ = make_interconnect(bus(arbitration, BusMode::held), two_banks(),
+                                      {engine_, *this, reply_class, 0, ports, memory_class});
+    engine_.attach(issue_class, *this);
+    engine_.attach(memory_class, *this);
+    for (std::uint32_t port = 0; port < ports; ++port) {
+      engine_.post(sim::Event::make(0, issue_class, port));
+    }
+    engine_.run(100'000);
+  }
+  void handle(const sim::Event& event) override {
+    if (event.event_class() == memory_class) {
+      interconnect_->proceed(event.component(), event.sequence());
+    } else {
+      interconnect_->read({event.component(), 32 * static_cast<Address>(granted_ % 2), 32});
+    }
+  }
+  void read_done(std::uint32_t port, const Service& service) override {
+    ++granted_;
+    ++served[port];
+    longest = std::max(longest, service.wait_interconnect);
+    if (--left_ > 0) {
+      engine_.post(sim::Event::make(service.done, issue_class, port));
+    }
+  }
+  void write_done(std::uint32_t /*port*/, sim::Ticks /*done*/) override {}
+
+ private:
+  sim::Engine engine_;
+  std::unique_ptr<Interconnect> interconnect_;
+  std::int64_t left_;
+  std::int64_t granted_ = 0;
+
+ public:
+  std::vector<std::int64_t> served;
+  sim::Ticks longest = 0;
+};
+
+TEST(Arbitration, FixedPriorityStarvesTheHighPortsAndRoundRobinNobody) {
+  constexpr std::uint32_t ports = 7;
+  constexpr std::int64_t reads = 700;
+  const Greedy fixed(Arbitration::fixed_priority, ports, reads);
+  EXPECT_GE(fixed.served[0], reads - ports);
+  for (std::uint32_t port = 1; port < ports; ++port) {
+    EXPECT_LE(fixed.served[port], 1) << "only when nobody asks any more";
+  }
+  const Greedy turns(Arbitration::round_robin, ports, reads);
+  // The reads of the last round are still asked for when the count is used up.
+  for (std::uint32_t port = 0; port < ports; ++port) {
+    EXPECT_NEAR(static_cast<double>(turns.served[port]), static_cast<double>(reads) / ports, 1.0);
+  }
+  // Bank and bus keep a read of two ports for at most 110: 10, up to 20 for the bank, 40, 40.
+  EXPECT_LE(turns.longest, static_cast<sim::Ticks>(ports - 1) * 110);
+}
+
+struct Traffic {
+  std::vector<Issue> issues;
+  InterconnectConfig config;
+  BankConfig banks;
+};
+
+Traffic random_traffic(std::uint64_t seed, bool writes_only) {
+  std::mt19937_64 random(seed);
+  const auto pick = [&](std::int64_t lo, std::int64_t hi) {
+    return lo + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(hi - lo + 1));
+  };
+  Traffic traffic;
+  traffic.config.clock = sim::Clock::from_period(pick(1, 20));
+  traffic.config.mode = static_cast<BusMode>(pick(0, 1));
+  traffic.config.width = static_cast<std::uint32_t>(pick(1, 16));
+  traffic.config.cycles_per_beat = pick(0, 2);
+  traffic.config.address_cycles = pick(0, 2);
+  traffic.banks.count = static_cast<std::uint32_t>(pick(1, 4));
+  traffic.banks.clock = sim::Clock::from_period(pick(1, 20));
+  traffic.banks.access_cycles = pick(0, 6);
+  traffic.banks.busy_cycles = pick(0, 9);
+  sim::Ticks now = 0;
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    now += pick(0, 3) == 0 ? pick(0, 400) : 0;
+    // Each port reads once at most; ports 0 to 3 write.
+    const bool write = writes_only || pick(0, 1) == 0;
+    const auto port = static_cast<std::uint32_t>(write ? pick(0, 3) : i + 4);
+    traffic.issues.push_back(
+        {now, {port, static_cast<Address>(pick(0, 2000)), static_cast<std::uint32_t>(pick(1, 64))}, write});
+  }
+  return traffic;
+}
+
+RC_GTEST_PROP(Arbitration, EqualsFirstComeFirstServedWhenNeverTwoWait, (std::uint64_t seed)) {
+  Traffic traffic = random_traffic(seed, false);
+  for (std::size_t i = 0; i < traffic.issues.size(); ++i) {
+    traffic.issues[i].at = static_cast<sim::Ticks>(i) * 100'000;
+  }
+  const Ports fifo(traffic.config, traffic.banks, traffic.issues);
+  for (const Arbitration arbitration : arbitrated) {
+    traffic.config.arbitration = arbitration;
+    const Ports other(traffic.config, traffic.banks, traffic.issues);
+    RC_ASSERT(other.written == fifo.written);
+    RC_ASSERT(other.end == fifo.end);
+    for (std::size_t port = 0; port < fifo.services.size(); ++port) {
+      RC_ASSERT(other.services[port].size() == fifo.services[port].size());
+      for (std::size_t i = 0; i < fifo.services[port].size(); ++i) {
+        RC_ASSERT(other.services[port][i].done == fifo.services[port][i].done);
+        RC_ASSERT(other.services[port][i].transfer == fifo.services[port][i].transfer);
+        RC_ASSERT(other.services[port][i].wait_interconnect == 0);
+      }
+    }
+    RC_ASSERT(other.interconnect->statistics().busy == fifo.interconnect->statistics().busy);
+    RC_ASSERT(other.interconnect->statistics().waits.count == fifo.interconnect->statistics().waits.count);
+  }
+}
+
+RC_GTEST_PROP(Arbitration, KeepsTheBusAsBusyInAnyOrder, (std::uint64_t seed)) {
+  // Writes hold the bus for a time that does not depend on their order: a bus that never rests while somebody
+  // waits is then busy in the same intervals, whomever it serves.
+  for (const bool writes_only : {true, false}) {
+    Traffic traffic = random_traffic(seed, writes_only);
+    if (writes_only) {
+      traffic.banks.access_cycles = 0;  // a write is done when the bus is, so the end is the bus's
+      traffic.banks.busy_cycles = 0;
+    } else {
+      traffic.config.mode = BusMode::split;
+    }
+    const Ports fifo(traffic.config, traffic.banks, traffic.issues);
+    const InterconnectStatistics& expected = fifo.interconnect->statistics();
+    for (const Arbitration arbitration : arbitrated) {
+      traffic.config.arbitration = arbitration;
+      const Ports other(traffic.config, traffic.banks, traffic.issues);
+      const InterconnectStatistics& got = other.interconnect->statistics();
+      RC_ASSERT(got.reads == expected.reads);
+      RC_ASSERT(got.writes == expected.writes);
+      RC_ASSERT(got.bytes == expected.bytes);
+      RC_ASSERT(got.busy == expected.busy);
+      RC_ASSERT(got.waits.count == expected.waits.count);
+      RC_ASSERT(!writes_only || other.end == fifo.end);
+      std::int64_t accesses = 0;
+      for (const BankStatistics& bank : other.interconnect->bank_statistics()) {
+        accesses += bank.accesses;
+      }
+      RC_ASSERT(accesses == got.reads + got.writes);
+      sim::Ticks waited = 0;
+      for (const auto& port : other.services) {
+        for (const Service& service : port) {
+          waited += service.wait_interconnect;
+        }
+      }
+      RC_ASSERT(waited <= got.waits.sum);
+      if (writes_only && traffic.config.cycles_per_beat == 0) {
+        // All tenures are of one length, so the sum of all waits does not depend on the order either.
+        RC_ASSERT(got.waits.sum == expected.waits.sum);
+      }
+    }
+  }
+}
+
+// The grants worked out once more: whenever the bus is free, look through a list of all that wait.
+RC_GTEST_PROP(Arbitration, WritesAreGrantedAsALongListSays, (std::uint64_t seed)) {
+  Traffic traffic = random_traffic(seed, true);
+  for (const Arbitration arbitration : arbitrated) {
+    traffic.config.arbitration = arbitration;
+    const Ports ports(traffic.config, traffic.banks, traffic.issues);
+    std::vector<Issue> waiting = traffic.issues;
+    std::vector<sim::Ticks> bank_free(traffic.banks.count);
+    std::vector<std::vector<sim::Ticks>> written(64);
+    sim::Ticks free = 0;
+    std::uint32_t last = 63;
+    while (!waiting.empty()) {
+      sim::Ticks now = waiting[0].at;
+      for (const Issue& issue : waiting) {
+        now = std::min(now, issue.at);
+      }
+      now = std::max(now, free);
+      std::size_t best = waiting.size();
+      std::uint32_t best_rank = 64;
+      for (std::size_t i = 0; i < waiting.size(); ++i) {
+        const std::uint32_t port = waiting[i].transaction.port;
+        const std::uint32_t rank =
+            arbitration == Arbitration::fixed_priority ? port : (port + 64 - (last + 1) % 64) % 64;
+        if (waiting[i].at <= now && rank < best_rank) {
+          best = i;
+          best_rank = rank;
+        }
+      }
+      const Transaction& granted = waiting[best].transaction;
+      const std::int64_t beats = (granted.bytes + traffic.config.width - 1) / traffic.config.width;
+      free = now + traffic.config.clock.cycles(traffic.config.address_cycles +
+                                               beats * traffic.config.cycles_per_beat);
+      sim::Ticks& bank = bank_free[granted.address / traffic.banks.interleave % traffic.banks.count];
+      const sim::Ticks start = std::max(free, bank);
+      bank = start + traffic.banks.clock.cycles(traffic.banks.busy_cycles);
+      written[granted.port].push_back(start + traffic.banks.clock.cycles(traffic.banks.access_cycles));
+      last = granted.port;
+      waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(best));
+    }
+    RC_ASSERT(ports.written == written);
+  }
+}
+
+RC_GTEST_PROP(PortSet, FindsWhatASortedSetFinds, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const auto ports = static_cast<std::uint32_t>(1 + random() % (random() % 2 == 0 ? 200 : 70'000));
+  PortSet set(ports);
+  std::set<std::uint32_t> oracle;
+  for (int i = 0; i < 300; ++i) {
+    const auto port = static_cast<std::uint32_t>(random() % ports);
+    if (random() % 2 == 0) {
+      set.insert(port);
+      oracle.insert(port);
+    } else if (const auto at = oracle.lower_bound(port); at != oracle.end()) {
+      set.erase(*at);
+      oracle.erase(at);
+    }
+    const auto from = static_cast<std::uint32_t>(random() % (ports + 1));
+    const auto found = oracle.lower_bound(from);
+    RC_ASSERT(set.empty() == oracle.empty());
+    RC_ASSERT(set.at_or_after(from) == (found == oracle.end() ? PortSet::none : *found));
+  }
+}
+
+}  // namespace
+}  // namespace marti::memory

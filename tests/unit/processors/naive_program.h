@@ -1,0 +1,180 @@
+// A packet's log flattened into single actions, record by record, from the layout and the step costs alone.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "memory/layout.h"
+#include "processors/machine_config.h"
+#include "processors/program/work_log.h"
+#include "processors/step_time.h"
+
+namespace marti::test {
+
+using namespace processors;
+
+struct NaiveAction {
+  enum class What { compute, refer, children, write } what = What::compute;
+  Activity activity = Activity::traversal;
+  sim::Ticks time = 0;
+  memory::RecordKind kind = memory::RecordKind::node;
+  memory::Address address = 0;
+  std::uint32_t bytes = 0;
+  std::uint32_t branch = 0;
+};
+
+class NaiveProgram {
+ public:
+  using Action = NaiveAction;
+
+  NaiveProgram(const WorkLog& log, const MachineConfig& machine)
+      : log_(log),
+        machine_(machine),
+        layout_(machine.layout,
+                {log.topology.nodes.size(), log.topology.entries.size(), log.primitives, log.materials,
+                 log.texture_begin.back(), std::uint64_t{log.width} * log.height},
+                log.quadrics.size()),
+        ticks_(step_ticks(machine, log)),
+        unit_(machine.cache.organisation != CacheOrganisation::none ? machine.cache.cache.line
+                                                                    : machine.banks.interleave) {
+    if (machine.layout.node_order == memory::NodeOrder::depth_first) {
+      number_depth_first();
+    }
+  }
+
+  [[nodiscard]] const memory::Layout& layout() const { return layout_; }
+  [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
+  [[nodiscard]] std::uint32_t unit() const { return unit_; }
+  memory::Address node_address(std::uint32_t node) const {
+    return layout_.address(memory::RecordKind::node, rank_.empty() ? node : rank_[node]);
+  }
+  std::vector<Action> actions_of(const Packet& packet) const {
+    std::vector<Action> actions;
+    for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
+      for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
+        const auto words = log_.pixel(x, y);
+        for (std::size_t i = 0; i < words.size(); i += step_words(&words[i])) {
+          step(actions, &words[i]);
+        }
+        compute(actions, Activity::shading, ticks_.pixel);
+        actions.push_back({Action::What::write});
+        actions.back().address =
+            layout_.address(memory::RecordKind::pixel, std::uint64_t{y} * log_.width + x);
+      }
+    }
+    return actions;
+  }
+
+ private:
+  void number_depth_first() {
+    rank_.resize(log_.topology.nodes.size());
+    std::uint32_t next = 1;
+    number_below(0, next);
+  }
+  void number_below(std::uint32_t number, std::uint32_t& next) {
+    const accel::TopologyNode& node = log_.topology.nodes[number];
+    if (node.leaf) {
+      return;
+    }
+    for (std::uint32_t child = 0; child < node.count; ++child) {
+      rank_[node.first + child] = next++;
+    }
+    for (std::uint32_t child = 0; child < node.count; ++child) {
+      number_below(node.first + child, next);
+    }
+  }
+
+  static void compute(std::vector<Action>& to, Activity activity, sim::Ticks time) {
+    to.push_back({Action::What::compute, activity, time});
+  }
+  void read(std::vector<Action>& to, memory::RecordKind kind, memory::Address at, std::uint64_t bytes) const {
+    for (const memory::Address end = at + bytes; at < end;) {
+      const memory::Address stop = std::min<memory::Address>(end, (at / unit_ + 1) * unit_);
+      to.push_back(
+          {Action::What::refer, Activity::cache_access, 0, kind, at, static_cast<std::uint32_t>(stop - at)});
+      at = stop;
+    }
+  }
+  void read_node(std::vector<Action>& to, std::uint32_t node) const {
+    read(to, memory::RecordKind::node, node_address(node), machine_.layout.node_bytes);
+  }
+  void read_material(std::vector<Action>& to, std::uint32_t material) const {
+    read(to, memory::RecordKind::material, layout_.address(memory::RecordKind::material, material),
+         machine_.layout.material_bytes);
+  }
+  void leaf(std::vector<Action>& to, std::uint32_t number, std::uint32_t entries,
+            const std::uint32_t* mask) const {
+    const accel::TopologyNode& node = log_.topology.nodes[number];
+    compute(to, Activity::traversal, ticks_.leaf);
+    read_node(to, number);
+    if (entries > 0) {
+      read(to, memory::RecordKind::list, layout_.address(memory::RecordKind::list, node.first),
+           std::uint64_t{entries} * machine_.layout.entry_bytes);
+    }
+    for (std::uint32_t i = 0; i < entries; ++i) {
+      compute(to, Activity::intersection, log_.mailboxes ? ticks_.lookup : 0);
+      if (mask != nullptr && !tested_in_mask(mask, i)) {
+        continue;
+      }
+      const std::uint32_t primitive = log_.topology.entries[node.first + i];
+      const std::array<sim::Ticks, 3> tests = {ticks_.test, ticks_.sphere_test, ticks_.cone_test};
+      compute(to, Activity::intersection, tests[static_cast<std::size_t>(log_.kind_of(primitive))]);
+      read(to, memory::RecordKind::primitive, layout_.address(memory::RecordKind::primitive, primitive),
+           layout_.record_bytes(memory::RecordKind::primitive, primitive));
+    }
+  }
+  void step(std::vector<Action>& to, const std::uint32_t* word) const {
+    const std::uint32_t operand = operand_of(*word);
+    switch (step_of(*word)) {
+      case Step::branch:
+        compute(to, Activity::traversal, ticks_.branch);
+        read_node(to, operand);
+        to.push_back({Action::What::children});
+        to.back().branch = operand;
+        break;
+      case Step::leaf:
+        leaf(to, operand, log_.topology.nodes[operand].count, nullptr);
+        break;
+      case Step::partial_leaf:
+        leaf(to, operand, word[1], nullptr);
+        break;
+      case Step::mailed_leaf:
+        leaf(to, operand, word[1], word + 2);
+        break;
+      case Step::ray:
+        compute(to, Activity::traversal, ticks_.ray[operand & 3U]);
+        break;
+      case Step::shade:
+        compute(to, Activity::shading, ticks_.shade);
+        read_material(to, operand);
+        break;
+      case Step::pass:
+        compute(to, Activity::traversal, ticks_.pass);
+        read_material(to, operand);
+        break;
+      case Step::cut:
+        compute(to, Activity::traversal, ticks_.cut);
+        read_node(to, operand);
+        break;
+      case Step::light:
+        compute(to, Activity::shading, ticks_.light);
+        break;
+      case Step::texel:
+        compute(to, Activity::shading, ticks_.texel);
+        read(to, memory::RecordKind::texel,
+             layout_.address(memory::RecordKind::texel, log_.texture_begin[operand] + word[1]),
+             machine_.layout.texel_bytes);
+        break;
+    }
+  }
+
+  const WorkLog& log_;
+  MachineConfig machine_;
+  memory::Layout layout_;
+  StepTicks ticks_;
+  std::uint32_t unit_;
+  std::vector<std::uint32_t> rank_;
+};
+
+}  // namespace marti::test

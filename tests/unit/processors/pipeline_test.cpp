@@ -1,0 +1,278 @@
+// The pipeline against a second implementation, against closed forms, and where it could deadlock.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "processors/load_order.h"
+#include "processors/replay.h"
+#include "processors/stages.h"
+#include "sim/error.h"
+#include "tests/support/naive_pipeline.h"
+#include "tests/support/random_flow.h"
+#include "tests/support/user_error.h"
+
+namespace marti::processors {
+namespace {
+
+using test::pick;
+using test::Random;
+
+sim::Ticks part(const NodeStatistics& node, Activity activity) {
+  return node.time[static_cast<std::size_t>(activity)];
+}
+
+// One cluster with the database in each node and no cache: nothing is shared but queues and network.
+MachineConfig machine_without_shared_memory(Random& random) {
+  MachineConfig machine = test::random_machine(random);
+  test::make_random_pipeline(random, machine);
+  machine.clusters = 1;
+  machine.placement = Placement::replicated;
+  machine.cache.organisation = CacheOrganisation::none;
+  machine.local.width = static_cast<std::uint32_t>(pick(random, 1, 16));
+  machine.local.cycles_per_beat = pick(random, 0, 2);
+  return machine;
+}
+
+void expect_equal(const test::NaivePipeline& naive, const MachineResult& result) {
+  ASSERT_EQ(naive.end, result.end);
+  ASSERT_EQ(naive.nodes.size(), result.nodes.size());
+  for (std::size_t n = 0; n < naive.nodes.size(); ++n) {
+    const test::NaivePipeline::Node& expected = naive.nodes[n];
+    const NodeStatistics& node = result.nodes[n];
+    EXPECT_EQ(expected.finish, node.finish) << "node " << n;
+    EXPECT_EQ(expected.message_wait, part(node, Activity::message_wait));
+    EXPECT_EQ(expected.queue_full_wait, part(node, Activity::queue_full_wait));
+    EXPECT_EQ(expected.messaging, part(node, Activity::messaging));
+    EXPECT_EQ(expected.served, part(node, Activity::traversal) + part(node, Activity::intersection) +
+                                   part(node, Activity::shading) + part(node, Activity::transfer) +
+                                   part(node, Activity::bank_access));
+    const FlowCounts& counts = result.flow.nodes[n];
+    EXPECT_EQ(expected.counts.taken, counts.taken);
+    EXPECT_EQ(expected.counts.made, counts.made);
+    EXPECT_EQ(expected.counts.passed_on, counts.passed_on);
+    EXPECT_EQ(expected.counts.ended, counts.ended);
+    EXPECT_EQ(expected.counts.contributions, counts.contributions);
+    EXPECT_EQ(expected.counts.queued, counts.queued);
+    EXPECT_EQ(expected.counts.longest_queue, counts.longest_queue);
+    EXPECT_EQ(expected.counts.most_set_aside, counts.most_set_aside);
+  }
+  EXPECT_EQ(naive.most_in_flight_seen, result.flow.most_in_flight);
+  EXPECT_EQ(naive.network().busy, result.flow.networks[0].busy);
+  EXPECT_EQ(naive.network().waits.sum, result.flow.networks[0].waits.sum);
+}
+
+RC_GTEST_PROP(Pipeline, EqualsASecondImplementation, (std::uint64_t seed)) {
+  Random random(seed);
+  const auto side = static_cast<std::uint32_t>(pick(random, 1, 7));
+  const WorkLog log = pick(random, 0, 1) == 0 ? test::random_log(random, side, side)
+                                              : test::random_ray_trees(random, side, side, 15, 4);
+  const MachineConfig machine = machine_without_shared_memory(random);
+  expect_equal(test::NaivePipeline(log, machine), replay(log, machine));
+  RC_ASSERT(!::testing::Test::HasFailure());
+}
+
+RC_GTEST_PROP(Pipeline, QueuesOfOneAndAnyNumberInFlightNeverDeadlock, (std::uint64_t seed)) {
+  Random random(seed);
+  const WorkLog log = test::random_ray_trees(random, 4, 4, 60, 8);
+  MachineConfig machine = test::random_machine(random);
+  test::make_random_pipeline(random, machine);
+  if (pick(random, 0, 1) == 0) {
+    machine.pipeline.search = 1;
+    machine.pipeline.nearest = 1;
+    machine.pipeline.shade = 1;
+    machine.nodes = 3;
+  }
+  machine.pipeline.queue = 1;
+  // replay() itself checks that nothing is left over.
+  machine.pipeline.in_flight = 0;
+  const MachineResult most = replay(log, machine);
+  RC_ASSERT(most.flow.most_in_flight <= std::int64_t{machine.clusters} * most_in_flight(machine.pipeline));
+  machine.pipeline.in_flight = 1;
+  RC_ASSERT(replay(log, machine).flow.most_in_flight <= std::int64_t{machine.clusters});
+}
+
+// How often a ray's walk changes its stage, and how it ends; a plain reading of the rules.
+struct Path {
+  std::int64_t moves = 0;
+  std::int64_t contributions = 0;
+};
+Path path_of(const WorkLog& log, const LoggedRay& ray) {
+  Path path;
+  Stage at = Stage::search;
+  bool lit = false;
+  const auto go = [&](Stage next) {
+    path.moves += next != at ? 1 : 0;
+    at = next;
+  };
+  for (const std::uint32_t* word = ray.begin; word != ray.end; word += step_words(word)) {
+    go(stage_of(word));
+    if (visits_leaf(word) && entries_read(word, log.topology) > 0) {
+      go(Stage::nearest);
+    }
+    lit = lit || step_of(*word) == Step::light;
+  }
+  if (ray.kind != RayKind::shadow || ray.first_child != LoggedRay::none) {
+    go(Stage::shade);
+  }
+  path.contributions = ray.kind != RayKind::shadow || lit ? 1 : 0;
+  return path;
+}
+
+// With one ray in flight nothing overlaps but what is under way to the host: the frame is the sum of all
+// steps, each way over an ideal network, and the cycles of each message.
+RC_GTEST_PROP(Pipeline, OneRayAtATimeTakesTheSumOfItsParts, (std::uint64_t seed)) {
+  Random random(seed);
+  const WorkLog log = test::random_ray_trees(random, 3, 3, 10, 3);
+  MachineConfig machine = machine_without_shared_memory(random);
+  machine.pipeline.in_flight = 1;
+  machine.network.kind = memory::NetworkKind::ideal;
+  machine.host.occupancy_cycles = 0;
+  machine.host.latency_cycles = pick(random, 0, 9);
+  const MachineResult result = replay(log, machine);
+
+  const sim::Ticks way = machine.network.clock.cycles(machine.network.hop_cycles);
+  const sim::Ticks send = machine.clock.cycles(machine.messages.send_cycles);
+  const sim::Ticks receive = machine.clock.cycles(machine.messages.receive_cycles);
+  sim::Ticks sum = machine.host.clock.cycles(machine.host.latency_cycles);
+  sim::Ticks last_contribution = 0;
+  std::vector<LoggedRay> rays;
+  for (std::uint32_t pixel = 0; pixel < 9; ++pixel) {
+    rays_of_pixel(log.pixel(pixel % 3, pixel / 3), rays);
+    for (const LoggedRay& ray : rays) {
+      const Path path = path_of(log, ray);
+      // The host composes a camera ray; a node composes the others.
+      sum += (ray.parent == LoggedRay::none ? 0 : send) + way + receive;
+      sum += path.moves * (send + way + receive) + path.contributions * send;
+    }
+  }
+  for (const NodeStatistics& node : result.nodes) {
+    for (const Activity a : {Activity::traversal, Activity::intersection, Activity::shading,
+                             Activity::transfer, Activity::bank_access}) {
+      sum += part(node, a);
+    }
+  }
+  last_contribution = result.end - sum;
+  // The last ray may end without a contribution; then the frame ends with it.
+  RC_ASSERT(last_contribution >= 0);
+  RC_ASSERT(last_contribution <= way);
+
+  // And these steps are those of one node.
+  MachineConfig one = machine;
+  one.scheme = Scheme::image;
+  one.nodes = 1;
+  const TimeDivision whole = replay(log, one).time();
+  const TimeDivision parts = result.time();
+  for (const Activity a :
+       {Activity::traversal, Activity::intersection, Activity::transfer, Activity::bank_access}) {
+    RC_ASSERT(whole[static_cast<std::size_t>(a)] == parts[static_cast<std::size_t>(a)]);
+  }
+}
+
+// A thousand rays that test one leaf each: all the time is in `nearest`, whose queue never runs dry.
+TEST(Pipeline, ASaturatedPipelineTakesTheTimeOfItsSlowestStage) {
+  Random random(7);
+  WorkLog log = test::random_tree_log(random, 1, 1);
+  log.traversal = accel::Traversal::octree;
+  log.mailboxes = false;
+  log.quadrics.clear();
+  log.topology = test::random_topology(random, 0, log.primitives, 0);
+  log.topology.nodes[0].count = 40;
+  log.topology.entries.assign(40, 3);
+  log.width = 40;
+  log.height = 25;
+  log.rows.assign(25, {});
+  for (LogRow& row : log.rows) {
+    for (std::uint32_t x = 0; x <= 40; ++x) {
+      row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+      if (x < 40) {
+        row.words.insert(row.words.end(), {make_word(Step::ray, 0), make_word(Step::leaf, 0)});
+      }
+    }
+  }
+  MachineConfig machine;
+  machine.nodes = 8;
+  machine.scheme = Scheme::pipeline;
+  machine.pipeline.search = 3;
+  machine.pipeline.nearest = 4;
+  machine.pipeline.shade = 1;
+  machine.host.latency_cycles = 0;
+  machine.operations = {1, 1, 1, 1, 1, 1, 1, 1};
+  const MachineResult result = replay(log, machine);
+  sim::Ticks slowest = 0;
+  for (const NodeStatistics& node : result.nodes) {
+    sim::Ticks busy = 0;
+    for (std::size_t a = 0; a < activities; ++a) {
+      const auto activity = static_cast<Activity>(a);
+      if (activity != Activity::message_wait && activity != Activity::queue_full_wait &&
+          activity != Activity::idle) {
+        busy += node.time[a];
+      }
+    }
+    slowest = std::max(slowest, busy);
+  }
+  EXPECT_GE(result.end, slowest);
+  EXPECT_LE(result.end, slowest + slowest / 20);
+  EXPECT_EQ(part(result.nodes[0], Activity::lock_wait), 0);
+}
+
+void expect_refused(const WorkLog& log, const MachineConfig& machine, const std::string& why) {
+  const std::string message = test::user_error_of([&] { (void)replay(log, machine); });
+  EXPECT_NE(message.find(why), std::string::npos) << message;
+}
+
+TEST(Pipeline, RefusesWhatCannotBeBuilt) {
+  Random random(3);
+  const WorkLog log = test::random_ray_trees(random, 2, 2, 3, 2);
+  MachineConfig machine;
+  machine.scheme = Scheme::pipeline;
+  machine.nodes = 2;
+  expect_refused(log, machine, "machine.nodes");
+  machine.nodes = 5;
+  machine.pipeline.search = 3;
+  machine.pipeline.nearest = 1;
+  machine.pipeline.shade = 2;
+  expect_refused(log, machine, "3 + 1 + 2 = 6");
+  machine.pipeline.shade = 1;
+  machine.pipeline.queue = 0;
+  expect_refused(log, machine, "pipeline.queue");
+  machine.pipeline.queue = 2;
+  machine.pipeline.in_flight = 12;
+  expect_refused(log, machine, "more than 11");
+  machine.pipeline.in_flight = 11;
+  EXPECT_GT(replay(log, machine).end, 0);
+  machine.build.sharing = Sharing::none;
+  expect_refused(log, machine, "build.sharing");
+}
+
+TEST(Pipeline, SharesOfAnyNumberOfNodesAreStagesOfAtLeastOne) {
+  for (std::uint32_t nodes = 3; nodes < 400; ++nodes) {
+    const PipelineConfig shares = default_stages(nodes);
+    EXPECT_GE(shares.search, 1U);
+    EXPECT_GE(shares.nearest, 1U);
+    EXPECT_GE(shares.shade, 1U);
+    EXPECT_EQ(shares.search + shares.nearest + shares.shade, nodes);
+  }
+  const PipelineConfig defaults;
+  const PipelineConfig shares = default_stages(16);
+  EXPECT_EQ(shares.search, defaults.search);
+  EXPECT_EQ(shares.nearest, defaults.nearest);
+  EXPECT_EQ(shares.shade, defaults.shade);
+}
+
+RC_GTEST_PROP(Pipeline, TheLeastLoadedNodeIsFound, (std::uint64_t seed)) {
+  Random random(seed);
+  const auto nodes = static_cast<std::uint32_t>(pick(random, 1, 9000));
+  LoadOrder order(nodes);
+  std::vector<std::uint32_t> loads(nodes, 0);
+  for (int i = 0; i < 200; ++i) {
+    const auto node = static_cast<std::uint32_t>(random() % nodes);
+    loads[node] = pick(random, 0, 4) == 0 ? LoadOrder::none : static_cast<std::uint32_t>(pick(random, 0, 9));
+    order.set(node, loads[node]);
+    const auto least = std::min_element(loads.begin(), loads.end());
+    RC_ASSERT(
+        order.least() ==
+        (*least == LoadOrder::none ? LoadOrder::none : static_cast<std::uint32_t>(least - loads.begin())));
+  }
+}
+
+}  // namespace
+}  // namespace marti::processors

@@ -1,0 +1,271 @@
+// Time lines and heat maps against the machine's own accounts.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "processors/replay.h"
+#include "sim/error.h"
+#include "studies/record/colour_scale.h"
+#include "studies/record/heat_files.h"
+#include "studies/record/heat_map.h"
+#include "studies/record/observers.h"
+#include "studies/record/timeline.h"
+#include "tests/cli/shell.h"
+#include "tests/support/random_machine.h"
+#include "tests/support/temporary_directory.h"
+
+namespace marti::studies {
+namespace {
+
+using processors::Activity;
+using processors::MachineConfig;
+using processors::MachineResult;
+using processors::NodeState;
+
+MachineResult watched(const processors::WorkLog& log, const MachineConfig& machine,
+                      processors::Observer& observer) {
+  Observers all;
+  all.add(observer);
+  processors::ReplayOptions options;
+  options.observer = &all;
+  return processors::replay(log, machine, options);
+}
+
+// "12.000345" microseconds are 12,000,345 ticks.
+sim::Ticks ticks_of(const nlohmann::json& microseconds) {
+  return std::llround(microseconds.get<double>() * 1e6);
+}
+
+struct Slices {
+  std::map<std::pair<int, std::string>, sim::Ticks> time;  // by track and name
+  std::map<int, std::vector<std::pair<sim::Ticks, sim::Ticks>>> tracks;
+  std::set<std::string> names;  // of tracks and processes
+  std::int64_t events = 0;
+  bool note = false;
+};
+
+Slices read_timeline(const std::filesystem::path& file) {
+  const nlohmann::json trace = nlohmann::json::parse(test::read(file));
+  Slices slices;
+  slices.note = trace.contains("otherData");
+  for (const nlohmann::json& event : trace.at("traceEvents")) {
+    if (event.at("ph") == "M") {
+      if (event.at("args").contains("name")) {
+        slices.names.insert(event.at("args").at("name"));
+      }
+      continue;
+    }
+    EXPECT_EQ(event.at("ph"), "X");
+    ++slices.events;
+    const sim::Ticks from = ticks_of(event.at("ts"));
+    const sim::Ticks length = ticks_of(event.at("dur"));
+    EXPECT_GT(length, 0);
+    slices.time[{event.at("tid"), event.at("name")}] += length;
+    slices.tracks[event.at("tid")].emplace_back(from, from + length);
+    if (event.contains("args")) {
+      EXPECT_TRUE(event.at("args").contains("x") && event.at("args").contains("y") &&
+                  event.at("args").contains("packet"));
+    }
+  }
+  return slices;
+}
+
+struct Machine {
+  explicit Machine(std::uint64_t seed) {
+    test::Random random(seed);
+    log = test::random_tree_log(random, 12, 10);
+    config = test::random_machine(random);
+    config.placement = processors::Placement::shared;
+    if (seed % 2 == 0) {
+      config.build = test::random_build(random);
+    }
+  }
+  processors::WorkLog log;
+  MachineConfig config;
+};
+
+TEST(Timelines, HoldTheWholeFrameNodeByNode) {
+  const test::TemporaryDirectory directory;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const Machine machine(seed);
+    const std::filesystem::path file = directory.path() / "timeline.json";
+    Timeline timeline(file, {});
+    const MachineResult result = watched(machine.log, machine.config, timeline);
+    EXPECT_EQ(timeline.cut_at(), std::nullopt);
+    timeline.commit();
+    Slices slices = read_timeline(file);
+    EXPECT_EQ(slices.events, timeline.events());
+    EXPECT_FALSE(slices.note);
+    for (std::size_t node = 0; node < result.nodes.size(); ++node) {
+      const int track = static_cast<int>(node) + 1;
+      const processors::TimeDivision& time = result.nodes[node].time;
+      const bool own_memory = machine.config.build.sharing == processors::Sharing::private_trees;
+      for (const Activity activity :
+           {Activity::interconnect_wait, Activity::transfer, Activity::bank_wait, Activity::bank_access,
+            Activity::lock_wait, Activity::queue_full_wait, Activity::dispatch_wait, Activity::idle}) {
+        if (own_memory && (activity == Activity::transfer || activity == Activity::bank_access)) {
+          continue;
+        }
+        const auto index = static_cast<std::size_t>(activity);
+        const std::pair key(track, std::string(processors::activity_names[index]));
+        EXPECT_EQ(slices.time[key], time[index])
+            << "seed " << seed << ", node " << node << ", " << key.second;
+      }
+      sim::Ticks at = 0;
+      for (const auto& [from, to] : slices.tracks[track]) {
+        EXPECT_EQ(from, at);
+        at = to;
+      }
+      EXPECT_EQ(at, result.end);
+      EXPECT_TRUE(result.end == 0 || slices.names.contains("node " + std::to_string(node)));
+    }
+  }
+}
+
+TEST(Timelines, KeepToTheirWindow) {
+  const test::TemporaryDirectory directory;
+  const Machine machine(7);
+  const sim::Ticks end = processors::replay(machine.log, machine.config).end;
+  const std::filesystem::path file = directory.path() / "timeline.json";
+  Timeline timeline(file, {.from = end / 3, .to = end / 2});
+  const MachineResult result = watched(machine.log, machine.config, timeline);
+  timeline.commit();
+  const Slices slices = read_timeline(file);
+  EXPECT_EQ(slices.tracks.size(), result.nodes.size());
+  for (const auto& [track, pieces] : slices.tracks) {
+    EXPECT_EQ(pieces.front().first, end / 3);
+    EXPECT_EQ(pieces.back().second, end / 2);
+  }
+}
+
+TEST(Timelines, AreCutAtTheirLimitAndSaySo) {
+  const test::TemporaryDirectory directory;
+  const Machine machine(7);
+  const std::filesystem::path file = directory.path() / "timeline.json";
+  Timeline whole(file, {});
+  (void)watched(machine.log, machine.config, whole);
+  ASSERT_GT(whole.events(), 10);
+  for (const std::int64_t limit : {std::int64_t{1}, std::int64_t{10}, whole.events() - 1, whole.events()}) {
+    Timeline timeline(file, {.most_events = limit});
+    (void)watched(machine.log, machine.config, timeline);
+    timeline.commit();
+    const Slices slices = read_timeline(file);
+    EXPECT_EQ(slices.events, limit);
+    EXPECT_EQ(slices.note, limit < whole.events());
+    EXPECT_EQ(timeline.cut_at().has_value(), limit < whole.events());
+  }
+}
+
+TEST(Timelines, LeaveNothingBehindUnlessCommitted) {
+  const test::TemporaryDirectory directory;
+  const Machine machine(3);
+  {
+    Timeline timeline(directory.path() / "timeline.json", {});
+    (void)watched(machine.log, machine.config, timeline);
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(directory.path()));
+  EXPECT_THROW(Timeline(directory.path() / "none" / "timeline.json", {}), sim::UserError);
+}
+
+TEST(HeatMaps, AddUpToTheMachinesAccounts) {
+  for (std::uint64_t seed = 1; seed <= 19; seed += 2) {
+    const Machine machine(seed);
+    HeatMap map;
+    const MachineResult result = watched(machine.log, machine.config, map);
+    const auto sum = [&](Heat heat) {
+      std::int64_t total = 0;
+      for (const std::int64_t value : map.values(heat)) {
+        total += value;
+      }
+      return total;
+    };
+    const processors::TimeDivision time = result.time();
+    const auto part = [&](Activity activity) { return time[static_cast<std::size_t>(activity)]; };
+    EXPECT_EQ(sum(Heat::cycles),
+              processors::sum_of(time) - part(Activity::dispatch_wait) - part(Activity::idle));
+    EXPECT_EQ(sum(Heat::misses), result.references().all_misses());
+    EXPECT_EQ(sum(Heat::waits), part(Activity::interconnect_wait) + part(Activity::transfer) +
+                                    part(Activity::bank_wait) + part(Activity::bank_access) +
+                                    part(Activity::queue_full_wait));
+  }
+}
+
+TEST(HeatMaps, AreWrittenAllOrNone) {
+  const test::TemporaryDirectory directory;
+  const Machine machine(1);
+  HeatMap map;
+  (void)watched(machine.log, machine.config, map);
+  { const HeatFiles dropped(map, directory.path()); }
+  EXPECT_TRUE(std::filesystem::is_empty(directory.path()));
+  HeatFiles files(map, directory.path());
+  files.commit();
+  for (const char* name : {"heat.exr", "heat-cycles.png", "heat-misses.png", "heat-waits.png"}) {
+    EXPECT_GT(std::filesystem::file_size(directory.path() / name), 50U) << name;
+  }
+  EXPECT_EQ(files.files().size(), 4U);
+}
+
+TEST(HeatMaps, LegendLeavesOutTheTopHundredth) {
+  std::vector<float> figures;
+  for (int i = 1; i <= 200; ++i) {
+    figures.push_back(static_cast<float>(i));
+  }
+  const Legend legend = legend_of(figures);
+  EXPECT_EQ(legend.brightest, 198.0);
+  EXPECT_EQ(legend.largest, 200.0);
+  EXPECT_EQ(legend.mean, 100.5);
+  EXPECT_EQ(legend_of({0.0F, 0.0F}).brightest, 0.0);
+  std::vector<float> rare(1000, 0.0F);
+  rare[3] = 5.0F;
+  EXPECT_EQ(legend_of(rare).brightest, 5.0) << "a scale without length shows nothing";
+}
+
+// CIE 1976 lightness, for every kind of vision the order that counts.
+TEST(HeatMaps, ColoursGetLighterAllTheWay) {
+  double last = -1.0;
+  for (int i = 0; i <= 1000; ++i) {
+    const glm::vec3 colour = colour_of(i / 1000.0);
+    const double luminance = 0.2126 * static_cast<double>(colour.x) + 0.7152 * static_cast<double>(colour.y) +
+                             0.0722 * static_cast<double>(colour.z);
+    const double lightness = luminance > 0.008856 ? 116.0 * std::cbrt(luminance) - 16.0 : 903.3 * luminance;
+    EXPECT_GT(lightness, last) << i;
+    last = lightness;
+  }
+  EXPECT_GT(last, 85.0);
+  EXPECT_EQ(colour_of(-1.0), colour_of(0.0));
+  EXPECT_EQ(colour_of(7.0), colour_of(1.0));
+}
+
+/// Forgets what it is told about idling.
+class Forgetful final : public processors::Observer {
+ public:
+  explicit Forgetful(processors::Observer& next) : next_(next) {}
+  void begin(const processors::ReplayInput& input) override { next_.begin(input); }
+  void spent(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to,
+             processors::PixelPlace pixel) override {
+    if (state != NodeState::idle) {
+      next_.spent(node, state, from, to, pixel);
+    }
+  }
+  void end(sim::Ticks time) override { next_.end(time); }
+
+ private:
+  processors::Observer& next_;
+};
+
+TEST(Observing, ATimeLineThatEndsTooEarlyIsAFault) {
+  const Machine machine(1);
+  ASSERT_GT(processors::replay(machine.log, machine.config).time()[static_cast<std::size_t>(Activity::idle)],
+            0);
+  Observers all;
+  Forgetful forgetful(all);
+  processors::ReplayOptions options;
+  options.observer = &forgetful;
+  EXPECT_THROW((void)processors::replay(machine.log, machine.config, options), sim::InternalError);
+}
+
+}  // namespace
+}  // namespace marti::studies
