@@ -113,7 +113,7 @@ void ArbitratedBus::grant_read(const Request& request) {
   const auto& [port, address, bytes] = request.transaction;
   const Ticks now = site_.engine.now();
   const Ticks sent = add_ticks(now, address_);
-  const BankAccess access = banks_.access(banks_.bank_of(address), sent);
+  const BankAccess access = banks_.read(address, sent);
   Service service = {0, now - request.asked, address_, access.start - sent, access.ready - access.start};
   if (mode_ == BusMode::split) {
     take(request.asked, address_);
@@ -132,7 +132,7 @@ void ArbitratedBus::grant_read(const Request& request) {
 void ArbitratedBus::grant_write(const Request& request) {
   const Ticks length = add_ticks(address_, beats_(request.transaction.bytes));
   take(request.asked, length);
-  const BankAccess access = banks_.access(banks_.bank_of(request.transaction.address), free_at_);
+  const BankAccess access = banks_.write(request.transaction.address, free_at_);
   site_.client.write_done(request.transaction.port, access.ready);
 }
 

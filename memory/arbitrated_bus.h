@@ -25,6 +25,9 @@ class ArbitratedBus final : public Interconnect {
   [[nodiscard]] const std::vector<BankStatistics>& bank_statistics() const override {
     return banks_.statistics();
   }
+  [[nodiscard]] const SharedCacheStatistics* cache_statistics() const override {
+    return banks_.cache_statistics();
+  }
   [[nodiscard]] sim::Ticks unloaded_read(std::uint32_t bytes) const override;
 
  private:

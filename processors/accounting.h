@@ -115,6 +115,14 @@ struct NodeStatistics {
   }
 };
 
+/// The counters of one record kind.
+inline std::int64_t& hits_of(NodeStatistics& statistics, memory::RecordKind kind) {
+  return statistics.references.hits[static_cast<std::size_t>(kind)];
+}
+inline std::int64_t& misses_of(NodeStatistics& statistics, memory::RecordKind kind) {
+  return statistics.references.misses[static_cast<std::size_t>(kind)];
+}
+
 /// Records read or written, by kind: they follow from the steps.
 [[nodiscard]] std::array<std::int64_t, memory::record_kinds> records_of(const StepCounts& steps);
 

@@ -13,6 +13,12 @@
 
 namespace marti::processors {
 
+/// Whether records of this kind are read for a node of the tree.
+[[nodiscard]] constexpr bool of_tree(memory::RecordKind kind) {
+  return kind == memory::RecordKind::node || kind == memory::RecordKind::list ||
+         kind == memory::RecordKind::primitive;
+}
+
 /// What a reference was for: a work log's `ray` operand (RayKind | bounce << 2, the bounce at most
 /// Origin::most_bounces), and the level of the tree node whose record, list or primitives were read; 0 for
 /// materials and texels.

@@ -39,12 +39,11 @@ void check_counting(const MachineConfig& config) {
   }
   if (config.build.sharing != Sharing::given) {
     throw sim::UserError(
-        "[count] is for build.sharing = \"given\" only: a tree that is built while it is used "
-        "has no records to attribute references to before the frame");
+        "[count] is for build.sharing = \"given\" only: nodes that build their tree are not counted in "
+        "detail");
   }
   if (config.count.miss_classes && config.cache.organisation == CacheOrganisation::none) {
-    throw sim::UserError(
-        "count.miss_classes: without a cache (cache.organisation) there is nothing to class");
+    throw sim::UserError("without a cache (cache.organisation) there is nothing to class");
   }
 }
 

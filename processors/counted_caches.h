@@ -25,7 +25,7 @@ class CountedCaches {
   class View {
    public:
     View(CountedCaches& caches, std::uint32_t node) : state_(*caches.state_), node_(node) {}
-    bool access(memory::RecordKind kind, std::uint32_t line, Origin origin) const {
+    bool access(memory::RecordKind kind, std::uint32_t line, Origin origin = {}) const {
       const std::size_t cache =
           state_.tags.size() > 1 ? split_cache_of[static_cast<std::size_t>(kind)] : std::size_t{0};
       const bool hit = Present && state_.tags[cache].access(node_, line);

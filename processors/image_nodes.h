@@ -82,7 +82,13 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
 
   SecondLevelResult second_level() const override { return walker_.second_level().result(); }
 
-  CacheCountResult cache_counts() const override { return walker_.cache_counts(); }
+  CacheCountResult cache_counts() const override {
+    if constexpr (requires { Caches::counted; }) {
+      return walker_.caches().counting().result();
+    } else {
+      return {};
+    }
+  }
 
   std::size_t bytes_per_node() const override { return Base::common_bytes(); }
 

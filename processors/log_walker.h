@@ -10,51 +10,19 @@
 #include "processors/cache_counting.h"
 #include "processors/lines_under_way.h"
 #include "processors/local_memory.h"
+#include "processors/log_cursor.h"
 #include "processors/node_caches.h"
 #include "processors/packets.h"
 #include "processors/program/work_log.h"
 #include "processors/replay_input.h"
 #include "processors/second_level.h"
-#include "processors/stages.h"
 #include "processors/step_time.h"
 #include "processors/visit_plan.h"
 
 namespace marti::processors {
 
-/// Where a node is in its packet: the pixel, the word of the pixel's log, and within a step either a line of
-/// a planned visit or a byte of a record with, for a leaf, the objects still to come.
-struct Cursor {
-  sim::Ticks time = 0;
-  const std::uint32_t* word = nullptr;
-  const std::uint32_t* word_end = nullptr;
-  const std::uint32_t* line = nullptr;  ///< next line of the planned visit
-  const std::uint32_t* line_end = nullptr;
-  memory::Address at = 0;   ///< next byte of the current record
-  memory::Address end = 0;  ///< one past its last byte
-  const std::uint32_t* entry = nullptr;
-  const std::uint32_t* entry_end = nullptr;
-  const std::uint32_t* tested = nullptr;  ///< of a mailed leaf: a bit for each entry; null: all are tested
-  std::uint32_t entry_number = 0;         ///< of `entry` in the mailed leaf's list
-  std::uint32_t list_count = 0;   ///< entries of the current leaf's list, while its read is still to come
-  std::uint32_t tests_begun = 0;  ///< of the planned visit, by kind as in tests_of_kind
-  std::uint32_t writes = 0;       ///< where the next pixel write goes in the write buffer
-  std::uint32_t x = 0;
-  std::uint32_t y = 0;
-  Packet packet;
-  memory::RecordKind kind = memory::RecordKind::node;
-  Origin origin;  ///< of the current record; kept only where it is counted
-  /// Guarded caches only: the branch whose record was visited last and whose children may be prefetched.
-  std::uint32_t branch = no_branch;
-
-  static constexpr std::uint32_t no_branch = 0xffffffffU;
-};
-
-/// Why a walk stopped: after a hit (only without running ahead), at a miss, or at the end of its words. due,
-/// with guarded caches only: the reference that comes next is of a line that may be under way, or a branch
-/// was read whose children are to be prefetched.
-enum class Stop : std::uint8_t { hit, miss, end, due };
-
-/// `Caches` is one of node_caches.h, or those guarded (guarded_caches.h).
+/// `Caches` is one of node_caches.h, those guarded (guarded_caches.h), or those that count
+/// (counted_caches.h).
 template <class Caches>
 class LogWalker {
  public:
@@ -69,12 +37,11 @@ class LogWalker {
         line_bytes_(Caches::present ? input.config.cache.cache.line : input.config.banks.interleave),
         unit_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
         ticks_(step_ticks(input.config, input.log)),
-        mailboxes_(input.log.mailboxes),
         local_(input.config.local),
         local_database_(input.config.placement == Placement::replicated),
         second_level_(input.config),
         passes_misses_on_(!local_database_ || second_level_.present()) {
-    if (Caches::present && !Caches::counted && !guarded && !input.step_by_step) {
+    if (Caches::present && !counted && !guarded && !input.step_by_step) {
       plan_ = plan_visits(input.log, input.layout, input.node_rank, unit_shift_, ticks_);
       plan_limit_ = plan_.empty() ? 0 : 2U << operand_bits;
     }
@@ -88,7 +55,7 @@ class LogWalker {
   /// Takes `node` on from its cursor. Without RunAhead it stops after every reference.
   template <bool RunAhead>
   Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
-    Tally tally;
+    VisitTally tally;
     Stop stop = Stop::hit;
     do {
       stop = walk<RunAhead>(caches_.view(node), cursor, statistics, tally);
@@ -99,45 +66,6 @@ class LogWalker {
     } while (RunAhead);
     flush(tally, statistics);
     return stop;
-  }
-
-  /// Begins a visit to the leaf at cursor.word as far as its own record; `advance` over no words (word equal
-  /// to word_end) reads it. cursor.word stays at the leaf, for begin_objects.
-  void begin_record(Cursor& cursor, NodeStatistics& statistics) const {
-    const std::uint32_t leaf = operand_of(*cursor.word);
-    ++statistics.steps.leaves;
-    spend(cursor, ticks_.leaf, 1);
-    if (const Visit* const visit = planned(*cursor.word)) {
-      const std::uint32_t lines = visit->counts.of(VisitCount::node_line);
-      hits_of(statistics, memory::RecordKind::node) += lines;
-      begin_lines(cursor, visit->begin, lines);
-      return;
-    }
-    cursor.kind = memory::RecordKind::node;
-    cursor.at = input_.layout.address(cursor.kind, rank_ == nullptr ? leaf : rank_[leaf]);
-    cursor.end = cursor.at + node_bytes_;
-  }
-
-  /// Begins the rest of that visit, perhaps at another node: the leaf's list and its tests. cursor.word goes
-  /// behind the leaf; `advance` over no words reads and tests.
-  void begin_objects(Cursor& cursor, NodeStatistics& statistics) const {
-    const std::uint32_t* const word = cursor.word;
-    cursor.word += step_words(word);
-    if (const Visit* const visit = planned(*word)) {
-      // The whole visit but what begin_record counted.
-      const std::uint32_t lines = visit->counts.of(VisitCount::node_line);
-      add_visits(visit->counts, 1, mailboxes_, statistics);
-      --statistics.steps.leaves;
-      hits_of(statistics, memory::RecordKind::node) -= lines;
-      begin_lines(cursor, visit->begin + lines, visit->lines - lines);
-      return;
-    }
-    cursor.list_count = entries_read(word, input_.log.topology);
-    statistics.steps.lists += cursor.list_count != 0 ? 1 : 0;
-    cursor.entry = entries_ + topology_[operand_of(*word)].first;
-    cursor.entry_end = cursor.entry + cursor.list_count;
-    cursor.tested = step_of(*word) == Step::mailed_leaf ? word + 2 : nullptr;
-    cursor.entry_number = 0;
   }
 
   /// The steps of a pixel are done; what is left is to convert and store it.
@@ -163,15 +91,8 @@ class LogWalker {
   }
   /// What the wait for the reference that missed was for, where that is counted.
   void note_wait(const Cursor& cursor, const memory::Service& service) const {
-    if constexpr (Caches::counted) {
+    if constexpr (counted) {
       caches_.counting().wait(cursor.kind, cursor.origin, service);
-    }
-  }
-  [[nodiscard]] CacheCountResult cache_counts() const {
-    if constexpr (Caches::counted) {
-      return caches_.counting().result();
-    } else {
-      return {};
     }
   }
   /// The reference that missed has been served.
@@ -183,48 +104,20 @@ class LogWalker {
     }
   }
 
- private:
+ protected:
   using View = typename Caches::View;
   static constexpr bool guarded = requires { Caches::guarded; };
-
-  // Sums over the planned visits of one walk that are not in the statistics yet.
-  struct Tally {
-    VisitCounts counts;
-    std::uint32_t visits = 0;
-  };
+  static constexpr bool counted = requires { Caches::counted; };
 
   static bool in_visit(const Cursor& cursor) { return cursor.line != cursor.line_end; }
 
-  // The plan of a whole leaf's visit; null when it has to be taken record by record.
-  [[nodiscard]] const Visit* planned(std::uint32_t word) const {
-    if (word >= plan_limit_) {
-      return nullptr;
-    }
-    const Visit& visit = plan_.visits[operand_of(word)];
-    return visit.lines == 0 ? nullptr : &visit;
-  }
-  void begin_lines(Cursor& cursor, std::uint32_t first, std::uint32_t lines) const {
-    cursor.line = plan_.lines.data() + first;
-    cursor.line_end = cursor.line + lines;
-    cursor.tests_begun = 0;
-  }
-
-  void flush(Tally& tally, NodeStatistics& statistics) const {
-    add_visits(tally.counts, tally.visits, mailboxes_, statistics);
+  void flush(VisitTally& tally, NodeStatistics& statistics) const {
+    add_visits(tally.counts, tally.visits, input_.log.mailboxes, statistics);
     tally = {};
-  }
-  static std::int64_t& hits_of(NodeStatistics& statistics, memory::RecordKind kind) {
-    return statistics.references.hits[static_cast<std::size_t>(kind)];
-  }
-  static std::int64_t& misses_of(NodeStatistics& statistics, memory::RecordKind kind) {
-    return statistics.references.misses[static_cast<std::size_t>(kind)];
-  }
-  static void spend(Cursor& cursor, sim::Ticks each, std::int64_t count) {
-    cursor.time = sim::add_ticks(cursor.time, sim::multiply_ticks(each, count));
   }
 
   template <bool RunAhead>
-  Stop walk(View cache, Cursor& cursor, NodeStatistics& statistics, Tally& tally) {
+  Stop walk(View cache, Cursor& cursor, NodeStatistics& statistics, VisitTally& tally) {
     Stop stop = Stop::hit;
     if ((Caches::present && !finish_visit(cache, cursor, statistics, stop)) ||
         !touch<RunAhead>(cache, cursor, statistics, cursor.kind, stop) ||
@@ -265,12 +158,12 @@ class LogWalker {
 
   // Takes all planned visits up to the next step that has to be taken record by record, with what it needs
   // in registers. False when the node has to stop.
-  bool visit_planned(View cache, Cursor& cursor, NodeStatistics& statistics, Tally& tally, Stop& stop) {
+  bool visit_planned(View cache, Cursor& cursor, NodeStatistics& statistics, VisitTally& tally, Stop& stop) {
     const std::uint32_t* word = cursor.word;
     const std::uint32_t* const word_end = cursor.word_end;
     const std::uint32_t limit = plan_limit_;
     sim::Ticks time = cursor.time;
-    Tally sum = tally;
+    VisitTally sum = tally;
     for (; word != word_end && *word < limit; ++word) {
       const Visit& visit = plan_.visits[operand_of(*word)];
       if (visit.lines == 0) [[unlikely]] {
@@ -310,7 +203,7 @@ class LogWalker {
   }
 
   [[gnu::always_inline]] bool look_up(View cache, const std::uint32_t* line) const {
-    if constexpr (Caches::counted) {
+    if constexpr (counted) {
       return cache.access(kind_of_label(label_of(line)), *line, Origin{});  // never: nothing is planned then
     } else if constexpr (Caches::by_kind) {
       return cache.access(kind_of_label(label_of(line)), *line);
@@ -328,7 +221,7 @@ class LogWalker {
         ++missed;
       }
       if (missed == end) {
-        settle(cursor, end, tests_of_label(label_of(end - 1)));
+        settle_visit(ticks_, cursor, end, tests_of_label(label_of(end - 1)));
       } else if (!miss(cursor, statistics, missed, stop)) {
         return false;
       }
@@ -336,26 +229,10 @@ class LogWalker {
     return true;
   }
 
-  // Brings the time of a visit up to `line`, before which `tests` tests have begun.
-  void settle(Cursor& cursor, const std::uint32_t* line, std::uint32_t tests) const {
-    // No kind has fewer than before, so the kinds' counts do not borrow from each other.
-    const std::uint32_t begun = tests - cursor.tests_begun;
-    const std::uint32_t triangles = tests_of_kind(begun, accel::PrimitiveKind::triangle);
-    const std::uint32_t spheres = tests_of_kind(begun, accel::PrimitiveKind::sphere);
-    const std::uint32_t cones = tests_of_kind(begun, accel::PrimitiveKind::cone);
-    spend(cursor, ticks_.test, triangles);
-    spend(cursor, ticks_.sphere_test, spheres);
-    spend(cursor, ticks_.cone_test, cones);
-    spend(cursor, ticks_.lookup, std::int64_t{triangles} + spheres + cones);
-    spend(cursor, ticks_.hit, line - cursor.line);
-    cursor.tests_begun = tests;
-    cursor.line = line;
-  }
-
   // `line` of a visit has missed. False when the node has to stop for it.
   bool miss(Cursor& cursor, NodeStatistics& statistics, const std::uint32_t* line, Stop& stop) const {
     const std::uint32_t label = label_of(line);
-    settle(cursor, line, tests_of_label(label));
+    settle_visit(ticks_, cursor, line, tests_of_label(label));
     --hits_of(statistics, kind_of_label(label));
     ++misses_of(statistics, kind_of_label(label));
     if (passes_misses_on_) {
@@ -377,14 +254,14 @@ class LogWalker {
              std::uint64_t index, std::uint64_t bytes, Stop& stop) {
     cursor.at = input_.layout.address(kind, index);
     cursor.end = cursor.at + bytes;
-    if (Caches::counted && (kind == memory::RecordKind::material || kind == memory::RecordKind::texel)) {
+    if (counted && !of_tree(kind)) {
       cursor.origin.level = 0;
     }
     return touch<RunAhead>(cache, cursor, statistics, kind, stop);
   }
 
   static bool access(View cache, const Cursor& cursor, std::uint32_t line) {
-    if constexpr (Caches::counted) {
+    if constexpr (counted) {
       return cache.access(cursor.kind, line, cursor.origin);
     } else {
       return cache.access(cursor.kind, line);
@@ -437,7 +314,7 @@ class LogWalker {
     }
     while (cursor.entry != cursor.entry_end) {
       const std::uint32_t primitive = *cursor.entry++;
-      if (mailboxes_) {
+      if (input_.log.mailboxes) {
         ++statistics.steps.lookups;
         spend(cursor, ticks_.lookup, 1);
         if (left_out(cursor)) {
@@ -469,7 +346,7 @@ class LogWalker {
   template <bool RunAhead>
   bool refer_node(View cache, Cursor& cursor, NodeStatistics& statistics, std::uint32_t tree_node,
                   Stop& stop) {
-    if (Caches::counted) {
+    if (counted) {
       cursor.origin.level = topology_[tree_node].level;
     }
     const std::uint32_t record = rank_ == nullptr ? tree_node : rank_[tree_node];
@@ -518,7 +395,7 @@ class LogWalker {
         return take_leaf<RunAhead>(cache, cursor, statistics, operand, entries, tested, stop);
       }
       case Step::ray:
-        if (Caches::counted) {
+        if (counted) {
           cursor.origin.begin_ray(operand);
         }
         ++(steps.*ray_counters[operand & 3U]);
@@ -560,7 +437,7 @@ class LogWalker {
         return false;
       }
       read_local(cursor, statistics, line_bytes_);
-    } else if constexpr (Caches::counted) {
+    } else if constexpr (counted) {
       caches_.counting().second_level_hit(cursor.kind, cursor.origin);
     }
     pass(cursor);
@@ -590,7 +467,6 @@ class LogWalker {
   std::uint32_t line_bytes_;
   unsigned unit_shift_;
   StepTicks ticks_;
-  bool mailboxes_;
   LocalMemory local_;
   bool local_database_;
   PrivateSecondLevel second_level_;

@@ -69,6 +69,7 @@ MachineConfig one_node_of(const MachineConfig& config) {
   one.clusters = 1;
   one.nodes = 1;
   one.scheme = Scheme::image;
+  one.count = {};
   if (config.scheme == Scheme::space) {
     one.placement = Placement::replicated;
   }

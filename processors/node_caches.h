@@ -20,7 +20,6 @@ class UnifiedCaches {
  public:
   static constexpr bool present = true;
   static constexpr bool by_kind = false;  ///< the record kind does not matter
-  static constexpr bool counted = false;  ///< only hits and misses are
   UnifiedCaches(const MachineConfig& config, const memory::CacheShape& shape)
       : tags_(shape, config.all_nodes(), config.cache.cache.seed) {}
   class View {
@@ -55,7 +54,6 @@ class SplitCaches {
  public:
   static constexpr bool present = true;
   static constexpr bool by_kind = true;
-  static constexpr bool counted = false;
   SplitCaches(const MachineConfig& config, const std::array<memory::CacheShape, split_caches>& shapes) {
     tags_.reserve(split_caches);
     for (const memory::CacheShape& shape : shapes) {
@@ -96,7 +94,6 @@ class SplitCaches {
 struct NoCaches {
   static constexpr bool present = false;
   static constexpr bool by_kind = false;
-  static constexpr bool counted = false;
   struct View {
     static bool access(memory::RecordKind /*kind*/, std::uint32_t /*line*/) { return false; }
     static bool touch(memory::RecordKind /*kind*/, std::uint32_t /*line*/) { return false; }

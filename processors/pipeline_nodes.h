@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "processors/log_walker.h"
 #include "processors/pipeline_core.h"
+#include "processors/staged_walker.h"
 
 namespace marti::processors {
 
@@ -106,7 +106,7 @@ class PipelineNodes final : public PipelineCore {
     return word;
   }
 
-  LogWalker<Caches> walker_;
+  StagedWalker<Caches> walker_;
   sim::LargeVector<Cursor> cursors_;
   sim::Ticks receive_;
 };

@@ -49,6 +49,12 @@ struct VisitCounts {
   }
 };
 
+/// Sums over planned visits that are not in the statistics yet.
+struct VisitTally {
+  VisitCounts counts;
+  std::uint32_t visits = 0;
+};
+
 /// A planned leaf tests all its entries, each after a look-up where there are mailboxes.
 /// A visit that does not fit (more than 255 of anything) has no lines and is taken record by record.
 struct alignas(32) Visit {

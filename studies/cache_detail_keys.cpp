@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "processors/cache_counting.h"
 #include "processors/second_level.h"
 #include "sim/error.h"
 
@@ -50,6 +51,30 @@ void read_second_level(sim::Config& config, processors::MachineConfig& machine) 
     processors::check_second_level(machine);
   } catch (const sim::UserError& error) {
     config.fail("l2.sharing", error.what());
+  }
+}
+
+void declare_count_keys(sim::Schema& schema) {
+  schema.section("count",
+                 "what is counted about the image scheme's caches beside hits and misses; it makes "
+                 "runs slower, and changes nothing else");
+  schema.boolean("count.miss_classes", false,
+                 "why first-level caches missed: compulsory, capacity, conflict, invalidation");
+  schema.boolean("count.sharing", false, "how many nodes of a cluster fetched each line");
+  schema.boolean("count.attribution", false,
+                 "references, misses and waits by record kind, tree level, ray kind and bounce");
+}
+
+void read_count(sim::Config& config, processors::MachineConfig& machine) {
+  machine.count = {config.boolean("count.miss_classes"), config.boolean("count.sharing"),
+                   config.boolean("count.attribution")};
+  try {
+    processors::check_counting(machine);
+  } catch (const sim::UserError& error) {
+    config.fail(machine.count.miss_classes ? "count.miss_classes"
+                : machine.count.sharing    ? "count.sharing"
+                                           : "count.attribution",
+                error.what());
   }
 }
 

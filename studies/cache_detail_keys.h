@@ -13,4 +13,10 @@ void declare_second_level_keys(sim::Schema& schema);
 /// effect. Throws UserError naming file, line and key.
 void read_second_level(sim::Config& config, processors::MachineConfig& machine);
 
+void declare_count_keys(sim::Schema& schema);
+
+/// Reads what `machine`, which is known but for it, is asked to count. Throws UserError naming file, line and
+/// key.
+void read_count(sim::Config& config, processors::MachineConfig& machine);
+
 }  // namespace marti::studies

@@ -377,6 +377,7 @@ void declare_machine_keys(sim::Schema& schema) {
   declare_network_keys(schema);
   declare_host(schema);
   declare_build_keys(schema);
+  declare_count_keys(schema);
   declare_flow_keys(schema);
   declare_space_keys(schema);
 }
@@ -408,6 +409,7 @@ processors::MachineConfig read_machine(sim::Config& config) {
   read_flow(config, machine);
   read_messages(config, machine);
   read_space(config, machine);
+  read_count(config, machine);
   machine.packets = {count(config, "packets.width"), count(config, "packets.height"),
                      config.choice_as<processors::PacketOrder>("packets.order")};
   if (image) {

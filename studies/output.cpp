@@ -3,8 +3,10 @@
 #include <optional>
 
 #include "sim/files.h"
+#include "studies/count_output.h"
 #include "studies/image_file.h"
 #include "studies/record/heat_files.h"
+#include "studies/results/csv.h"
 #include "studies/signals_held.h"
 
 namespace marti::studies {
@@ -41,6 +43,13 @@ std::vector<std::filesystem::path> write_output(const RunResult& result,
     heat.emplace(*result.heat_map, directory);
     heat->commit();
     files.insert(files.end(), heat->files().begin(), heat->files().end());
+  }
+  std::optional<sim::PendingFile> attribution;
+  if (result.timed.counts.attribution) {
+    sim::write_file(attribution.emplace(directory / "attribution.csv").temporary(),
+                    csv_of(attribution_table(*result.timed.counts.attribution)));
+    attribution->commit();
+    files.push_back(directory / "attribution.csv");
   }
   if (result.timeline) {
     result.timeline->commit();

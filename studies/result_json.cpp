@@ -6,6 +6,7 @@
 #include "studies/build_output.h"
 #include "studies/cache_output.h"
 #include "studies/context_output.h"
+#include "studies/count_output.h"
 #include "studies/flow_output.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
@@ -248,6 +249,9 @@ std::string json_of(const RunResult& r) {
   }
   if (r.machine.l2.sharing != processors::SecondLevel::none) {
     machine["l2"] = second_level_json(r.machine, timed, timed.l2.caches.size() <= most_listed);
+  }
+  if (r.machine.count.any()) {
+    machine["counts"] = counts_json(r.machine, timed.counts);
   }
   if (!timed.contexts.nodes.empty()) {
     machine["contexts"] = context_json(r.machine, timed.contexts, timed.nodes.size() <= most_listed);

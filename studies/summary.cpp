@@ -9,6 +9,7 @@
 #include "studies/build_output.h"
 #include "studies/cache_output.h"
 #include "studies/context_output.h"
+#include "studies/count_output.h"
 #include "studies/flow_output.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
@@ -259,6 +260,7 @@ std::string summary_of(const RunResult& r) {
   text += loss_lines(r);
   time_lines(out, r);
   memory_lines(out, r);
+  text += counts_lines(r.machine, r.timed.counts);
   text += context_lines(r.machine, r.timed.contexts);
   text += build_lines(r.timed);
   text += flow_lines(r.machine, r.timed);

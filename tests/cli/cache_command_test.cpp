@@ -1,0 +1,74 @@
+// Second-level caches and what is counted when asked, from the command line.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/cli/shell.h"
+#include "tests/support/temporary_directory.h"
+
+namespace marti::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string small = " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
+const std::string counting = quoted(fs::path(MARTI_SOURCE) / "configs" / "second-level.toml") + small;
+
+TEST(CacheCommand, WhatIsCountedAddsUpInTheResultAndInItsTable) {
+  const TemporaryDirectory directory;
+  const Outcome outcome = marti("run " + counting + " -o " + quoted(directory.path() / "out"));
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  for (const char* line : {"second level", "compulsory", "sharing ", "where misses and waits come from",
+                           "shadow rays", "attribution.csv"}) {
+    EXPECT_NE(outcome.output.find(line), std::string::npos) << line << "\n" << outcome.output;
+  }
+  const auto result = nlohmann::json::parse(read(directory.path() / "out" / "result.json"))["machine"];
+  std::int64_t misses = 0;
+  for (const auto& [kind, counts] : result["references"].items()) {
+    misses += counts["misses"].get<std::int64_t>();
+  }
+  const auto& counts = result["counts"];
+  std::int64_t classed = 0;
+  for (const auto& count : counts["miss_classes"]["all"]) {
+    classed += count.get<std::int64_t>();
+  }
+  EXPECT_EQ(classed, misses);
+  EXPECT_EQ(counts["sharing"]["fetches"], misses);
+  std::int64_t lines = 0;
+  for (const auto& bucket : counts["sharing"]["histogram"]) {
+    lines += bucket[1].get<std::int64_t>();
+  }
+  EXPECT_EQ(lines, counts["sharing"]["distinct_lines"].get<std::int64_t>());
+  std::int64_t attributed = 0;
+  std::int64_t waited = 0;
+  for (const auto& row : counts["attribution"]) {
+    attributed += row["misses"].get<std::int64_t>();
+    waited += row["bank_wait_ps"].get<std::int64_t>() + row["bank_access_ps"].get<std::int64_t>();
+  }
+  EXPECT_EQ(attributed, misses);
+  EXPECT_EQ(waited, result["time_ps"]["bank_wait"].get<std::int64_t>() +
+                        result["time_ps"]["bank_access"].get<std::int64_t>());
+  EXPECT_EQ(result["l2"]["hits"].get<std::int64_t>() + result["l2"]["misses"].get<std::int64_t>(), misses);
+  const std::string table = read(directory.path() / "out" / "attribution.csv");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')),
+            counts["attribution"].size() + 1);
+}
+
+TEST(CacheCommand, RefusesWhatCannotBeBuiltOrCounted) {
+  const auto refused = [](const std::string& options, const char* key) {
+    const Outcome outcome = marti("run " + counting + options);
+    EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.output;
+    EXPECT_NE(outcome.output.find(key), std::string::npos) << options << "\n" << outcome.output;
+  };
+  refused(" --set l2.ways=3 --set l2.replacement=plru", "l2.size");
+  refused(" --set cache.ways=3", "cache.size");
+  refused(" --set interconnect.kind=ideal", "l2.sharing");
+  refused(" --set database.placement=replicated", "l2.sharing");
+  refused(" --set build.sharing=shared", "count.miss_classes");
+  refused(" --set l2.sharing=none", "l2.size");
+}
+
+}  // namespace
+}  // namespace marti::test
