@@ -17,8 +17,8 @@
 namespace marti::processors {
 
 /// Times `config`, whose scheme is space, on `log`. A node reads its part through its cache, if it has one,
-/// from memory of its own (MachineConfig::local); MachineConfig::placement, interconnect and banks have no
-/// effect. Deterministic; throws as replay() does.
+/// from memory of its own (MachineConfig::local); MachineConfig::placement (which must not be distributed),
+/// interconnect and banks have no effect. Deterministic; throws as replay() does.
 [[nodiscard]] MachineResult replay_space(const WorkLog& log, const MachineConfig& config,
                                          const ReplayOptions& options = {});
 

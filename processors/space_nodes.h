@@ -328,6 +328,18 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
       spend(number, Activity::messaging, send_);
     }
     post(FlowEvent::done, cursor.time, number);
+    fetch_what_comes_next(number, ray);
+  }
+
+  // Until the node is done others are at work, and what it needs then comes into the host's caches meanwhile:
+  // of a ray that ends its children, of the queue's first ray its steps.
+  void fetch_what_comes_next(std::uint32_t number, const FlowRay& ray) const {
+    if (cursors_[number].word == ray.end) {
+      prefetch(trees_.ray(ray.tree, ray.number));
+    }
+    if (const std::uint32_t first = nodes_[number].queue.head; first != RayPool::none) {
+      __builtin_prefetch(rays_[first].word);
+    }
   }
 
   // Whether a ray, when it has ended, adds to its pixel: a shadow ray only if it has reached its light.

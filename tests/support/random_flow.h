@@ -43,6 +43,9 @@ inline void make_random_pipeline(Random& random, processors::MachineConfig& mach
 inline void make_random_space(Random& random, processors::MachineConfig& machine) {
   add_random_messages(random, machine);
   machine.scheme = processors::Scheme::space;
+  if (machine.placement == processors::Placement::distributed) {
+    machine.placement = processors::Placement::shared;  // of no effect
+  }
   processors::SpaceConfig& space = machine.space;
   space.policy = static_cast<processors::RegionPolicy>(pick(random, 0, 3));
   space.level = static_cast<std::uint32_t>(pick(random, 1, 6));
