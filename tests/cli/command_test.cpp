@@ -139,6 +139,22 @@ TEST(Command, ThePipelineTakesTheStepsOfTheImageSchemeAndSaysHowBusyItsStagesAre
                                                       flow["contributions"].get<std::int64_t>());
 }
 
+TEST(Command, APipelineIsLimitedByItsSlowestStage) {
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "pipeline.toml";
+  const auto machine_with = [&](const std::string& stages) {
+    const Outcome outcome = marti("run --json " + quoted(config) + small + stages);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return nlohmann::json::parse(outcome.output)["machine"];
+  };
+  const nlohmann::json few =
+      machine_with(" --set pipeline.search=12 --set pipeline.nearest=3 --set pipeline.shade=1");
+  EXPECT_EQ(few["limit"]["what"], "slowest_part");
+  EXPECT_NE(few["limit"]["sentence"].get<std::string>().find("nearest"), std::string::npos);
+  const nlohmann::json more =
+      machine_with(" --set pipeline.search=8 --set pipeline.nearest=6 --set pipeline.shade=2");
+  EXPECT_GT(few["frame_time_ps"].get<double>(), 1.5 * more["frame_time_ps"].get<double>());
+}
+
 TEST(Command, TheImageDoesNotDependOnTheMachineNorOnTheStructure) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
   const auto hashes = [&](const std::string& options) {
