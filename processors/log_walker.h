@@ -75,9 +75,7 @@ class LogWalker {
   Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
     Tally tally;
     const Stop stop = walk<RunAhead>(caches_.view(node), cursor, statistics, tally);
-    if (tally.visits != 0) {
-      flush(tally, statistics);
-    }
+    flush(tally, statistics);
     return stop;
   }
 

@@ -29,10 +29,10 @@ class PipelineNodes final : public PipelineCore {
   void prepare(const sim::Event& event) override {
     const std::uint32_t node = event.component();
     if (node < nodes_.size()) {
-      __builtin_prefetch(&nodes_[node], 1);
-      __builtin_prefetch(&cursors_[node], 1);
-      __builtin_prefetch(&statistics_[node], 1);
-      __builtin_prefetch(&counts_[node], 1);
+      prefetch(nodes_[node]);
+      prefetch(cursors_[node]);
+      prefetch(statistics_[node]);
+      prefetch(counts_[node]);
     }
   }
 
@@ -48,6 +48,14 @@ class PipelineNodes final : public PipelineCore {
   }
 
  private:
+  template <class T>
+  static void prefetch(const T& object) {
+    const char* const bytes = reinterpret_cast<const char*>(&object);
+    for (std::size_t at = 0; at < sizeof(T); at += 64) {
+      __builtin_prefetch(bytes + at, 1);
+    }
+  }
+
   void begin(std::uint32_t node, FlowRay& ray) override {
     Cursor& cursor = cursors_[node];
     cursor.time = sim::add_ticks(engine_.now(), receive_);
