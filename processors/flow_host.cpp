@@ -39,16 +39,16 @@ bool FlowHost::has_ray(std::uint32_t cluster) {
   }
 }
 
-std::span<const std::uint32_t> FlowHost::send(std::uint32_t cluster, sim::Ticks now) {
+SentPixel FlowHost::send(std::uint32_t cluster, sim::Ticks now) {
   Way& way = ways_[cluster];
   sim::ensure(has_ray(cluster) && way.in_flight > 0 && way.ready_at <= now,
               "the host sends a camera ray too early");
-  const std::span<const std::uint32_t> words = log_.pixel(way.x, way.y);
+  const SentPixel pixel = {log_.pixel(way.x, way.y), {way.x, way.y}};
   ++way.x;
   way.ready_at = sim::add_ticks(now, occupancy_);
   ++statistics_.requests;
   statistics_.busy = sim::add_ticks(statistics_.busy, occupancy_);
-  return words;
+  return pixel;
 }
 
 }  // namespace marti::processors

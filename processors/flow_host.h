@@ -14,10 +14,17 @@
 
 #include "processors/host.h"
 #include "processors/machine_config.h"
+#include "processors/observer.h"
 #include "processors/packets.h"
 #include "processors/program/work_log.h"
 
 namespace marti::processors {
+
+/// A pixel whose camera ray has been sent, and its words in the log.
+struct SentPixel {
+  std::span<const std::uint32_t> words;
+  PixelPlace place;
+};
 
 class FlowHost {
  public:
@@ -29,9 +36,9 @@ class FlowHost {
   [[nodiscard]] bool has_ray(std::uint32_t cluster);
   /// Not before this may the cluster's next camera ray be sent.
   [[nodiscard]] sim::Ticks ready_at(std::uint32_t cluster) const { return ways_[cluster].ready_at; }
-  /// The words of the next camera ray's pixel; it is sent at `now`, at least ready_at(). There must be one,
-  /// and it must have entered.
-  std::span<const std::uint32_t> send(std::uint32_t cluster, sim::Ticks now);
+  /// The next camera ray's pixel; the ray is sent at `now`, at least ready_at(). There must be one, and it
+  /// must have entered.
+  SentPixel send(std::uint32_t cluster, sim::Ticks now);
 
   /// Whether one more ray may enter the cluster.
   [[nodiscard]] bool has_credit(std::uint32_t cluster) const { return ways_[cluster].in_flight < limit_; }

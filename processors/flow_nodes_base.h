@@ -10,6 +10,7 @@
 
 #include "processors/flow_replay.h"
 #include "processors/log_walker.h"
+#include "processors/observer.h"
 #include "sim/large_pages.h"
 
 namespace marti::processors {
@@ -33,7 +34,8 @@ class FlowNodesBase : public FlowNodes {
         host_(parts.host),
         networks_(parts.networks),
         statistics_(parts.input.config.all_nodes()),
-        counts_(parts.input.config.all_nodes()) {
+        counts_(parts.input.config.all_nodes()),
+        watched_(parts.input.observer == nullptr ? 0 : parts.input.config.all_nodes()) {
     clients_.reserve(input_.config.clusters);
     for (std::uint32_t cluster = 0; cluster < input_.config.clusters; ++cluster) {
       clients_.emplace_back(static_cast<Derived&>(*this), cluster * input_.config.nodes);
@@ -68,6 +70,31 @@ class FlowNodesBase : public FlowNodes {
     spend(node, Activity::bank_access, service.bank);
   }
 
+  // Tells who watches, if anybody does, that the node was in `state` from where it was told last to `to`.
+  void watch(std::uint32_t node, NodeState state, sim::Ticks to, PixelPlace place = {}) {
+    if (input_.observer != nullptr && watched_[node].until != to) {
+      input_.observer->spent(node, state, watched_[node].until, to, place);
+      watched_[node].until = to;
+    }
+  }
+  // The same of a read that the node has waited for since then.
+  void watch_read(std::uint32_t node, const memory::Service& service, PixelPlace place) {
+    if (input_.observer != nullptr) {
+      spent_reading(*input_.observer, node, service, watched_[node].until, place);
+      watched_[node].until = service.done;
+    }
+  }
+  // The same of work for a ray, with the misses on the way.
+  void watch_work(std::uint32_t node, sim::Ticks to, PixelPlace place) {
+    watch(node, NodeState::working, to, place);
+    if (input_.observer != nullptr) {
+      const std::int64_t all = statistics_[node].references.all_misses();
+      if (const std::int64_t more = all - std::exchange(watched_[node].misses, all); more != 0) {
+        input_.observer->missed(node, more, place);
+      }
+    }
+  }
+
   // Sends a ray to another node; when it arrives.
   sim::Ticks send_ray(std::uint32_t from, std::uint32_t to, sim::Ticks now) {
     const std::uint32_t bytes = input_.config.messages.ray_bytes;
@@ -94,6 +121,7 @@ class FlowNodesBase : public FlowNodes {
     NodeStatistics& statistics = statistics_[node];
     add_counted_time(ticks, statistics.steps, statistics.references.all_hits(), statistics.time);
     statistics.time[static_cast<std::size_t>(Activity::idle)] = end() - statistics.finish;
+    watch(node, NodeState::idle, end());
   }
 
   ReplayInput input_;
@@ -120,6 +148,13 @@ class FlowNodesBase : public FlowNodes {
     std::uint32_t first_;
   };
 
+  // What an observer has been told of a node.
+  struct Watched {
+    sim::Ticks until = 0;
+    std::int64_t misses = 0;
+  };
+
+  std::vector<Watched> watched_;  // empty without an observer
   std::vector<Client> clients_;
   std::vector<memory::Interconnect*> interconnects_;
 };

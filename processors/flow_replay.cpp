@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 
+#include "processors/observer.h"
 #include "processors/replay_parts.h"
 #include "sim/error.h"
 
@@ -21,7 +22,11 @@ MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const
   engine.reserve(std::size_t{config.all_nodes()} + config.clusters);
   FlowHost host(log, packets, config, limit);
   std::vector<std::unique_ptr<memory::Network>> networks;
-  const ReplayInput input{log, config, layout, packets, rank, options.step_by_step};
+  ReplayInput input{log, config, layout, packets, rank, options.step_by_step};
+  input.observer = options.observer;
+  if (input.observer != nullptr) {
+    input.observer->begin(input);
+  }
   FlowParts parts{input, engine, host, {}};
   for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
     networks.push_back(memory::make_network(config.network, config.nodes));
@@ -39,6 +44,9 @@ MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const
   engine.run(std::numeric_limits<std::uint64_t>::max());
   nodes->finish();
 
+  if (input.observer != nullptr) {
+    input.observer->end(nodes->end());
+  }
   MachineResult result = common_result(config, engine, *nodes, interconnects, layout);
   result.host = host.statistics();
   result.packets = packets.size();

@@ -98,6 +98,11 @@ void PipelineCore::compose(std::uint32_t node, Stage next, sim::Ticks now) {
 
 void PipelineCore::done(std::uint32_t node, sim::Ticks now) {
   Node& at = nodes_[node];
+  if (at.phase == Phase::granted) {
+    watch(node, NodeState::queue_full_wait, now, place_of(node));
+  } else {
+    watch_work(node, now, place_of(node));
+  }
   switch (at.phase) {
     case Phase::contributing:
       send_contribution(node, now);
@@ -226,6 +231,7 @@ void PipelineCore::wake(std::uint32_t node, sim::Ticks now) {
 void PipelineCore::take(std::uint32_t node, sim::Ticks now) {
   Node& at = nodes_[node];
   spend(node, Activity::message_wait, now - at.since);
+  watch(node, NodeState::message_wait, now);
   at.ray = at.queue.pop(rays_);
   FlowRay& ray = rays_[at.ray];
   FlowCounts& counts = counts_[node];
@@ -242,6 +248,7 @@ void PipelineCore::take(std::uint32_t node, sim::Ticks now) {
 void PipelineCore::send_set_aside(std::uint32_t node, sim::Ticks now) {
   Node& at = nodes_[node];
   spend(node, Activity::message_wait, now - at.since);
+  watch(node, NodeState::message_wait, now);
   --at.granted;
   std::vector<SetAside>& stack = set_aside_of(node);
   const SetAside next = stack.back();

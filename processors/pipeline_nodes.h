@@ -20,6 +20,7 @@ class PipelineNodes final : public PipelineCore {
 
   void read_done(std::uint32_t node, const memory::Service& service) override {
     spend(node, service);
+    watch_read(node, service, place_of(node));
     Cursor& cursor = cursors_[node];
     cursor.time = service.done;
     walker_.pass(cursor);
@@ -102,6 +103,7 @@ class PipelineNodes final : public PipelineCore {
 
   void read(std::uint32_t node) override {
     const Cursor& cursor = cursors_[node];
+    watch_work(node, cursor.time, place_of(node));
     interconnect_of(node).read({port_of(node), walker_.missed_address(cursor), walker_.missed_bytes(cursor)});
   }
 

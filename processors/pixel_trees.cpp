@@ -4,15 +4,16 @@
 
 namespace marti::processors {
 
-std::uint32_t PixelTrees::open(std::span<const std::uint32_t> words) {
+std::uint32_t PixelTrees::open(const SentPixel& pixel) {
   if (free_.empty()) {
     free_.push_back(static_cast<std::uint32_t>(trees_.size()));
     trees_.emplace_back();
   }
   const std::uint32_t tree = free_.back();
   free_.pop_back();
-  rays_of_pixel(words, trees_[tree].rays);
+  rays_of_pixel(pixel.words, trees_[tree].rays);
   sim::ensure(!trees_[tree].rays.empty(), "a pixel's words belong to no ray");
+  trees_[tree].place = pixel.place;
   trees_[tree].alive = 1;
   return tree;
 }

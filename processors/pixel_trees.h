@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
+#include "processors/flow_host.h"
 #include "processors/program/ray_tree.h"
 
 namespace marti::processors {
@@ -13,11 +13,12 @@ namespace marti::processors {
 class PixelTrees {
  public:
   /// The tree of a pixel with at least one ray; its camera ray is ray 0 and is alive.
-  std::uint32_t open(std::span<const std::uint32_t> words);
+  std::uint32_t open(const SentPixel& pixel);
 
   [[nodiscard]] const LoggedRay& ray(std::uint32_t tree, std::uint32_t number) const {
     return trees_[tree].rays[number];
   }
+  [[nodiscard]] PixelPlace place(std::uint32_t tree) const { return trees_[tree].place; }
   /// A ray of the tree comes alive.
   void begin_ray(std::uint32_t tree) { ++trees_[tree].alive; }
   /// A ray has ended and its children have come alive; without any alive the tree is forgotten.
@@ -29,6 +30,7 @@ class PixelTrees {
  private:
   struct Tree {
     std::vector<LoggedRay> rays;
+    PixelPlace place;
     std::uint32_t alive = 0;
   };
   std::vector<Tree> trees_;

@@ -34,6 +34,8 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   using Base::post;
   using Base::spend;
   using Base::statistics_;
+  using Base::watch;
+  using Base::watch_work;
 
  public:
   SpaceNodes(const FlowParts& parts, const SpacePlan& plan, Caches caches)
@@ -239,6 +241,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     }
     node.wake_at = never;
     spend(number, Activity::message_wait, now - cursors_[number].time);
+    watch(number, NodeState::message_wait, now);
     take(number, now);
   }
 
@@ -347,6 +350,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
 
   void done(std::uint32_t number, sim::Ticks now) {
     const std::uint32_t ray = std::exchange(nodes_[number].current, RayPool::none);
+    watch_work(number, now, trees_.place(rays_[ray].tree));
     statistics_[number].finish = now;
     end_ = std::max(end_, now);
     rays_[ray].word = cursors_[number].word;
