@@ -7,7 +7,7 @@
 namespace marti::studies {
 
 std::vector<CellPoint> time_cells(const SchemesConfig& config) {
-  const NamedMachine machine = read_machine_file(config.cell_machine, {});
+  const NamedMachine machine = read_machine_file(config.cell_machine);
   std::vector<CellPoint> points;
   for (const std::uint32_t level : config.cell_levels) {
     FrameConfig frame = config.frame;

@@ -49,19 +49,6 @@ ScalingPoint point_of(const NamedMachine& machine, const processors::MachineResu
   return point;
 }
 
-// A pipeline's nodes in the proportions of `shares`, each stage at least one.
-std::vector<std::string> shared_out(std::uint32_t nodes, const StagePoint& shares) {
-  const std::uint64_t all = std::uint64_t{shares.nodes[0]} + shares.nodes[1] + shares.nodes[2];
-  const auto part = [&](std::size_t stage) {
-    return std::clamp<std::uint64_t>((shares.nodes[stage] * std::uint64_t{nodes} + all / 2) / all, 1,
-                                     nodes - pipeline_stages + 1);
-  };
-  const std::uint64_t nearest = part(1);
-  const std::uint64_t shade = std::min(part(2), nodes - nearest - 1);
-  return {"pipeline.search=" + std::to_string(nodes - nearest - shade),
-          "pipeline.nearest=" + std::to_string(nearest), "pipeline.shade=" + std::to_string(shade)};
-}
-
 }  // namespace
 
 std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const processors::WorkLog& log,
@@ -70,20 +57,19 @@ std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const proce
                                          [](const auto& a, const auto& b) { return a.end < b.end; });
   std::vector<ScalingPoint> points;
   for (const std::filesystem::path& file : config.machines) {
-    const NamedMachine one = read_machine_file(file, {});
-    const bool pipeline = one.config.scheme == processors::Scheme::pipeline;
-    const sim::Ticks one_node_end = processors::replay(log, one_node_of(one.config)).end;
+    const NamedMachine own = read_machine_file(file);
+    processors::PipelineConfig shares = own.config.pipeline;
+    if (quickest != stages.end()) {
+      shares.search = quickest->nodes[0];
+      shares.nearest = quickest->nodes[1];
+      shares.shade = quickest->nodes[2];
+    }
+    const sim::Ticks one_node_end = processors::replay(log, one_node_of(own.config)).end;
     for (const std::uint32_t nodes : config.nodes) {
-      if (pipeline && nodes < pipeline_stages) {
-        continue;
+      if (nodes >= fewest_nodes(own.config)) {
+        const NamedMachine machine = read_machine_file(file, nodes, shares);
+        points.push_back(point_of(machine, processors::replay(log, machine.config), one_node_end));
       }
-      std::vector<std::string> assignments = {"machine.nodes=" + std::to_string(nodes)};
-      if (pipeline && quickest != stages.end()) {
-        const std::vector<std::string> shares = shared_out(nodes, *quickest);
-        assignments.insert(assignments.end(), shares.begin(), shares.end());
-      }
-      const NamedMachine machine = read_machine_file(file, assignments);
-      points.push_back(point_of(machine, processors::replay(log, machine.config), one_node_end));
     }
   }
   return points;

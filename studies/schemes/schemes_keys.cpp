@@ -27,9 +27,7 @@ std::filesystem::path beside(const sim::Config& config, const std::string& name)
   return std::filesystem::path(config.name()).parent_path() / name;
 }
 
-}  // namespace
-
-NamedMachine read_machine_file(const std::filesystem::path& file, std::vector<std::string> assignments) {
+NamedMachine read_with(const std::filesystem::path& file, const std::vector<std::string>& assignments) {
   sim::Config config = sim::Config::from_file(run_schema(), file, assignments);
   (void)read_frame(config);
   std::string name = file.stem().string();
@@ -38,6 +36,27 @@ NamedMachine read_machine_file(const std::filesystem::path& file, std::vector<st
   NamedMachine machine{std::move(name), read_machine(config)};
   config.refuse_unused();
   return machine;
+}
+
+}  // namespace
+
+NamedMachine read_machine_file(const std::filesystem::path& file) { return read_with(file, {}); }
+
+NamedMachine read_machine_file(const std::filesystem::path& file, std::uint32_t nodes,
+                               const processors::PipelineConfig& shares) {
+  std::vector<std::string> assignments = {"machine.nodes=" + std::to_string(nodes)};
+  if (read_machine_file(file).config.scheme == processors::Scheme::pipeline) {
+    const std::uint64_t all = std::uint64_t{shares.search} + shares.nearest + shares.shade;
+    const auto part = [&](std::uint64_t share, std::uint64_t most) {
+      return std::clamp<std::uint64_t>((share * nodes + all / 2) / all, 1, most);
+    };
+    const std::uint64_t nearest = part(shares.nearest, nodes - 2);
+    const std::uint64_t shade = part(shares.shade, nodes - 1 - nearest);
+    assignments.push_back("pipeline.search=" + std::to_string(nodes - nearest - shade));
+    assignments.push_back("pipeline.nearest=" + std::to_string(nearest));
+    assignments.push_back("pipeline.shade=" + std::to_string(shade));
+  }
+  return read_with(file, assignments);
 }
 
 void declare_schemes_keys(sim::Schema& schema) {
@@ -84,11 +103,12 @@ SchemesConfig read_schemes(sim::Config& config) {
   if (!schemes.cell_levels.empty() && schemes.frame.structure != "octree") {
     config.fail("structure.kind", "the study compares the cells of octrees; set schemes.cell_levels = []");
   }
-  const std::string most = "machine.nodes=" + std::to_string(schemes.nodes.back());
   for (const std::string& name : config.texts("schemes.machines")) {
-    schemes.machines.push_back(beside(config, name));
+    const std::filesystem::path& file = schemes.machines.emplace_back(beside(config, name));
+    const NamedMachine machine = read_machine_file(file);
+    const std::uint32_t most = std::max(schemes.nodes.back(), fewest_nodes(machine.config));
     const std::uint64_t bytes =
-        processors::host_bytes(read_machine_file(schemes.machines.back(), {most}).config);
+        processors::host_bytes(read_machine_file(file, most, machine.config.pipeline).config);
     if (bytes > static_cast<std::uint64_t>(schemes.frame.memory_limit)) {
       config.fail("schemes.nodes", "simulating that many nodes of " + name +
                                        " takes more than host_machine.memory_limit = " +
@@ -99,11 +119,11 @@ SchemesConfig read_schemes(sim::Config& config) {
     config.fail("schemes.machines", "must name a machine");
   }
   schemes.cell_machine = beside(config, config.text("schemes.cell_machine"));
-  (void)read_machine_file(schemes.cell_machine, {});
+  (void)read_machine_file(schemes.cell_machine);
   const std::string& stages = config.text("schemes.stage_machine");
   if (!stages.empty()) {
     schemes.stage_machine = beside(config, stages);
-    if (read_machine_file(schemes.stage_machine, {}).config.scheme != processors::Scheme::pipeline) {
+    if (read_machine_file(schemes.stage_machine).config.scheme != processors::Scheme::pipeline) {
       config.fail("schemes.stage_machine", "names a machine that is no pipeline");
     }
   }

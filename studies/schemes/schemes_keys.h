@@ -30,6 +30,11 @@ struct SchemesConfig {
   std::uint32_t stage_nodes = 16;       ///< of all its stages
 };
 
+/// Nodes of a cluster that a machine cannot do without.
+[[nodiscard]] constexpr std::uint32_t fewest_nodes(const processors::MachineConfig& machine) {
+  return machine.scheme == processors::Scheme::pipeline ? 3 : 1;
+}
+
 void declare_schemes_keys(sim::Schema& schema);
 
 /// The schema of `marti study schemes`: the keys of what is traced, and a section of its own.
@@ -39,9 +44,13 @@ void declare_schemes_keys(sim::Schema& schema);
 /// that a wrong one is found before anything runs.
 [[nodiscard]] SchemesConfig read_schemes(sim::Config& config);
 
-/// The machine of a file with other values for some keys ("machine.nodes=4"). What the file says about scene,
-/// image and structure is read and left aside. Throws UserError.
-[[nodiscard]] NamedMachine read_machine_file(const std::filesystem::path& file,
-                                             std::vector<std::string> assignments);
+/// The machine of a file. What the file says about scene, image and structure is read and left aside. Throws
+/// UserError.
+[[nodiscard]] NamedMachine read_machine_file(const std::filesystem::path& file);
+
+/// The same with so many nodes in each cluster. A pipeline's are shared out among its stages in the
+/// proportions of `shares`, each stage at least one; it needs as many nodes as stages.
+[[nodiscard]] NamedMachine read_machine_file(const std::filesystem::path& file, std::uint32_t nodes,
+                                             const processors::PipelineConfig& shares);
 
 }  // namespace marti::studies

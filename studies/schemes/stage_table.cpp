@@ -5,39 +5,27 @@
 #include <string>
 
 #include "processors/replay.h"
+#include "studies/flow_figures.h"
 
 namespace marti::studies {
-
-using processors::Activity;
 
 namespace {
 
 using Shares = std::array<std::uint32_t, pipeline_stages>;
 
 StagePoint time_shares(const SchemesConfig& config, const processors::WorkLog& log, const Shares& nodes) {
-  const NamedMachine machine = read_machine_file(
-      config.stage_machine,
-      {"machine.nodes=" + std::to_string(config.stage_nodes), "pipeline.search=" + std::to_string(nodes[0]),
-       "pipeline.nearest=" + std::to_string(nodes[1]), "pipeline.shade=" + std::to_string(nodes[2])});
+  processors::PipelineConfig shares;
+  shares.search = nodes[0];
+  shares.nearest = nodes[1];
+  shares.shade = nodes[2];
+  const NamedMachine machine = read_machine_file(config.stage_machine, config.stage_nodes, shares);
   const processors::MachineResult result = processors::replay(log, machine.config);
   StagePoint point;
   point.nodes = nodes;
   point.end = result.end;
-  // Every cluster has the same stages, in this order.
-  for (std::size_t node = 0; node < result.nodes.size(); ++node) {
-    const std::size_t port = node % machine.config.nodes;
-    const std::size_t stage = port < nodes[0] ? 0 : port < std::size_t{nodes[0]} + nodes[1] ? 1 : 2;
-    const processors::TimeDivision& time = result.nodes[node].time;
-    sim::Ticks rest = 0;
-    for (const Activity activity :
-         {Activity::message_wait, Activity::queue_full_wait, Activity::dispatch_wait, Activity::idle}) {
-      rest += time[static_cast<std::size_t>(activity)];
-    }
-    point.busy[stage] += static_cast<double>(result.end - rest);
-  }
+  const FlowFigures figures = flow_figures(machine.config, result);
   for (std::size_t stage = 0; stage < pipeline_stages; ++stage) {
-    const double whole = static_cast<double>(result.end) * nodes[stage] * machine.config.clusters;
-    point.busy[stage] = whole > 0.0 ? point.busy[stage] / whole : 0.0;
+    point.busy[stage] = figures.stages[stage].busy;
   }
   return point;
 }
@@ -54,9 +42,8 @@ std::vector<StagePoint> time_stages(const SchemesConfig& config, const processor
     return points;
   }
   Shares nodes;
-  constexpr auto stages = static_cast<std::uint32_t>(pipeline_stages);
-  nodes.fill(config.stage_nodes / stages);
-  nodes[0] += config.stage_nodes % stages;
+  nodes.fill(config.stage_nodes / pipeline_stages);
+  nodes[0] += config.stage_nodes % pipeline_stages;
   std::set<Shares> tried;
   while (tried.insert(nodes).second) {
     points.push_back(time_shares(config, log, nodes));

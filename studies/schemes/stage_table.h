@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "processors/program/work_log.h"
+#include "processors/stages.h"
 #include "studies/results/table.h"
 #include "studies/schemes/schemes_keys.h"
 
 namespace marti::studies {
 
-inline constexpr std::size_t pipeline_stages = 3;
-inline constexpr std::array<std::string_view, pipeline_stages> stage_names = {"search", "nearest", "shade"};
+using processors::pipeline_stages;
+using processors::stage_names;
 
 struct StagePoint {
   std::array<std::uint32_t, pipeline_stages> nodes{};
