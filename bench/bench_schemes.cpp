@@ -1,13 +1,14 @@
 // How fast each parallel scheme is timed: replay of one frame on one host core, beside the native render of
-// the same frame by the same tracer. They are timed in turns.
+// the same frame by the same tracer. They are timed in turns, in processor time.
 //   bench_schemes [SIZE [REPEATS]]    64 nodes; default: 512 5
 //   bench_schemes many SCHEME [SIZE]  65,536 nodes of one scheme: time and the process's peak memory
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -27,9 +28,8 @@ using processors::Scheme;
 // Every scheme, so that a new one is measured too.
 constexpr std::array schemes = {Scheme::image, Scheme::pipeline, Scheme::space};
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+// Processor time of this process, which other programs on the computer do not lengthen much.
+double now() { return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC); }
 
 // bench_replay's machine: 4-way 16 KiB private caches on a split bus, messages over a mesh.
 processors::MachineConfig machine_of(Scheme scheme, std::uint32_t nodes) {
@@ -56,9 +56,7 @@ struct Work {
   }
 };
 
-std::string_view name_of(Scheme scheme) {
-  return processors::scheme_names[static_cast<std::size_t>(scheme)];
-}
+std::string_view name_of(Scheme scheme) { return processors::scheme_names[static_cast<std::size_t>(scheme)]; }
 
 std::int64_t messages_of(const processors::MachineResult& result) {
   std::int64_t messages = 0;

@@ -23,6 +23,8 @@ PipelineCore::PipelineCore(const FlowParts& parts)
       stages_.push_back({node, LoadOrder(sizes[stage])});
       for (const std::uint32_t end = node + sizes[stage]; node != end; ++node) {
         nodes_[node].stage = static_cast<Stage>(stage);
+        nodes_[node].state = static_cast<std::uint32_t>(stages_.size() - 1);
+        nodes_[node].place = node - stages_.back().first;
       }
     }
   }
@@ -328,9 +330,8 @@ void PipelineCore::reserve(std::uint32_t node) {
 // The node's load is what is in its queue and in service; without a free slot it takes no more.
 void PipelineCore::refresh(std::uint32_t node) {
   const Node& at = nodes_[node];
-  StageState& state = stage_state(cluster_of(node), at.stage);
   const std::uint32_t load = at.queue.count + (at.phase != Phase::idle ? 1 : 0);
-  state.order.set(node - state.first, at.queue.count < queue_slots_ ? load : LoadOrder::none);
+  stages_[at.state].order.set(at.place, at.queue.count < queue_slots_ ? load : LoadOrder::none);
 }
 
 // A ray that has a slot is sent and arrives at `arrival`.
@@ -361,7 +362,7 @@ void PipelineCore::wait_for_slot(std::uint32_t cluster, Stage stage, std::uint32
 
 // A slot of the node has become free: whoever has waited longest gets it.
 void PipelineCore::give_slot(std::uint32_t node, sim::Ticks now) {
-  StageState& state = stage_state(cluster_of(node), nodes_[node].stage);
+  StageState& state = stages_[nodes_[node].state];
   const std::uint32_t waiter = state.first_waiter;
   if (waiter == none) {
     return;
@@ -381,9 +382,7 @@ void PipelineCore::give_slot(std::uint32_t node, sim::Ticks now) {
 }
 
 std::vector<PipelineCore::SetAside>& PipelineCore::set_aside_of(std::uint32_t node) {
-  const std::uint32_t cluster = cluster_of(node);
-  const std::uint32_t shade = node - stage_state(cluster, Stage::shade).first;
-  return set_aside_[std::size_t{cluster} * input_.config.pipeline.shade + shade];
+  return set_aside_[std::size_t{cluster_of(node)} * input_.config.pipeline.shade + nodes_[node].place];
 }
 
 }  // namespace marti::processors

@@ -35,6 +35,8 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
     std::uint32_t granted = 0;          ///< rays set aside that may enter now
     sim::Ticks since = 0;               ///< idle or blocked since then
     sim::Ticks wake_at = no_wake;       ///< the earliest wake event that is posted
+    std::uint32_t state = 0;            ///< its stage's, in stages_
+    std::uint32_t place = 0;            ///< in its stage
     Stage stage = Stage::search;
     Stage next = Stage::search;  ///< sending: where to
     Phase phase = Phase::idle;

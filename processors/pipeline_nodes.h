@@ -26,6 +26,16 @@ class PipelineNodes final : public PipelineCore {
     work(node);
   }
 
+  void prepare(const sim::Event& event) override {
+    const std::uint32_t node = event.component();
+    if (node < nodes_.size()) {
+      prefetch(nodes_[node]);
+      prefetch(cursors_[node]);
+      prefetch(statistics_[node]);
+      prefetch(counts_[node]);
+    }
+  }
+
   void finish() override {
     for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
       finish_node(node, walker_.ticks());
@@ -38,6 +48,14 @@ class PipelineNodes final : public PipelineCore {
   }
 
  private:
+  template <class T>
+  static void prefetch(const T& object) {
+    const char* const bytes = reinterpret_cast<const char*>(&object);
+    for (std::size_t at = 0; at < sizeof(T); at += 64) {
+      __builtin_prefetch(bytes + at, 1);
+    }
+  }
+
   void begin(std::uint32_t node, FlowRay& ray) override {
     Cursor& cursor = cursors_[node];
     cursor.time = sim::add_ticks(engine_.now(), receive_);
@@ -45,6 +63,9 @@ class PipelineNodes final : public PipelineCore {
     switch (nodes_[node].stage) {
       case Stage::search:
         cursor.word_end = end_of_search(ray);
+        if (cursor.word == cursor.word_end) {
+          begin_record(cursor, node, ray);
+        }
         break;
       case Stage::nearest:
         walker_.begin_objects(cursor, statistics_[node]);
@@ -68,10 +89,7 @@ class PipelineNodes final : public PipelineCore {
         return;
       }
       FlowRay& ray = ray_of(node);
-      if (nodes_[node].stage == Stage::search && !ray.record_read && cursor.word != ray.end &&
-          visits_leaf(cursor.word)) {
-        walker_.begin_record(cursor, statistics);
-        ray.record_read = true;
+      if (nodes_[node].stage == Stage::search && !ray.record_read && begin_record(cursor, node, ray)) {
         continue;
       }
       ray.word = cursor.word;
@@ -85,12 +103,26 @@ class PipelineNodes final : public PipelineCore {
     interconnect_of(node).read({port_of(node), walker_.missed_address(cursor), walker_.missed_bytes(cursor)});
   }
 
+  // After the steps of `search`: the record of the leaf at which they end, if there is one.
+  bool begin_record(Cursor& cursor, std::uint32_t node, FlowRay& ray) {
+    if (cursor.word == ray.end || !visits_leaf(cursor.word)) {
+      return false;
+    }
+    walker_.begin_record(cursor, statistics_[node]);
+    ray.record_read = true;
+    return true;
+  }
+
   // The next step that is not search's, or a leaf with entries, of which search reads the record.
   const std::uint32_t* end_of_search(const FlowRay& ray) const {
     const std::uint32_t* word = ray.word;
-    while (word != ray.end && stage_of(word) == Stage::search &&
-           (!visits_leaf(word) || entries_read(word, input_.log.topology) == 0)) {
-      word += step_words(word);
+    const accel::Topology& topology = input_.log.topology;
+    for (; word != ray.end; word += step_words(word)) {
+      // Most steps are branches.
+      if (step_of(*word) != Step::branch &&
+          (stage_of(word) != Stage::search || (visits_leaf(word) && entries_read(word, topology) != 0))) {
+        break;
+      }
     }
     return word;
   }

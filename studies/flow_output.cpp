@@ -144,9 +144,13 @@ std::string flow_lines(const MachineConfig& machine, const MachineResult& result
     load_line(out, stage);
   }
   load_line(out, figures.all);
-  fmt::format_to(out, "  memory      of a node: {} to {}, mean {}\n",
-                 bytes(static_cast<double>(figures.least_memory)),
-                 bytes(static_cast<double>(figures.most_memory)), bytes(figures.mean_memory));
+  if (figures.most_memory == 0) {
+    fmt::format_to(out, "  memory      none in the nodes: the database is in the clusters' memories\n");
+  } else {
+    fmt::format_to(out, "  memory      of a node: {} to {}, mean {}\n",
+                   bytes(static_cast<double>(figures.least_memory)),
+                   bytes(static_cast<double>(figures.most_memory)), bytes(figures.mean_memory));
+  }
   if (machine.scheme == Scheme::space) {
     fmt::format_to(out, "  regions     {}, below {} nodes that all have; {} primitives more than once\n",
                    flow.regions, flow.top_nodes, flow.duplicated_primitives);

@@ -14,6 +14,9 @@ using processors::Activity;
 
 namespace {
 
+// Waits for what is always busy are named from this share of the nodes' time on.
+constexpr double worth_naming = 0.1;
+
 double share(sim::Ticks part, double whole) { return whole > 0.0 ? static_cast<double>(part) / whole : 0.0; }
 
 std::string describe(Limit limit, double part, const Utilisation& used,
@@ -163,9 +166,14 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
       {Limit::compute, part({Activity::traversal, Activity::intersection, Activity::shading,
                              Activity::building, Activity::cache_access, Activity::messaging})},
   }};
-  const auto largest = std::max_element(candidates.begin(), candidates.end(),
-                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto* largest = std::max_element(candidates.begin(), candidates.end(),
+                                         [](const auto& a, const auto& b) { return a.second < b.second; });
   const double all = static_cast<double>(result.end) * static_cast<double>(result.nodes.size());
+  if (waits.slowest >= worth_naming * all) {
+    // Whatever else takes more time, the frame cannot be shorter than what is always busy.
+    largest = std::find_if(candidates.begin(), candidates.end(),
+                           [](const auto& c) { return c.first == Limit::slowest_part; });
+  }
   Finding finding;
   finding.limit = largest->first;
   finding.share = largest->second / all;

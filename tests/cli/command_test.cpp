@@ -114,6 +114,47 @@ TEST(Command, JsonHoldsTheConservationLaws) {
   EXPECT_EQ(machine["per_cluster"][0]["interconnect"]["reads"].get<std::int64_t>(), misses);
 }
 
+TEST(Command, ThePipelineTakesTheStepsOfTheImageSchemeAndSaysHowBusyItsStagesAre) {
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "pipeline.toml";
+  const auto result_of = [&](const fs::path& file) {
+    const Outcome outcome = marti("run --json " + quoted(file) + small);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return nlohmann::json::parse(outcome.output);
+  };
+  const nlohmann::json moving = result_of(config);
+  const nlohmann::json whole = result_of(fs::path(MARTI_SOURCE) / "configs" / "marti.toml");
+  EXPECT_EQ(moving["image"], whole["image"]);
+  const nlohmann::json& machine = moving["machine"];
+  EXPECT_EQ(machine["scheme"], "pipeline");
+  EXPECT_EQ(machine["one_node_time_ps"], whole["machine"]["one_node_time_ps"]);
+  for (const auto& [step, count] : machine["steps"].items()) {
+    EXPECT_EQ(count, step == "pixels" ? 0 : whole["machine"]["steps"][step].get<std::int64_t>()) << step;
+  }
+  const nlohmann::json& flow = machine["flow"];
+  EXPECT_EQ(flow["stages"].size(), 3U);
+  EXPECT_EQ(flow["per_node"].size(), 16U);
+  EXPECT_EQ(flow["rays"], flow["counts"]["ended"]);
+  EXPECT_EQ(flow["contributions"], flow["counts"]["contributions"]);
+  EXPECT_EQ(flow["messages"].get<std::int64_t>(), 24 * 16 + flow["counts"]["passed_on"].get<std::int64_t>() +
+                                                      flow["contributions"].get<std::int64_t>());
+}
+
+TEST(Command, APipelineIsLimitedByItsSlowestStage) {
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "pipeline.toml";
+  const auto machine_with = [&](const std::string& stages) {
+    const Outcome outcome = marti("run --json " + quoted(config) + small + stages);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return nlohmann::json::parse(outcome.output)["machine"];
+  };
+  const nlohmann::json few =
+      machine_with(" --set pipeline.search=12 --set pipeline.nearest=3 --set pipeline.shade=1");
+  EXPECT_EQ(few["limit"]["what"], "slowest_part");
+  EXPECT_NE(few["limit"]["sentence"].get<std::string>().find("nearest"), std::string::npos);
+  const nlohmann::json more =
+      machine_with(" --set pipeline.search=8 --set pipeline.nearest=6 --set pipeline.shade=2");
+  EXPECT_GT(few["frame_time_ps"].get<double>(), 1.5 * more["frame_time_ps"].get<double>());
+}
+
 TEST(Command, TheImageDoesNotDependOnTheMachineNorOnTheStructure) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
   const auto hashes = [&](const std::string& options) {
@@ -167,6 +208,19 @@ TEST(Command, WrongConfigurationsGetOneMessageWithFileLineAndKey) {
       {"[cache]\nsiz = \"16 KiB\"\n", {"wrong.toml:2", "cache.siz", "cache.size"}},
       {"[cache]\nsize = \"17 B\"\n", {"wrong.toml:2", "cache.size", "line"}},
       {"[cache]\nsize = true\n", {"wrong.toml:2", "cache.size"}},
+      {"[machine]\nscheme = \"pipeline\"\nnodes = 2\n", {"wrong.toml:3", "machine.nodes", "at least 3"}},
+      {"[machine]\nscheme = \"pipeline\"\n[pipeline]\nsearch = 3\n",
+       {"pipeline.nearest", "all three stages"}},
+      {"[machine]\nscheme = \"pipeline\"\n[pipeline]\nsearch = 3\nnearest = 3\nshade = 3\n",
+       {"wrong.toml:4", "pipeline.search", "9", "machine.nodes = 16"}},
+      {"[machine]\nscheme = \"pipeline\"\n[pipeline]\nin_flight = 1000\n",
+       {"wrong.toml:4", "pipeline.in_flight", "more than 118"}},
+      {"[machine]\nscheme = \"pipeline\"\n[host]\nassignment = \"blocks\"\n",
+       {"wrong.toml:4", "host.assignment", "machine.scheme"}},
+      {"[machine]\nscheme = \"pipeline\"\n[build]\nsharing = \"shared\"\n",
+       {"wrong.toml:4", "build.sharing", "must be given"}},
+      {"[pipeline]\nqueue = 4\n", {"wrong.toml:2", "pipeline.queue", "machine.scheme"}},
+      {"[messages]\nray = \"8 B\"\n", {"wrong.toml:2", "messages.ray", "machine.scheme"}},
       {"[cache]\nline = \"24 B\"\n", {"wrong.toml:2", "cache.line", "power of two"}},
       {"[cache]\norganisation = \"none\"\nsize = \"1 KiB\"\n", {"wrong.toml:3", "cache.size", "none"}},
       {"[cache]\nreplacement = \"lur\"\n", {"wrong.toml:2", "cache.replacement", "lru"}},
