@@ -27,7 +27,6 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   using Base::cluster_of;
   using Base::counts_;
   using Base::end_;
-  using Base::engine_;
   using Base::host_;
   using Base::input_;
   using Base::port_of;
