@@ -17,7 +17,6 @@ class GuardedCaches {
  public:
   static constexpr bool present = Caches::present;
   static constexpr bool by_kind = Caches::by_kind;
-  static constexpr bool counted = false;
   static constexpr bool guarded = true;
 
   GuardedCaches(const ReplayInput& input, Caches caches)
