@@ -98,6 +98,7 @@ MachineConfig random_counting_machine(test::Random& random) {
   MachineConfig machine = test::random_machine(random);
   if (machine.cache.organisation == CacheOrganisation::none) {
     machine.cache.organisation = CacheOrganisation::unified;
+    machine.distribution.interleave = std::max(machine.distribution.interleave, machine.cache.cache.line);
   }
   machine.host.assignment = Assignment::interleaved;
   test::add_random_second_level(random, machine);
