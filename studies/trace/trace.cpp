@@ -28,6 +28,13 @@ void refuse_other_machines(const sim::Config& config, const processors::MachineC
   if (machine.scheme != processors::Scheme::image) {
     config.fail("machine.scheme", "only nodes of the image scheme have references that a trace can hold");
   }
+  if (machine.contexts > 1 || machine.prefetch.on()) {
+    config.fail(
+        machine.contexts > 1         ? "node.contexts"
+        : machine.prefetch.next_line ? "prefetch.next_line"
+                                     : "prefetch.children",
+        "a trace is in the order of the program, which is not that in which such a node refers to lines");
+  }
   if (machine.build.sharing != processors::Sharing::given) {
     config.fail("build.sharing",
                 "while the tree is built, other nodes decide what a node reads; a trace needs \"given\"");
