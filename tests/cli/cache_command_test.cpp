@@ -67,7 +67,7 @@ TEST(CacheCommand, RefusesWhatCannotBeBuiltOrCounted) {
   refused(" --set interconnect.kind=ideal", "l2.sharing");
   refused(" --set database.placement=replicated", "l2.sharing");
   refused(" --set build.sharing=shared", "count.miss_classes");
-  refused(" --set l2.sharing=none", "l2.size");
+  refused(" --set l2.sharing=none --set l2.ways=2", "l2.ways");
 }
 
 }  // namespace
