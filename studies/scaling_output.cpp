@@ -89,11 +89,18 @@ std::string bound_lines(const RunResult& r) {
   if (r.timed.end == 0) {
     return "";
   }
-  std::string text = fmt::format(
-      "\nbounds        at least {} ({:.1f} % of the frame time): a node's own work {}, {} {}, a bank {}\n",
-      seconds(b.least()), 100.0 * ticks(b.least()) / ticks(r.timed.end), seconds(b.node_work),
-      r.machine.interconnect.kind == memory::InterconnectKind::bus ? "the bus" : "a link",
-      seconds(b.interconnect), seconds(b.bank));
+  std::string text =
+      fmt::format("\nbounds        at least {} ({:.1f} % of the frame time): a node's own work {}",
+                  seconds(b.least()), 100.0 * ticks(b.least()) / ticks(r.timed.end), seconds(b.node_work));
+  if (b.interconnect > 0) {
+    const bool bus = r.machine.interconnect.kind == memory::InterconnectKind::bus &&
+                     r.machine.placement != processors::Placement::distributed;
+    text += fmt::format(", {} {}", bus ? "the bus" : "a link", seconds(b.interconnect));
+  }
+  if (b.bank > 0) {
+    text += fmt::format(", a bank {}", seconds(b.bank));
+  }
+  text += "\n";
   if (!r.prediction) {
     return text;
   }
