@@ -33,12 +33,14 @@ void check_contexts(const MachineConfig& config) {
     throw sim::UserError("prefetch: without a cache there is nowhere to put a line");
   }
   if (config.placement == Placement::distributed) {
-    throw sim::UserError(key + ": nodes whose memories others read (database.placement = \"distributed\") have "
-                               "one context and do not prefetch");
+    throw sim::UserError(key +
+                         ": nodes whose memories others read (database.placement = \"distributed\") have "
+                         "one context and do not prefetch");
   }
   if (config.l2.sharing == SecondLevel::private_caches) {
-    throw sim::UserError(key + ": a node with a second-level cache of its own (l2.sharing = \"private\") has one "
-                               "context and does not prefetch");
+    throw sim::UserError(key +
+                         ": a node with a second-level cache of its own (l2.sharing = \"private\") has one "
+                         "context and does not prefetch");
   }
   if (config.count.any()) {
     throw sim::UserError(key + ": [count] is for nodes with one context that do not prefetch");

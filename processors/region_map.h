@@ -1,9 +1,9 @@
 // The regions of the space scheme: parts of the tree, each held by one node of a cluster.
 //
-// The tree is cut at a level. Each subtree whose root lies there is a region, and so is each leaf above, unless
-// it is empty. What is left is the top, which every node holds: the branches above the level, and the empty
-// leaves down to it, where there is nothing that only one node could know. Regions are numbered depth first,
-// so regions with neighbouring numbers are neighbours in space more often than not.
+// The tree is cut at a level. Each subtree whose root lies there is a region, and so is each leaf above,
+// unless it is empty. What is left is the top, which every node holds: the branches above the level, and the
+// empty leaves down to it, where there is nothing that only one node could know. Regions are numbered depth
+// first, so regions with neighbouring numbers are neighbours in space more often than not.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ struct RegionMap {
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(roots.size()); }
 };
 
-/// Cuts the tree at `level`, at least 1; below the deepest leaf every leaf with objects is one. Throws InternalError
-/// unless every node but the first is a child of exactly one branch with a smaller number.
+/// Cuts the tree at `level`, at least 1; below the deepest leaf every leaf with objects is one. Throws
+/// InternalError unless every node but the first is a child of exactly one branch with a smaller number.
 [[nodiscard]] RegionMap cut_regions(const accel::Topology& topology, std::uint32_t level);
 
 /// How many different primitives the leaves of each part list. `part_of` has a part below `parts` for each

@@ -12,9 +12,9 @@ namespace marti::studies {
 void prepare_output(const std::filesystem::path& directory);
 
 /// Writes image.exr, image.png and result.json, and exact.exr and exact.png of a run with
-/// image.voxel_cut_reference, and what the run has recorded, under temporary names and renames them together at the
-/// end; signals that end the program wait until that is done. Returns the files. Throws UserError with the
-/// reason; older results stay as they were then.
+/// image.voxel_cut_reference, and what the run has recorded, under temporary names and renames them together
+/// at the end; signals that end the program wait until that is done. Returns the files. Throws UserError with
+/// the reason; older results stay as they were then.
 std::vector<std::filesystem::path> write_output(const RunResult& result,
                                                 const std::filesystem::path& directory);
 

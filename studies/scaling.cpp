@@ -193,9 +193,9 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
       {Limit::slowest_part, waits.slowest},
       {Limit::queues, waits.queues},
       {Limit::messages, waits.messages},
-      {Limit::compute, part({Activity::traversal, Activity::intersection, Activity::shading,
-                             Activity::building, Activity::cache_access, Activity::switching,
-                             Activity::messaging})},
+      {Limit::compute,
+       part({Activity::traversal, Activity::intersection, Activity::shading, Activity::building,
+             Activity::cache_access, Activity::switching, Activity::messaging})},
   }};
   const auto* largest = std::max_element(candidates.begin(), candidates.end(),
                                          [](const auto& a, const auto& b) { return a.second < b.second; });

@@ -54,7 +54,7 @@ TEST(SchemesCommand, WrongInputIsTwoAndSaysWhere) {
   refused(" --set 'schemes.machines=[\"paper.toml\"]'", "paper.toml");
   refused(" --set 'schemes.nodes=[]'", "schemes.nodes");
   refused(" --set 'schemes.nodes=[0]'", "schemes.nodes");
-  refused(" --set structure.kind=grid --set structure.density=1", "structure.kind");
+  refused(" --set structure.kind=grid", "structure.kind");
   refused(" --set schemes.stage_machine=marti.toml", "schemes.stage_machine");
   refused(" --set schemes.stage_nodes=2", "schemes.stage_nodes");
   refused(" --set machine.nodes=4", "machine.nodes");

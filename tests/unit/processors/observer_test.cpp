@@ -156,7 +156,9 @@ RC_GTEST_PROP(Observing, TellsOfBuildingToo, (std::uint64_t seed)) {
                                             static_cast<std::uint32_t>(test::pick(random, 1, 8)));
   MachineConfig machine = test::random_machine(random);
   machine.build = test::random_build(random);
-  if (machine.placement == Placement::replicated && machine.build.sharing == Sharing::shared) {
+  if (machine.build.sharing == Sharing::shared &&
+      (machine.placement != Placement::shared ||
+       machine.interconnect.arbitration != memory::Arbitration::fifo)) {
     machine.build.sharing = Sharing::private_trees;
   }
   Recorder seen;
