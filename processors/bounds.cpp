@@ -4,7 +4,8 @@
 #include <initializer_list>
 #include <string>
 
-#include "sim/error.h"
+#include "processors/law.h"
+#include "processors/memory_system.h"
 
 namespace marti::processors {
 
@@ -22,10 +23,6 @@ sim::Ticks own_work(const NodeStatistics& node) {
   return part(node, {Activity::traversal, Activity::intersection, Activity::shading, Activity::building,
                      Activity::cache_access, Activity::switching, Activity::messaging, Activity::transfer,
                      Activity::bank_access});
-}
-
-bool has_links(const MachineConfig& config) {
-  return config.interconnect.kind != memory::InterconnectKind::ideal;
 }
 
 // The bus stays with a read while the bank works, so banks are no queues of their own.
@@ -101,7 +98,7 @@ bool had_work(const NodeStatistics& node) {
   return steps > 0;
 }
 
-sim::Ticks FrameBounds::least() const { return std::max({node_work, mean_work, interconnect, bank}); }
+sim::Ticks FrameBounds::least() const { return std::max({node_work, interconnect, bank}); }
 
 FrameBounds frame_bounds(const MachineConfig& config, const MachineResult& result) {
   FrameBounds bounds;
@@ -118,8 +115,11 @@ FrameBounds frame_bounds(const MachineConfig& config, const MachineResult& resul
   }
   bounds.mean_work = workers > 0 ? all / workers : 0;
   // A bank is not free before its busy time is over, but the last access ends with its data.
-  const sim::Ticks last = config.banks.clock.cycles(config.banks.access_cycles) -
-                          config.banks.clock.cycles(config.banks.busy_cycles);
+  // A distributed memory is busy for as long as its accesses take.
+  const sim::Ticks last = config.placement == Placement::distributed
+                              ? 0
+                              : config.banks.clock.cycles(config.banks.access_cycles) -
+                                    config.banks.clock.cycles(config.banks.busy_cycles);
   for (const ClusterResult& cluster : result.clusters) {
     if (has_links(config) && cluster.interconnect.links > 0) {
       const std::int64_t links = cluster.interconnect.links;
@@ -138,15 +138,13 @@ FrameBounds frame_bounds(const MachineConfig& config, const MachineResult& resul
 
 void check_bounds(const MachineConfig& config, const MachineResult& result) {
   const FrameBounds bounds = frame_bounds(config, result);
-  if (result.end < bounds.least()) {
-    throw sim::InternalError("a conservation law is broken: the frame ends after " +
-                             std::to_string(result.end) + " ticks, but its busiest resource works for " +
-                             std::to_string(bounds.least()));
-  }
+  require(result.end >= bounds.least(), "the frame ends after " + std::to_string(result.end) +
+                                            " ticks, but its busiest resource works for " +
+                                            std::to_string(bounds.least()));
 }
 
 std::optional<Prediction> predict(const MachineConfig& config, const MachineResult& result) {
-  if (config.ports_of_node() > 1) {
+  if (config.ports_of_node() > 1 || config.placement == Placement::distributed) {
     return std::nullopt;
   }
   std::optional<Prediction> longest;

@@ -48,7 +48,8 @@ struct Prediction {
 };
 
 /// Of the cluster for which the mean values predict the longest frame; nothing when no node reads over an
-/// interconnect, the frame takes no time, or nodes have several reads outstanding (contexts, prefetching).
+/// interconnect, the frame takes no time, nodes have several reads outstanding (contexts, prefetching), or
+/// the database is distributed.
 [[nodiscard]] std::optional<Prediction> predict(const MachineConfig& config, const MachineResult& result);
 
 }  // namespace marti::processors

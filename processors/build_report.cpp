@@ -1,4 +1,5 @@
 #include "processors/build_report.h"
+#include "processors/law.h"
 
 #include <algorithm>
 #include <string>
@@ -8,12 +9,6 @@
 namespace marti::processors {
 
 namespace {
-
-void require(bool holds, const std::string& law) {
-  if (!holds) {
-    throw sim::InternalError("a conservation law is broken: " + law);
-  }
-}
 
 void count_visits(const WorkLog& log, std::vector<BuildLevel>& levels) {
   for (const LogRow& row : log.rows) {

@@ -1,4 +1,5 @@
 #include "processors/cache_counting.h"
+#include "processors/law.h"
 
 #include <string>
 
@@ -8,12 +9,6 @@
 namespace marti::processors {
 
 namespace {
-
-void require(bool holds, const char* law) {
-  if (!holds) {
-    throw sim::InternalError(std::string("a conservation law is broken: ") + law);
-  }
-}
 
 // The private first-level caches of a node: how many lines each has.
 std::vector<std::uint64_t> lines_of_caches(const MachineConfig& config) {

@@ -1,16 +1,11 @@
 #include "processors/cache_laws.h"
+#include "processors/law.h"
 
 #include "sim/error.h"
 
 namespace marti::processors {
 
 namespace {
-
-void require(bool holds, const char* law) {
-  if (!holds) {
-    throw sim::InternalError(std::string("a conservation law is broken: ") + law);
-  }
-}
 
 void check_private(const MachineResult& result) {
   require(result.l2.caches.size() == result.nodes.size(), "every node has a second level");

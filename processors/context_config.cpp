@@ -16,7 +16,8 @@ void check_contexts(const MachineConfig& config) {
   if (config.contexts == 1 && !prefetch) {
     return;
   }
-  const std::string key = config.contexts > 1 ? "node.contexts" : "prefetch";
+  const std::string prefetch_key = config.prefetch.next_line ? "prefetch.next_line" : "prefetch.children";
+  const std::string key = config.contexts > 1 ? "node.contexts" : prefetch_key;
   if (config.scheme != Scheme::image) {
     throw sim::UserError(key + ": only the image scheme's nodes have contexts and prefetch");
   }
@@ -30,7 +31,7 @@ void check_contexts(const MachineConfig& config) {
                          " prefetches under way");
   }
   if (prefetch && config.cache.organisation == CacheOrganisation::none) {
-    throw sim::UserError("prefetch: without a cache there is nowhere to put a line");
+    throw sim::UserError(prefetch_key + ": without a cache there is nowhere to put a line");
   }
   if (config.placement == Placement::distributed) {
     throw sim::UserError(key +
@@ -46,7 +47,7 @@ void check_contexts(const MachineConfig& config) {
     throw sim::UserError(key + ": [count] is for nodes with one context that do not prefetch");
   }
   if (prefetch && config.placement != Placement::shared) {
-    throw sim::UserError("prefetch: only lines of a shared database are prefetched");
+    throw sim::UserError(prefetch_key + ": only lines of a shared database are prefetched");
   }
   if (std::uint64_t{config.all_nodes()} * config.ports_of_node() > most_ports) {
     throw sim::UserError("nodes with more than 2^28 contexts and prefetches in all");

@@ -1,4 +1,5 @@
 #include "processors/flow_conservation.h"
+#include "processors/law.h"
 
 #include <array>
 #include <string>
@@ -9,13 +10,6 @@
 namespace marti::processors {
 
 namespace {
-
-void require_equal(std::int64_t left, std::int64_t right, const char* law) {
-  if (left != right) {
-    throw sim::InternalError("a conservation law is broken: " + std::string(law) + " (" +
-                             std::to_string(left) + " and " + std::to_string(right) + ")");
-  }
-}
 
 std::int64_t pixels_with_rays(const WorkLog& log) {
   std::int64_t pixels = 0;

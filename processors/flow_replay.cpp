@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 
+#include "processors/bounds.h"
 #include "processors/observer.h"
 #include "processors/replay_parts.h"
 #include "sim/error.h"
@@ -65,6 +66,7 @@ MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const
   }
   sim::ensure(host.in_flight() == 0, "rays are left over");
   check_conservation(log, config, result);
+  check_bounds(config, result);
   return result;
 }
 

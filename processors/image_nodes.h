@@ -8,6 +8,7 @@
 #include "processors/node_caches.h"
 #include "processors/packet_nodes.h"
 #include "processors/step_time.h"
+#include "sim/prefetch.h"
 
 namespace marti::processors {
 
@@ -68,8 +69,8 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
 
   void prepare(const sim::Event& event) override {
     const std::uint32_t node = event.component();
-    prefetch(cursors_[node]);
-    prefetch(statistics_[node]);
+    sim::prefetch(cursors_[node]);
+    sim::prefetch(statistics_[node]);
   }
 
   void finish() override {
@@ -94,14 +95,6 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
 
  private:
   static bool for_pixel(const Cursor& /*cursor*/) { return true; }
-
-  template <class T>
-  static void prefetch(const T& object) {
-    const char* const bytes = reinterpret_cast<const char*>(&object);
-    for (std::size_t at = 0; at < sizeof(T); at += 64) {
-      __builtin_prefetch(bytes + at, 1);
-    }
-  }
 
   // Lets a node work until it needs something shared.
   void run(std::uint32_t node) {

@@ -91,16 +91,18 @@ std::uint64_t host_bytes(const MachineConfig& config) {
   if (config.l2.sharing == SecondLevel::private_caches) {
     tags += tag_bytes(second_level_cache(config)) + sizeof(memory::CacheCounters);
   }
-  std::uint64_t homes = 0;
+  std::uint64_t homes =
+      config.l2.sharing == SecondLevel::shared ? config.clusters * tag_bytes(second_level_cache(config)) : 0;
   if (config.placement == Placement::distributed) {
     constexpr std::uint64_t bytes_a_home = 900;
-    homes = config.all_nodes() * bytes_a_home +
-            config.clusters * memory::network_bytes(config.network, config.nodes);
+    homes += config.all_nodes() * bytes_a_home +
+             config.clusters * memory::network_bytes(config.network, config.nodes);
   }
   if (config.scheme != Scheme::image) {
     constexpr std::uint64_t bytes_a_ray = 96;  // with its part of its pixel's tree
+    const std::uint32_t queue = config.scheme == Scheme::space ? config.space.queue : config.pipeline.queue;
     homes += config.clusters * memory::network_bytes(config.network, config.nodes) +
-             config.all_nodes() * bytes_a_ray * (1 + std::uint64_t{config.pipeline.queue});
+             config.all_nodes() * bytes_a_ray * (1 + std::uint64_t{queue});
   }
   constexpr std::uint64_t bytes_a_context = 200;
   constexpr std::uint64_t bytes_a_port = 80;

@@ -23,6 +23,15 @@ std::unique_ptr<memory::Interconnect> make_memory_system(const MachineConfig& co
   return memory::make_interconnect(config.interconnect, banks_of(config), site);
 }
 
+bool has_links(const MachineConfig& config) {
+  if (config.scheme == Scheme::space) {
+    return false;
+  }
+  return config.placement == Placement::distributed
+             ? config.network.kind != memory::NetworkKind::ideal
+             : config.interconnect.kind != memory::InterconnectKind::ideal;
+}
+
 bool writes_done_later(const MachineConfig& config) {
   return config.placement == Placement::distributed ||
          (config.interconnect.kind == memory::InterconnectKind::bus &&

@@ -22,4 +22,7 @@ namespace marti::processors {
 /// What make_memory_system gives to a distributed memory.
 [[nodiscard]] memory::DistributedConfig distributed_config(const MachineConfig& config);
 
+/// Whether the nodes reach their cluster's memory over links that can be busy.
+[[nodiscard]] bool has_links(const MachineConfig& config);
+
 }  // namespace marti::processors

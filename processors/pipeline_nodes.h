@@ -5,6 +5,7 @@
 
 #include "processors/pipeline_core.h"
 #include "processors/staged_walker.h"
+#include "sim/prefetch.h"
 
 namespace marti::processors {
 
@@ -30,10 +31,10 @@ class PipelineNodes final : public PipelineCore {
   void prepare(const sim::Event& event) override {
     const std::uint32_t node = event.component();
     if (node < nodes_.size()) {
-      prefetch(nodes_[node]);
-      prefetch(cursors_[node]);
-      prefetch(statistics_[node]);
-      prefetch(counts_[node]);
+      sim::prefetch(nodes_[node]);
+      sim::prefetch(cursors_[node]);
+      sim::prefetch(statistics_[node]);
+      sim::prefetch(counts_[node]);
     }
   }
 
@@ -51,14 +52,6 @@ class PipelineNodes final : public PipelineCore {
   }
 
  private:
-  template <class T>
-  static void prefetch(const T& object) {
-    const char* const bytes = reinterpret_cast<const char*>(&object);
-    for (std::size_t at = 0; at < sizeof(T); at += 64) {
-      __builtin_prefetch(bytes + at, 1);
-    }
-  }
-
   void begin(std::uint32_t node, FlowRay& ray) override {
     Cursor& cursor = cursors_[node];
     cursor.time = sim::add_ticks(engine_.now(), receive_);

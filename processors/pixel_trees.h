@@ -24,9 +24,6 @@ class PixelTrees {
   /// A ray has ended and its children have come alive; without any alive the tree is forgotten.
   void end_ray(std::uint32_t tree);
 
-  /// Trees in use.
-  [[nodiscard]] std::size_t size() const { return trees_.size() - free_.size(); }
-
  private:
   struct Tree {
     std::vector<LoggedRay> rays;

@@ -42,7 +42,8 @@ void walk_packets(const ReplayInput& input, const std::vector<std::uint64_t>& pa
 void ReferenceTrace::begin(const ReplayInput& input) {
   log_ = &input.log;
   config_ = input.config;
-  config_.placement = Placement::shared;  // every reference is to stop the walk
+  config_.placement = Placement::shared;  // every reference is to stop the walk,
+  config_.l2 = {};                        // and none is to be served by a second level
   layout_ = input.layout;
   packets_ = input.packets;
   node_rank_.assign(input.node_rank.begin(), input.node_rank.end());

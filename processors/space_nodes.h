@@ -16,6 +16,7 @@
 #include "processors/ray_queues.h"
 #include "processors/space_plan.h"
 #include "sim/large_pages.h"
+#include "sim/prefetch.h"
 
 namespace marti::processors {
 
@@ -76,9 +77,9 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
 
   void prepare(const sim::Event& event) override {
     if (static_cast<FlowEvent>(event.event_class()) != FlowEvent::admit) {
-      prefetch(nodes_[event.component()]);
-      prefetch(cursors_[event.component()]);
-      prefetch(statistics_[event.component()]);
+      sim::prefetch(nodes_[event.component()]);
+      sim::prefetch(cursors_[event.component()]);
+      sim::prefetch(statistics_[event.component()]);
     }
   }
 
@@ -126,14 +127,6 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     bool posted = false;
     bool all_sent = false;
   };
-
-  template <class T>
-  static void prefetch(const T& object) {
-    const char* const bytes = reinterpret_cast<const char*>(&object);
-    for (std::size_t at = 0; at < sizeof(T); at += 64) {
-      __builtin_prefetch(bytes + at, 1);
-    }
-  }
 
   [[noreturn]] static void read_done(std::uint32_t /*node*/, const memory::Service& /*service*/) {
     throw sim::InternalError("the nodes of the space scheme share no memory");
@@ -337,7 +330,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   // of a ray that ends its children, of the queue's first ray its steps.
   void fetch_what_comes_next(std::uint32_t number, const FlowRay& ray) const {
     if (cursors_[number].word == ray.end) {
-      prefetch(trees_.ray(ray.tree, ray.number));
+      sim::prefetch(trees_.ray(ray.tree, ray.number));
     }
     if (const std::uint32_t first = nodes_[number].queue.head; first != RayPool::none) {
       __builtin_prefetch(rays_[first].word);

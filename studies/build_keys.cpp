@@ -3,6 +3,8 @@
 #include <charconv>
 #include <string>
 
+#include "studies/key_parts.h"
+
 namespace marti::studies {
 
 namespace {
@@ -12,9 +14,6 @@ using processors::InitialTree;
 using processors::Sharing;
 
 // "full", "rule" or a level, which is written as a text too, so that the key has one type.
-// Of the deepest BSP tree.
-constexpr std::uint32_t most_levels = 61;
-
 void read_initial_level(const sim::Config& config, BuildConfig& build) {
   const std::string& text = config.text("build.initial_level");
   if (text == "full") {

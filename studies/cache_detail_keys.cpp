@@ -5,6 +5,7 @@
 #include "processors/cache_counting.h"
 #include "processors/second_level.h"
 #include "sim/error.h"
+#include "studies/key_parts.h"
 
 namespace marti::studies {
 
@@ -22,8 +23,8 @@ void declare_second_level_keys(sim::Schema& schema) {
                 "which line of a full set makes room");
   schema.integer("l2.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
                  "seed of random replacement");
-  schema.integer("l2.hit_cycles", 4, {0, 1'000'000'000'000}, "cycles",
-                 "cycles of a look-up that hits: private: of the node's clock; shared: of the banks' clock");
+  cycles(schema, "l2.hit_cycles", 4,
+         "cycles of a look-up that hits: private: of the node's clock; shared: of the banks' clock");
 }
 
 void read_second_level(sim::Config& config, processors::MachineConfig& machine) {

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "studies/key_parts.h"
+
 namespace marti::studies {
 
 namespace {
@@ -39,8 +41,7 @@ void read_prefetch(sim::Config& config, processors::MachineConfig& machine) {
 void declare_context_keys(sim::Schema& schema) {
   schema.integer("node.contexts", 1, {1, processors::most_contexts}, "",
                  "packets a node works on by turns: on a miss it takes up the next one that can go on");
-  schema.integer("node.switch_cycles", 1, {0, 1'000'000'000'000}, "cycles",
-                 "cycles to take up another context");
+  cycles(schema, "node.switch_cycles", 1, "cycles to take up another context");
 }
 
 void declare_prefetch_keys(sim::Schema& schema) {

@@ -20,9 +20,6 @@ using processors::AttributionCounts;
 using processors::AttributionRow;
 using processors::CacheCountResult;
 
-constexpr std::array<std::string_view, processors::ray_kinds> ray_names = {"camera", "shadow", "reflection",
-                                                                           "refraction"};
-
 std::string_view name_of(memory::RecordKind kind) {
   return memory::record_kind_names[static_cast<std::size_t>(kind)];
 }
@@ -93,7 +90,7 @@ void attribution_lines(std::string& text, const std::vector<AttributionRow>& row
     line(level == 0 ? "materials, texels" : "level " + std::to_string(level), counts);
   }
   for (const auto& [ray, counts] : sums_by(rows, [](const AttributionRow& row) { return row.ray; })) {
-    line(std::string(ray_names[static_cast<std::size_t>(ray)]) + " rays", counts);
+    line(std::string(processors::ray_kind_names[static_cast<std::size_t>(ray)]) + " rays", counts);
   }
   for (const auto& [bounce, counts] : sums_by(rows, [](const AttributionRow& row) { return row.bounce; })) {
     line("bounce " + std::to_string(bounce), counts);
@@ -117,10 +114,11 @@ nlohmann::ordered_json counts_json(const processors::MachineConfig& machine, con
   if (counts.attribution) {
     Json rows = Json::array();
     for (const AttributionRow& row : *counts.attribution) {
-      Json& cell = rows.emplace_back(Json{{"record", name_of(row.record)},
-                                          {"level", row.level},
-                                          {"ray", ray_names[static_cast<std::size_t>(row.ray)]},
-                                          {"bounce", row.bounce}});
+      Json& cell =
+          rows.emplace_back(Json{{"record", name_of(row.record)},
+                                 {"level", row.level},
+                                 {"ray", processors::ray_kind_names[static_cast<std::size_t>(row.ray)]},
+                                 {"bounce", row.bounce}});
       sim::for_each_counter(row.counts,
                             [&](const auto& counter, std::int64_t value) { cell[field(counter)] = value; });
     }
@@ -175,7 +173,7 @@ Table attribution_table(const std::vector<AttributionRow>& rows) {
   Table table("attribution", "References, misses and waits by what they were for", columns);
   for (const AttributionRow& row : rows) {
     std::vector<Cell> cells = {std::string(name_of(row.record)), std::int64_t{row.level},
-                               std::string(ray_names[static_cast<std::size_t>(row.ray)]),
+                               std::string(processors::ray_kind_names[static_cast<std::size_t>(row.ray)]),
                                std::int64_t{row.bounce}};
     sim::for_each_counter(row.counts,
                           [&](const auto& /*counter*/, std::int64_t value) { cells.emplace_back(value); });

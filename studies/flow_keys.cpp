@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/error.h"
+#include "studies/key_parts.h"
 
 namespace marti::studies {
 
@@ -13,8 +14,6 @@ namespace {
 
 using processors::PipelineConfig;
 using processors::Scheme;
-
-constexpr std::int64_t most_cycles = 1'000'000'000'000;
 
 constexpr std::array<std::pair<std::string_view, std::uint32_t PipelineConfig::*>, 3> stages = {
     {{"pipeline.search", &PipelineConfig::search},
@@ -81,10 +80,8 @@ void declare_flow_keys(sim::Schema& schema) {
               "bytes of a ray: origin, direction, weight, pixel, and where in its walk it is");
   schema.size("messages.contribution", "16 B", {"1 B", "64 KiB"},
               "bytes of a contribution to a pixel, sent to the host");
-  schema.integer("messages.send_cycles", 0, {0, most_cycles}, "cycles",
-                 "cycles of a node's clock to compose and send one message");
-  schema.integer("messages.receive_cycles", 0, {0, most_cycles}, "cycles",
-                 "cycles of a node's clock to take one message from its queue");
+  cycles(schema, "messages.send_cycles", 0, "cycles of a node's clock to compose and send one message");
+  cycles(schema, "messages.receive_cycles", 0, "cycles of a node's clock to take one message from its queue");
   schema.section("pipeline", "stages of nodes between which rays go round (machine.scheme = \"pipeline\")");
   schema.integer(stages[0].first, 0, {0, processors::most_nodes}, "",
                  "of each cluster's nodes, those that walk the structure to the next leaf with objects; 0 in "

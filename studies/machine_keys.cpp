@@ -13,6 +13,7 @@
 #include "studies/cache_detail_keys.h"
 #include "studies/context_keys.h"
 #include "studies/flow_keys.h"
+#include "studies/key_parts.h"
 #include "studies/network_keys.h"
 #include "studies/space_keys.h"
 
@@ -21,22 +22,6 @@ namespace marti::studies {
 namespace {
 
 using sim::Schema;
-
-template <std::size_t N>
-std::vector<std::string> names(const std::array<std::string_view, N>& list) {
-  return {list.begin(), list.end()};
-}
-
-// What a duration in cycles may be: enough for any ratio of latencies, and no product of two overflows.
-constexpr std::int64_t most_cycles = 1'000'000'000'000;
-
-void cycles(Schema& schema, std::string_view name, std::int64_t fallback, std::string_view meaning) {
-  schema.integer(name, fallback, {0, most_cycles}, "cycles", meaning);
-}
-
-void clock(Schema& schema, std::string_view name, std::string_view meaning) {
-  schema.frequency(name, "33 MHz", {"1 Hz", "1 THz"}, meaning);
-}
 
 constexpr std::array<std::pair<std::string_view, std::int64_t processors::OperationCycles::*>, 8> operations =
     {{
@@ -356,7 +341,7 @@ void read_interconnect(sim::Config& config, processors::MachineConfig& machine) 
 }
 
 // Messages are sent where rays move from node to node, and for a distributed database.
-void read_messages(sim::Config& config, processors::MachineConfig& machine) {
+void read_network_if_used(sim::Config& config, processors::MachineConfig& machine) {
   if (machine.scheme != processors::Scheme::image ||
       machine.placement == processors::Placement::distributed) {
     machine.network = read_network(config);
@@ -366,6 +351,21 @@ void read_messages(sim::Config& config, processors::MachineConfig& machine) {
       "network",
       "no messages are sent with machine.scheme = \"image\" and a database that is not distributed",
       "database.placement");
+}
+
+// What the machine itself refuses begins with the key that it is about, if it is about one.
+void check_machine(const sim::Config& config, const processors::MachineConfig& machine) {
+  try {
+    processors::check(machine);
+  } catch (const sim::UserError& error) {
+    const std::string message = error.what();
+    const std::size_t colon = message.find(": ");
+    const std::string key = message.substr(0, colon);
+    if (colon != std::string::npos && config.schema().find(key)) {
+      config.fail(key, message.substr(colon + 2));
+    }
+    throw sim::UserError(config.name() + ": " + message);
+  }
 }
 
 }  // namespace
@@ -407,7 +407,7 @@ processors::MachineConfig read_machine(sim::Config& config) {
   }
   read_second_level(config, machine);
   read_flow(config, machine);
-  read_messages(config, machine);
+  read_network_if_used(config, machine);
   read_space(config, machine);
   read_count(config, machine);
   machine.packets = {count(config, "packets.width"), count(config, "packets.height"),
@@ -422,7 +422,7 @@ processors::MachineConfig read_machine(sim::Config& config) {
   }
   config.mark_unused_reason("host", "nodes ask nobody without host.assignment = \"dynamic\"",
                             "host.assignment");
-  processors::check(machine);
+  check_machine(config, machine);
   return machine;
 }
 

@@ -3,13 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "studies/key_parts.h"
+
 namespace marti::studies {
-
-namespace {
-
-constexpr std::int64_t most_cycles = 1'000'000'000'000;
-
-}  // namespace
 
 void declare_network_keys(sim::Schema& schema) {
   schema.section(
@@ -21,9 +17,9 @@ void declare_network_keys(sim::Schema& schema) {
       "rectangle of routers; hypercube");
   schema.frequency("network.clock", "33 MHz", {"1 Hz", "1 THz"}, "clock of the network");
   schema.size("network.width", "4 B", {"1 B", "64 KiB"}, "bytes that a link moves in a beat");
-  schema.integer("network.cycles_per_beat", 1, {0, most_cycles}, "cycles", "cycles of each beat");
-  schema.integer("network.hop_cycles", 2, {0, most_cycles}, "cycles",
-                 "latency of each link of the way; ideal, bus and crossbar: of the whole way");
+  cycles(schema, "network.cycles_per_beat", 1, "cycles of each beat");
+  cycles(schema, "network.hop_cycles", 2,
+         "latency of each link of the way; ideal, bus and crossbar: of the whole way");
 }
 
 memory::NetworkConfig read_network(sim::Config& config) {

@@ -86,8 +86,7 @@ Json structure_json(const RunResult& r) {
 
 Json image_json(const RunResult& r) {
   const processors::Frame& frame = r.functional.frame;
-  const std::array<std::string_view, processors::ray_kinds> kinds = {"camera", "shadow", "reflection",
-                                                                     "refraction"};
+  const auto& kinds = processors::ray_kind_names;
   return {{"width", frame.image.width},
           {"height", frame.image.height},
           {"rays", named(kinds, frame.rays.traced)},
@@ -130,7 +129,7 @@ Json voxel_json(const RunResult& r) {
   return {{"threshold_pixels", r.frame_config.render.voxel_cut},
           {"voxels", frame.voxels},
           {"first_level", frame.first_voxel_level},
-          {"rays", named(std::array{"camera", "shadow", "reflection", "refraction"}, frame.rays.voxels)},
+          {"rays", named(processors::ray_kind_names, frame.rays.voxels)},
           {"use", use_json(report.use)},
           {"exact", exact}};
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <numeric>
 
+#include "processors/memory_system.h"
 #include "studies/flow_figures.h"
 
 namespace marti::studies {
@@ -123,12 +124,6 @@ std::string interconnect_name(const processors::MachineConfig& machine) {
   return "bus";
 }
 
-bool has_links(const processors::MachineConfig& machine) {
-  return machine.placement == processors::Placement::distributed
-             ? machine.network.kind != memory::NetworkKind::ideal
-             : machine.interconnect.kind != memory::InterconnectKind::ideal;
-}
-
 Scaling scaling_of(sim::Ticks one_node_end, sim::Ticks end, std::uint32_t nodes) {
   Scaling scaling;
   scaling.nodes = nodes;
@@ -152,7 +147,7 @@ Utilisation utilisation_of(const processors::MachineConfig& machine,
   double busy = 0.0;
   const double end = static_cast<double>(result.end);
   for (const processors::ClusterResult& cluster : result.clusters) {
-    if (has_links(machine)) {
+    if (processors::has_links(machine)) {
       const double links = static_cast<double>(cluster.interconnect.links);
       used.interconnect =
           std::max(used.interconnect.value_or(0.0), share(cluster.interconnect.busy, end * links));

@@ -25,9 +25,6 @@ struct Scaling {
 /// database "mesh network" and the like.
 [[nodiscard]] std::string interconnect_name(const processors::MachineConfig& machine);
 
-/// Whether it has links that can be busy; an ideal one has not.
-[[nodiscard]] bool has_links(const processors::MachineConfig& machine);
-
 /// How busy interconnects and banks were, as shares of the frame time.
 struct Utilisation {
   /// Transfer time over links times frame time, the busiest cluster's; nothing for an ideal interconnect or

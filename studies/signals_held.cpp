@@ -37,8 +37,17 @@ void watch(const sigset_t& signals) {
 void end_cleanly_on_signals() {
   sigset_t signals;
   sigemptyset(&signals);
+  bool any = false;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    sigaddset(&signals, signal);
+    // One that is ignored, as by nohup, would come to sigwait all the same.
+    struct sigaction now {};
+    if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) {
+      sigaddset(&signals, signal);
+      any = true;
+    }
+  }
+  if (!any) {
+    return;
   }
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::thread(watch, signals).detach();

@@ -3,14 +3,13 @@
 #include <cstdint>
 #include <string>
 
+#include "studies/key_parts.h"
+
 namespace marti::studies {
 
 namespace {
 
 using processors::RegionPolicy;
-
-// Of the deepest BSP tree.
-constexpr std::int64_t most_levels = 61;
 
 std::uint32_t count(const sim::Config& config, std::string_view key) {
   return static_cast<std::uint32_t>(config.integer(key));

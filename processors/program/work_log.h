@@ -7,10 +7,12 @@
 // are recorded on any number of host threads and give the same bytes.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "accel/quadric_shape.h"
@@ -22,6 +24,8 @@ namespace marti::processors {
 /// Kinds of ray, in the order statistics list them.
 enum class RayKind : std::uint8_t { camera, shadow, reflection, refraction };
 inline constexpr std::size_t ray_kinds = 4;
+inline constexpr std::array<std::string_view, ray_kinds> ray_kind_names = {"camera", "shadow", "reflection",
+                                                                           "refraction"};
 
 /// What a word of the log says.
 enum class Step : std::uint32_t {

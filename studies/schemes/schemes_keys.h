@@ -32,7 +32,7 @@ struct SchemesConfig {
 
 /// Nodes of a cluster that a machine cannot do without.
 [[nodiscard]] constexpr std::uint32_t fewest_nodes(const processors::MachineConfig& machine) {
-  return machine.scheme == processors::Scheme::pipeline ? 3 : 1;
+  return machine.scheme == processors::Scheme::pipeline ? processors::pipeline_stages : 1;
 }
 
 void declare_schemes_keys(sim::Schema& schema);

@@ -31,6 +31,10 @@ void keep_image(Random& /*random*/, MachineConfig& machine) { machine.scheme = S
 MachineConfig machine_of(Random& random, const SchemeCase& scheme) {
   MachineConfig machine = test::random_machine(random);
   scheme.choose(random, machine);
+  test::add_random_second_level(random, machine);
+  if (machine.scheme == Scheme::space && machine.l2.sharing == SecondLevel::shared) {
+    machine.l2.sharing = SecondLevel::none;  // it would stand before a memory that is not there
+  }
   return machine;
 }
 

@@ -88,7 +88,8 @@ RC_GTEST_PROP(Bounds, HoldForEveryMachine, (std::uint64_t seed)) {
   RC_ASSERT(bounds.mean_work <= bounds.node_work);
   const std::optional<Prediction> prediction = predict(machine, result);
   RC_ASSERT(prediction.has_value() == (result.clusters[0].interconnect.reads > 0 && result.end > 0) ||
-            machine.clusters > 1 || result.end == 0);
+            machine.clusters > 1 || result.end == 0 || machine.placement == Placement::distributed);
+  RC_ASSERT(!prediction || machine.placement != Placement::distributed);
   if (prediction) {
     RC_ASSERT(prediction->asymptotic_low <= static_cast<double>(result.end) * (1.0 + 1e-12));
     RC_ASSERT(prediction->balanced_low <= prediction->mean_value * (1.0 + 1e-9));

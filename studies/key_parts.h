@@ -1,0 +1,37 @@
+// What the declarations of configuration keys share.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/schema.h"
+
+namespace marti::studies {
+
+/// What a duration in cycles may be: enough for any ratio of latencies, and no product of two overflows.
+inline constexpr std::int64_t most_cycles = 1'000'000'000'000;
+
+/// The deepest level of any structure's tree: a bsp tree has three times an octree's, less two.
+inline constexpr std::uint32_t most_levels = 61;
+
+/// Declares a number of cycles.
+inline void cycles(sim::Schema& schema, std::string_view name, std::int64_t fallback,
+                   std::string_view meaning) {
+  schema.integer(name, fallback, {0, most_cycles}, "cycles", meaning);
+}
+
+/// Declares a clock.
+inline void clock(sim::Schema& schema, std::string_view name, std::string_view meaning) {
+  schema.frequency(name, "33 MHz", {"1 Hz", "1 THz"}, meaning);
+}
+
+/// The choices of a key, from the names of an enumeration.
+template <std::size_t N>
+std::vector<std::string> names(const std::array<std::string_view, N>& list) {
+  return {list.begin(), list.end()};
+}
+
+}  // namespace marti::studies
