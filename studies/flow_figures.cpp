@@ -1,6 +1,7 @@
 #include "studies/flow_figures.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "processors/stages.h"
 
@@ -60,6 +61,21 @@ const StageLoad& FlowFigures::slowest() const {
                            [](const StageLoad& a, const StageLoad& b) { return a.busy < b.busy; });
 }
 
+namespace {
+
+// What contributions take of the link into the host, of a network that has one for it alone.
+double host_link(const MachineConfig& machine, const MachineResult& result) {
+  const memory::NetworkConfig& network = machine.network;
+  if (network.kind == memory::NetworkKind::ideal || network.kind == memory::NetworkKind::bus) {
+    return 0.0;
+  }
+  const double beats = std::ceil(static_cast<double>(machine.messages.contribution_bytes) / network.width);
+  const auto beat = static_cast<double>(network.clock.cycles(network.cycles_per_beat));
+  return static_cast<double>(result.flow.collected) * beats * beat;
+}
+
+}  // namespace
+
 FlowFigures flow_figures(const MachineConfig& machine, const MachineResult& result) {
   FlowFigures figures;
   figures.all.name = "nodes";
@@ -92,7 +108,22 @@ FlowFigures flow_figures(const MachineConfig& machine, const MachineResult& resu
       figures.mean_memory += static_cast<double>(bytes) / static_cast<double>(memory.size());
     }
   }
+  const double ways = static_cast<double>(result.end) * machine.clusters;
+  if (ways > 0.0) {
+    // The last ray sent may keep the host beyond the end.
+    figures.host = std::min(1.0, static_cast<double>(result.host.busy) / ways);
+    figures.host_link = host_link(machine, result) / ways;
+  }
   return figures;
+}
+
+Bottleneck bottleneck_of(const MachineConfig& machine, const MachineResult& result) {
+  const FlowFigures figures = flow_figures(machine, result);
+  if (figures.host >= full) {
+    return Bottleneck::host;
+  }
+  return std::max(figures.host_link, figures.network.value_or(0.0)) >= full ? Bottleneck::network
+                                                                            : Bottleneck::none;
 }
 
 FlowWaits flow_waits(const MachineConfig& machine, const MachineResult& result) {

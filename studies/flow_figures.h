@@ -32,6 +32,8 @@ struct FlowFigures {
   double hops_a_message = 0.0;
   /// Busy time over links times frame time, of the busiest cluster's network; nothing for an ideal one.
   std::optional<double> network;
+  double host = 0.0;       ///< share of the frame that the host is kept by camera rays, mean of the clusters
+  double host_link = 0.0;  ///< of its link, that contributions take; 0 for an ideal network or a bus
   std::uint64_t least_memory = 0;  ///< bytes of the database in a node's own memory: least, mean, most
   double mean_memory = 0.0;
   std::uint64_t most_memory = 0;
@@ -55,6 +57,14 @@ struct FlowWaits {
 [[nodiscard]] FlowWaits flow_waits(const processors::MachineConfig& machine,
                                    const processors::MachineResult& result);
 
+/// What else may keep all nodes waiting where rays move: a host that sends or collects as fast as it can, or
+/// a network whose links are full.
+enum class Bottleneck : std::uint8_t { none, host, network };
+[[nodiscard]] Bottleneck bottleneck_of(const processors::MachineConfig& machine,
+                                       const processors::MachineResult& result);
+
+/// From this share of the frame on a shared resource counts as full.
+inline constexpr double full = 0.9;
 /// Above this share of the frame a stage or a node counts as always busy.
 inline constexpr double always_busy = 0.8;
 

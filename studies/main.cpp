@@ -276,6 +276,7 @@ int parse_and_run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // A reader that goes away is an error of writing like a full disk.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is refused like one on a full disk
   marti::studies::end_cleanly_on_signals();
   try {
     return parse_and_run(argc, argv);

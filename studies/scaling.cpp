@@ -20,6 +20,15 @@ constexpr double worth_naming = 0.1;
 
 double share(sim::Ticks part, double whole) { return whole > 0.0 ? static_cast<double>(part) / whole : 0.0; }
 
+// Whether space is cut into fewer regions than a cluster has nodes.
+bool few_regions(const processors::MachineConfig& machine, const processors::MachineResult& result) {
+  return machine.scheme == processors::Scheme::space && result.flow.regions < machine.nodes;
+}
+
+std::string more_regions(const processors::MachineConfig& machine, const processors::MachineResult& result) {
+  return fmt::format("a higher space.level ({} region(s) for {} nodes)", result.flow.regions, machine.nodes);
+}
+
 std::string describe(Limit limit, double part, const Utilisation& used,
                      const processors::MachineConfig& machine, const processors::MachineResult& result) {
   const double percent = 100.0 * part;
@@ -52,20 +61,34 @@ std::string describe(Limit limit, double part, const Utilisation& used,
           "queue; fewer misses or {} would help",
           percent, distributed ? "a faster network" : "faster memory");
     case Limit::dispatch:
+      if (machine.scheme != processors::Scheme::image) {
+        return fmt::format(
+            "the host: camera rays keep it {:.1f} % of the time, and nodes spend {:.1f} % of theirs waiting; "
+            "fewer "
+            "host.occupancy_cycles would help",
+            100.0 * flow_figures(machine, result).host, percent);
+      }
       return fmt::format(
           "the host: nodes spend {:.1f} % of their time waiting for packets; larger packets would help",
           percent);
     case Limit::start_up:
       return fmt::format(
-          "building before the frame: nodes wait {:.1f} % of their time for the initial tree; a lower "
-          "build.initial_level would help",
-          percent);
+          "building before the frame: nodes wait {:.1f} % of their time for the initial tree; {} would help",
+          percent,
+          machine.build.sharing == processors::Sharing::none
+              ? "building on demand (build.sharing = \"shared\" or \"private\")"
+              : "a lower build.initial_level");
     case Limit::lock:
       return fmt::format(
           "locks: nodes spend {:.1f} % of their time waiting for branches that others split; a higher "
           "build.initial_level would help",
           percent);
     case Limit::imbalance:
+      if (machine.scheme != processors::Scheme::image) {
+        return fmt::format("imbalance: nodes are idle {:.1f} % of the time; {} would help", percent,
+                           few_regions(machine, result) ? more_regions(machine, result)
+                                                        : "more rays in flight, or fewer nodes,");
+      }
       return fmt::format(
           "imbalance: nodes are idle {:.1f} % of the time, {} packet(s) for {} nodes; smaller packets would "
           "help",
@@ -76,9 +99,10 @@ std::string describe(Limit limit, double part, const Utilisation& used,
       if (figures.stages.empty()) {
         return fmt::format(
             "imbalance: the busiest node is {:.1f} % busy, a node on average {:.1f} %, and nodes spend "
-            "{:.1f} % of their time waiting for rays and queues; a division that is better balanced would "
-            "help",
-            100.0 * slowest.busiest, 100.0 * slowest.busy, percent);
+            "{:.1f} % of their time waiting for rays and queues; {} would help",
+            100.0 * slowest.busiest, 100.0 * slowest.busy, percent,
+            few_regions(machine, result) ? more_regions(machine, result)
+                                         : "a division that is better balanced");
       }
       return fmt::format(
           "the slowest stage: {} is {:.1f} % busy, and nodes spend {:.1f} % of their time waiting for rays "
@@ -92,6 +116,14 @@ std::string describe(Limit limit, double part, const Utilisation& used,
           percent);
     case Limit::messages: {
       const FlowFigures figures = flow_figures(machine, result);
+      if (bottleneck_of(machine, result) == Bottleneck::network) {
+        const bool host = figures.host_link > figures.network.value_or(0.0);
+        return fmt::format(
+            "messages: {} {:.1f} % busy, and nodes spend {:.1f} % of their time waiting for rays; a wider or "
+            "faster network or smaller messages would help",
+            host ? "the link to the host is" : "the network's links are",
+            100.0 * (host ? figures.host_link : figures.network.value_or(0.0)), percent);
+      }
       return fmt::format(
           "messages: nodes spend {:.1f} % of their time waiting for rays; links are {:.1f} % busy and {} "
           "rays were in flight at most; a faster network or more rays in flight would help",
@@ -192,17 +224,25 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
        part({Activity::traversal, Activity::intersection, Activity::shading, Activity::building,
              Activity::cache_access, Activity::switching, Activity::messaging})},
   }};
-  const auto* largest = std::max_element(candidates.begin(), candidates.end(),
-                                         [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto* const largest = std::max_element(
+      candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   const double all = static_cast<double>(result.end) * static_cast<double>(result.nodes.size());
-  if (waits.slowest >= worth_naming * all) {
-    // Whatever else takes more time, the frame cannot be shorter than what is always busy.
-    largest = std::find_if(candidates.begin(), candidates.end(),
-                           [](const auto& c) { return c.first == Limit::slowest_part; });
-  }
   Finding finding;
   finding.limit = largest->first;
   finding.share = largest->second / all;
+  const double flow = waits.slowest + waits.queues + waits.messages;
+  if (machine.scheme != processors::Scheme::image && flow >= worth_naming * all) {
+    // Whatever else takes more time, the frame cannot be shorter than what is always busy: first what all
+    // nodes share, then the slowest part, whose nodes may be busy waiting for just that.
+    const Bottleneck bottleneck = bottleneck_of(machine, result);
+    if (utilisation_of(machine, result).interconnect.value_or(0.0) >= full) {
+      finding = {Limit::interconnect, part({Activity::interconnect_wait}) / all, ""};
+    } else if (bottleneck != Bottleneck::none) {
+      finding = {bottleneck == Bottleneck::host ? Limit::dispatch : Limit::messages, flow / all, ""};
+    } else if (waits.slowest >= worth_naming * all) {
+      finding = {Limit::slowest_part, waits.slowest / all, ""};
+    }
+  }
   finding.sentence = describe(finding.limit, finding.share, utilisation_of(machine, result), machine, result);
   return finding;
 }
