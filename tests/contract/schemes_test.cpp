@@ -201,6 +201,7 @@ TEST_P(Schemes, WithoutAnyCostsTheFrameTakesNoTime) {
     MachineConfig machine = machine_of(random, GetParam());
     machine.operations = {0, 0, 0, 0, 0, 0, 0, 0};
     machine.cache.hit_cycles = 0;
+    machine.l2.hit_cycles = 0;
     machine.local.access_cycles = 0;
     machine.local.cycles_per_beat = 0;
     machine.interconnect.address_cycles = 0;
