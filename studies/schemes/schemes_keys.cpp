@@ -77,7 +77,8 @@ void declare_schemes_keys(sim::Schema& schema) {
                  "structure.max_objects of these trees: small, so that the level decides");
   schema.text("schemes.stage_machine", "pipeline.toml",
               "the pipeline whose nodes are shared out among its stages in several ways; empty: none");
-  schema.integer("schemes.stage_nodes", 16, {processors::pipeline_stages, 1024}, "", "nodes of that pipeline");
+  schema.integer("schemes.stage_nodes", 16, {processors::pipeline_stages, 1024}, "",
+                 "nodes of that pipeline");
 }
 
 sim::Schema schemes_schema() {
