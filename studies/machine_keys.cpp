@@ -353,21 +353,6 @@ void read_network_if_used(sim::Config& config, processors::MachineConfig& machin
       "database.placement");
 }
 
-// What the machine itself refuses begins with the key that it is about, if it is about one.
-void check_machine(const sim::Config& config, const processors::MachineConfig& machine) {
-  try {
-    processors::check(machine);
-  } catch (const sim::UserError& error) {
-    const std::string message = error.what();
-    const std::size_t colon = message.find(": ");
-    const std::string key = message.substr(0, colon);
-    if (colon != std::string::npos && config.schema().find(key)) {
-      config.fail(key, message.substr(colon + 2));
-    }
-    throw sim::UserError(config.name() + ": " + message);
-  }
-}
-
 }  // namespace
 
 void declare_machine_keys(sim::Schema& schema) {
@@ -424,6 +409,20 @@ processors::MachineConfig read_machine(sim::Config& config) {
                             "host.assignment");
   check_machine(config, machine);
   return machine;
+}
+
+void check_machine(const sim::Config& config, const processors::MachineConfig& machine) {
+  try {
+    processors::check(machine);
+  } catch (const sim::UserError& error) {
+    const std::string message = error.what();
+    const std::size_t colon = message.find(": ");
+    const std::string key = message.substr(0, colon);
+    if (colon != std::string::npos && config.schema().find(key)) {
+      config.fail(key, message.substr(colon + 2));
+    }
+    throw sim::UserError(config.name() + ": " + message);
+  }
 }
 
 }  // namespace marti::studies

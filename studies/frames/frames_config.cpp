@@ -51,7 +51,7 @@ FramesConfig read_frames(sim::Config& config) {
   }
   frames.machine = read_machine(config);
   frames.machine.build = read_dynamic_build(config);
-  processors::check(frames.machine);
+  check_machine(config, frames.machine);
   frames.verify = config.boolean("frames.verify");
   config.refuse_unused();
   refuse_many_images(config, frames.frame);

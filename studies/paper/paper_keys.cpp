@@ -109,6 +109,9 @@ PaperConfig read_paper(sim::Config& config) {
     config.fail("interconnect.arbitration",
                 "the study builds one tree that all nodes share: it must be fifo");
   }
+  processors::MachineConfig building = paper.machine;
+  building.build.sharing = processors::Sharing::shared;
+  check_machine(config, building);
   paper.scenes = config.texts("paper.scenes");
   if (paper.scenes.empty()) {
     config.fail("paper.scenes", "must name a scene");
