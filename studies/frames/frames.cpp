@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,7 +19,6 @@
 #include "studies/functional_run.h"
 #include "studies/results/provenance.h"
 #include "studies/results/text_table.h"
-#include "studies/results/wide_table.h"
 
 namespace marti::studies {
 
@@ -115,16 +113,6 @@ std::string head_of(const sim::Config& config, const FramesConfig& frames, std::
       processors::sharing_names[static_cast<std::size_t>(build.sharing)]);
 }
 
-/// The same figure of all ways side by side.
-std::string side_by_side(const Table& cycles, std::string_view value, std::string_view title) {
-  const Table wide = widen(cycles, std::array{std::string_view("frame")}, "way", "", value);
-  Table titled("shown", std::string(title), {wide.columns().begin(), wide.columns().end()});
-  for (const std::vector<Cell>& row : wide.rows()) {
-    titled.add_row(row);
-  }
-  return text_of(titled);
-}
-
 }  // namespace
 
 StudyOutput run_frames(sim::Config& config) {
@@ -136,13 +124,15 @@ StudyOutput run_frames(sim::Config& config) {
   StudyOutput output;
   output.tables = {frame_table(outcomes), cycle_table(outcomes), total_table(outcomes)};
   const Table& cycles = output.tables[1];
-  output.report = head_of(config, frames, outcomes.size()) + "\n" + text_of(output.tables[0]) + "\n" +
-                  side_by_side(cycles, "build", "Build: time before each frame") + "\n" +
-                  side_by_side(cycles, "render", "Render: time of each frame, building on demand included") +
-                  "\n" + side_by_side(cycles, "cycle", "Cycle: both") + "\n" +
-                  side_by_side(cycles, "splits", "Branches split, before the frame and in it") + "\n" +
-                  side_by_side(cycles, "memory", "Memory: records and lists at the end of each frame") +
-                  "\n" + text_of(output.tables[2]);
+  output.report =
+      head_of(config, frames, outcomes.size()) + "\n" + text_of(output.tables[0]) + "\n" +
+      side_by_side(cycles, "frame", "way", "build", "Build: time before each frame") + "\n" +
+      side_by_side(cycles, "frame", "way", "render",
+                   "Render: time of each frame, building on demand included") +
+      "\n" + side_by_side(cycles, "frame", "way", "cycle", "Cycle: both") + "\n" +
+      side_by_side(cycles, "frame", "way", "splits", "Branches split, before the frame and in it") + "\n" +
+      side_by_side(cycles, "frame", "way", "memory", "Memory: records and lists at the end of each frame") +
+      "\n" + text_of(output.tables[2]);
   output.tables.push_back(provenance_table(config.effective_values()));
   output.host_tables = {host_frame_table(outcomes), host_table()};
   output.host_report = text_of(output.host_tables[0]) + "\n" + text_of(output.host_tables[1]);

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "studies/results/wide_table.h"
 
 namespace marti::studies {
 
@@ -106,6 +109,16 @@ std::string text_of(const Table& table) {
     out += text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
   }
   return out;
+}
+
+std::string side_by_side(const Table& table, std::string_view row, std::string_view across,
+                         std::string_view value, std::string_view title) {
+  const Table wide = widen(table, std::array{row}, across, "", value);
+  Table titled("shown", std::string(title), {wide.columns().begin(), wide.columns().end()});
+  for (const std::vector<Cell>& cells : wide.rows()) {
+    titled.add_row(cells);
+  }
+  return text_of(titled);
 }
 
 }  // namespace marti::studies

@@ -12,4 +12,9 @@ namespace marti::studies {
 /// value as "-". Control characters of a text are shown as \xNN, so that a row is a line.
 [[nodiscard]] std::string text_of(const Table& table);
 
+/// One figure of `table` side by side: a row for each value of column `row`, a column for each value of
+/// `across`, which must be plain names (results/table.h). (results/wide_table.h)
+[[nodiscard]] std::string side_by_side(const Table& table, std::string_view row, std::string_view across,
+                                       std::string_view value, std::string_view title);
+
 }  // namespace marti::studies

@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <string>
 
 #include "studies/functional_run.h"
 #include "studies/results/claim.h"
 #include "studies/results/provenance.h"
 #include "studies/results/text_table.h"
-#include "studies/results/wide_table.h"
 #include "studies/schemes/arguments.h"
 #include "studies/schemes/cell_table.h"
 #include "studies/schemes/scaling_table.h"
@@ -17,20 +15,6 @@
 #include "studies/schemes/stage_table.h"
 
 namespace marti::studies {
-
-namespace {
-
-/// One figure of every machine side by side, a row for each number of nodes.
-std::string side_by_side(const Table& schemes, std::string_view value, std::string_view title) {
-  const Table wide = widen(schemes, std::array{std::string_view("nodes")}, "machine", "", value);
-  Table titled("shown", std::string(title), {wide.columns().begin(), wide.columns().end()});
-  for (const std::vector<Cell>& row : wide.rows()) {
-    titled.add_row(row);
-  }
-  return text_of(titled);
-}
-
-}  // namespace
 
 StudyOutput run_schemes(sim::Config& config) {
   const SchemesConfig schemes = read_schemes(config);
@@ -45,9 +29,10 @@ StudyOutput run_schemes(sim::Config& config) {
   output.tables = {scaling_table(points), stage_table(stages), cell_table(cells), claim_table(claims)};
   output.report = fmt::format("Parallel schemes on {}, {} x {}, {} rays\n\n", schemes.frame.scene, log.width,
                               log.height, run.totals.all_rays()) +
-                  side_by_side(output.tables[0], "speed_up", "Speed-up over one node") + "\n" +
-                  side_by_side(output.tables[0], "efficiency", "Efficiency") + "\n" +
-                  text_of(output.tables[1]) + "\n" + text_of(output.tables[2]) + "\n" + text_of(claims);
+                  side_by_side(output.tables[0], "nodes", "machine", "speed_up", "Speed-up over one node") +
+                  "\n" + side_by_side(output.tables[0], "nodes", "machine", "efficiency", "Efficiency") +
+                  "\n" + text_of(output.tables[1]) + "\n" + text_of(output.tables[2]) + "\n" +
+                  text_of(claims);
   output.tables.push_back(provenance_table(config.effective_values()));
   return output;
 }
