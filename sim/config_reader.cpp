@@ -10,6 +10,7 @@
 #include "sim/error.h"
 #include "sim/files.h"
 #include "sim/nearest.h"
+#include "sim/toml_text.h"
 #include "sim/units.h"
 
 namespace marti::sim {
@@ -131,6 +132,10 @@ class ConfigReader {
 
   void read_text(std::string_view text) {
     check_depth(text, config_.name_);
+    if (const std::size_t line = line_beyond_ascii(text); line != 0) {
+      throw UserError(config_.name_ + ":" + std::to_string(line) +
+                      ": a character that is not ASCII, outside of a text in quotes and of a comment");
+    }
     try {
       const toml::table document = toml::parse(text, config_.name_);
       std::vector<Found> found;
@@ -186,7 +191,7 @@ class ConfigReader {
     check_depth(text, origin.place);
     const toml::value<std::string> bare(text);
     // A line break could smuggle in further keys.
-    if (text.find_first_of("\r\n") == std::string::npos) {
+    if (text.find_first_of("\r\n") == std::string::npos && line_beyond_ascii(text) == 0) {
       try {
         const toml::table document = toml::parse("value = " + text);
         const toml::node& node = *document.get("value");

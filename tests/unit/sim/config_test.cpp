@@ -320,6 +320,25 @@ RC_GTEST_PROP(Config, AnyTextEitherReadsOrIsAUserError, (const std::string& text
   }
 }
 
+TEST(Config, LettersBeyondAsciiBelongInTextsAndComments) {
+  EXPECT_EQ(read("# caf\u00e9\nscene.file = \"caf\u00e9 \\\" \u2603\" # \u00e9").text("scene.file"),
+            "caf\u00e9 \" \u2603");
+  EXPECT_EQ(read("scene.file = \"\"\"\u00e9\"\u00e9\n\u00e9\"\"\"").text("scene.file"),
+            "\u00e9\"\u00e9\n\u00e9");
+  EXPECT_EQ(read("scene.file = '\u00e9\\'").text("scene.file"), "\u00e9\\");
+  EXPECT_EQ(read("", {"scene.file=caf\u00e9"}).text("scene.file"), "caf\u00e9");
+  EXPECT_EQ(read("\xEF\xBB\xBFscene.file = 'a'").text("scene.file"), "a");
+  for (const char* const text :
+       {"\u00e9 = 1", "\n\u00e9", "scene.file = 'a'\u00e9", "scene.\u00e9 = 'a'", "\u3000"}) {
+    try {
+      (void)read(text);
+      FAIL() << text;
+    } catch (const UserError& error) {
+      EXPECT_NE(std::string(error.what()).find("not ASCII"), std::string::npos) << error.what();
+    }
+  }
+}
+
 RC_GTEST_PROP(Config, TextsSurvivePrinting, (const std::string& any)) {
   std::string text;
   for (const char c : any) {
