@@ -18,9 +18,8 @@ using namespace studies;
 /// The shipped study, of a smaller image.
 const SchemesConfig& shipped() {
   static const SchemesConfig schemes = [] {
-    const std::vector<std::string> smaller = {"image.width=128", "image.height=128",
-                                              "schemes.nodes=[1,4,16,64]",
-                                              "schemes.cell_levels=[4,6,7,9,12]"};
+    const std::vector<std::string> smaller = {"image.width=96", "image.height=96",
+                                              "schemes.nodes=[1,4,16,64]", "schemes.cell_levels=[5,7,11]"};
     sim::Config config = sim::Config::from_file(
         schemes_schema(), std::filesystem::path(MARTI_SOURCE) / "configs" / "schemes.toml", smaller);
     return read_schemes(config);
@@ -87,17 +86,20 @@ TEST(Arguments, APipelineIsLimitedByItsSlowestStage) {
 
 TEST(Arguments, TooSmallAndTooLargeCellsBothHurtTheCache) {
   const std::vector<CellPoint> cells = time_cells(shipped());
-  ASSERT_EQ(cells.size(), 5U);
+  ASSERT_EQ(cells.size(), 3U);
   const auto misses = [&](std::size_t i) { return cells[i].references.all_misses(); };
   EXPECT_GT(misses(0), 2 * misses(1));
-  EXPECT_GT(2 * misses(4), 3 * misses(2));
-  EXPECT_GT(misses(3), misses(2));
-  EXPECT_GT(cells[0].end, cells[2].end);
-  EXPECT_GT(cells[4].end, cells[2].end);
+  EXPECT_GT(4 * misses(2), 5 * misses(1));
+  EXPECT_GT(cells[0].end, cells[1].end);
+  const std::vector<Claim> claims = check_arguments({}, cells, {});
+  EXPECT_EQ(claims.back().verdict, Verdict::agrees) << claims.back().here;
 }
 
-TEST(Arguments, EveryStatementOfTheShippedStudyIsMeasured) {
-  for (const Claim& claim : check_arguments(points(), time_cells(shipped()), stages())) {
+TEST(Arguments, EveryOtherStatementOfTheShippedStudyIsMeasuredAndAgrees) {
+  std::vector<Claim> claims = check_arguments(points(), {}, stages());
+  EXPECT_EQ(claims.back().verdict, Verdict::not_measured);  // that about the cells
+  claims.pop_back();
+  for (const Claim& claim : claims) {
     EXPECT_EQ(claim.verdict, Verdict::agrees) << claim.subject << ": " << claim.here;
   }
 }
