@@ -15,6 +15,8 @@ namespace marti::processors {
 /// `Present` is false for nodes without a cache.
 template <bool Present>
 class CountedCaches {
+  struct State;
+
  public:
   static constexpr bool present = Present;
   static constexpr bool by_kind = true;
@@ -34,7 +36,7 @@ class CountedCaches {
     }
 
    private:
-    typename CountedCaches::State& state_;
+    State& state_;
     std::uint32_t node_;
   };
   [[nodiscard]] View view(std::uint32_t node) { return {*this, node}; }
