@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/error.h"
+#include "sim/key_value.h"
 
 namespace marti::sim {
 
@@ -25,119 +26,121 @@ std::vector<T> unpack(std::span<const Value> values) {
 
 }  // namespace
 
-Config::Config(Schema schema, std::string name) : schema_(std::move(schema)), name_(std::move(name)) {
-  entries_.resize(schema_.keys().size());
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    entries_[i].values = schema_.keys()[i].default_value;
-  }
-}
+Config::Config(std::shared_ptr<const Schema> schema, std::string name)
+    : schema_(std::move(schema)), name_(std::move(name)), entries_(schema_->keys().size()) {}
 
 std::size_t Config::index_of(std::string_view key) const {
-  const std::optional<std::size_t> index = schema_.find(key);
+  const std::optional<std::size_t> index = schema_->find(key);
   if (!index) {
     throw InternalError("the key " + std::string(key) + " is not declared");
   }
   return *index;
 }
 
-const Config::Entry& Config::read(std::string_view key, ValueType type, bool is_list) const {
+std::span<const Value> Config::values_at(std::size_t key) const {
+  const Entry& entry = entries_[key];
+  return entry.given == nullptr ? std::span<const Value>(schema_->keys()[key].default_value)
+                                : std::span<const Value>(entry.given->values);
+}
+
+std::span<const Value> Config::read(std::string_view key, ValueType type, bool is_list) const {
   const std::size_t index = index_of(key);
-  if (schema_.keys()[index].type != type || schema_.keys()[index].is_list != is_list) {
+  if (schema_->keys()[index].type != type || schema_->keys()[index].is_list != is_list) {
     throw InternalError("the key " + std::string(key) + " is read as another type than it is declared");
   }
   entries_[index].used = true;
-  return entries_[index];
+  return values_at(index);
 }
 
 bool Config::boolean(std::string_view key) const {
-  return std::get<bool>(read(key, ValueType::boolean, false).values.front());
+  return std::get<bool>(read(key, ValueType::boolean, false).front());
 }
 
 std::int64_t Config::integer(std::string_view key) const {
-  return std::get<std::int64_t>(read(key, ValueType::integer, false).values.front());
+  return std::get<std::int64_t>(read(key, ValueType::integer, false).front());
 }
 
 double Config::real(std::string_view key) const {
-  return std::get<double>(read(key, ValueType::real, false).values.front());
+  return std::get<double>(read(key, ValueType::real, false).front());
 }
 
 const std::string& Config::text(std::string_view key) const {
-  return std::get<std::string>(read(key, ValueType::text, false).values.front());
+  return std::get<std::string>(read(key, ValueType::text, false).front());
 }
 
 std::size_t Config::choice(std::string_view key) const {
-  const std::vector<std::string>& choices = schema_.keys()[index_of(key)].choices;
+  const std::vector<std::string>& choices = schema_->keys()[index_of(key)].choices;
   const auto found = std::find(choices.begin(), choices.end(), choice_name(key));
   return static_cast<std::size_t>(found - choices.begin());
 }
 
 const std::string& Config::choice_name(std::string_view key) const {
-  return std::get<std::string>(read(key, ValueType::choice, false).values.front());
+  return std::get<std::string>(read(key, ValueType::choice, false).front());
 }
 
 std::int64_t Config::size(std::string_view key) const {
-  return std::get<std::int64_t>(read(key, ValueType::size, false).values.front());
+  return std::get<std::int64_t>(read(key, ValueType::size, false).front());
 }
 
 double Config::frequency(std::string_view key) const {
-  return std::get<double>(read(key, ValueType::frequency, false).values.front());
+  return std::get<double>(read(key, ValueType::frequency, false).front());
 }
 
 Ticks Config::duration(std::string_view key) const {
-  return std::get<std::int64_t>(read(key, ValueType::duration, false).values.front());
+  return std::get<std::int64_t>(read(key, ValueType::duration, false).front());
 }
 
 double Config::percentage(std::string_view key) const {
-  return std::get<double>(read(key, ValueType::percentage, false).values.front());
+  return std::get<double>(read(key, ValueType::percentage, false).front());
 }
 
 std::vector<std::int64_t> Config::integers(std::string_view key) const {
-  return unpack<std::int64_t>(read(key, ValueType::integer, true).values);
+  return unpack<std::int64_t>(read(key, ValueType::integer, true));
 }
 
 std::vector<double> Config::reals(std::string_view key) const {
-  return unpack<double>(read(key, ValueType::real, true).values);
+  return unpack<double>(read(key, ValueType::real, true));
 }
 
 std::vector<std::string> Config::texts(std::string_view key) const {
-  return unpack<std::string>(read(key, ValueType::text, true).values);
+  return unpack<std::string>(read(key, ValueType::text, true));
 }
 
 std::span<const Value> Config::values(std::string_view key) const {
-  const Entry& entry = entries_[index_of(key)];
-  entry.used = true;
-  return entry.values;
+  const std::size_t index = index_of(key);
+  entries_[index].used = true;
+  return values_at(index);
 }
 
-bool Config::given(std::string_view key) const { return entries_[index_of(key)].given; }
+bool Config::given(std::string_view key) const { return given_at(index_of(key)); }
 
 std::string Config::where(std::string_view key) const { return where(entries_[index_of(key)]); }
 
 std::string Config::where(const Entry& entry) const {
-  if (!entry.given) {
+  if (entry.given == nullptr) {
     return "default";
   }
-  return entry.line > 0 ? name_ + ":" + std::to_string(entry.line) : "--set " + entry.assignment;
+  return entry.line() > 0 ? name_ + ":" + std::to_string(entry.line()) : entry.given->place;
 }
 
 void Config::fail(std::string_view key, std::string_view message) const {
   const Entry& entry = entries_[index_of(key)];
-  if (entry.given && entry.line == 0) {  // an assignment already names the key
+  if (entry.given != nullptr && entry.line() == 0) {  // an assignment already names the key
     throw UserError(where(entry) + ": " + std::string(message));
   }
   // A default cannot be pointed at: the file in which it could be changed can.
-  const std::string place = entry.given ? where(entry) : name_;
+  const std::string place = entry.given != nullptr ? where(entry) : name_;
   throw UserError(place + ": " + std::string(key) + ": " + std::string(message));
 }
 
 void Config::mark_unused_reason(std::string_view key_or_section, std::string_view reason,
                                 std::string_view decided_by) {
-  ensure(schema_.find(key_or_section).has_value() || schema_.is_section(key_or_section),
+  ensure(schema_->find(key_or_section).has_value() || schema_->is_section(key_or_section),
          "a reason is given for a key that is not declared");
   bool by_assignment = false;
   if (!decided_by.empty()) {
     const Entry& decider = entries_[index_of(decided_by)];
-    by_assignment = decider.given && decider.line == 0;
+    by_assignment = decider.given != nullptr && decider.line() == 0;
   }
   unused_reasons_.push_back({std::string(key_or_section), std::string(reason), by_assignment});
 }
@@ -159,16 +162,16 @@ void Config::refuse_unused() const {
     const Entry& entry = entries_[i];
     // The first by line; assignments, which have line 0, only when nothing in the file is unused.
     const bool earlier =
-        first == nullptr || (entry.line > 0 && (first->line == 0 || entry.line < first->line));
-    if (!entry.given || entry.used || !earlier) {
+        first == nullptr || (entry.line() > 0 && (first->line() == 0 || entry.line() < first->line()));
+    if (entry.given == nullptr || entry.used || !earlier) {
       continue;
     }
-    const UnusedReason* reason = unused_reason(schema_.names()[i]);
-    if (entry.line > 0 && reason != nullptr && reason->by_assignment) {
+    const UnusedReason* reason = unused_reason(schema_->names()[i]);
+    if (entry.line() > 0 && reason != nullptr && reason->by_assignment) {
       continue;
     }
     first = &entry;
-    key = schema_.names()[i];
+    key = schema_->names()[i];
   }
   if (first == nullptr) {
     return;
@@ -183,11 +186,62 @@ std::vector<EffectiveValue> Config::effective_values() const {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const Entry& entry = entries_[i];
     if (entry.used) {
-      const Key& key = schema_.keys()[i];
-      effective.push_back({key.name, print_values(key, entry.values), entry.given, where(entry)});
+      const Key& key = schema_->keys()[i];
+      effective.push_back({key.name, print_values(key, values_at(i)), entry.given != nullptr, where(entry)});
     }
   }
   return effective;
+}
+
+const DocumentValue::Table& Config::free_section(std::string_view name) const {
+  static const DocumentValue::Table nothing;
+  ensure(schema_->is_free_section(name), "a free section is read that is not declared");
+  for (const FreeSection& section : free_sections_) {
+    if (section.name == name) {
+      return *section.table->table();
+    }
+  }
+  return nothing;
+}
+
+int Config::free_section_line(std::string_view name) const {
+  for (const FreeSection& section : free_sections_) {
+    if (section.name == name) {
+      return section.table->line;
+    }
+  }
+  return 0;
+}
+
+std::vector<Value> Config::parse(std::size_t key, const DocumentValue& value, std::string_view label) const {
+  const Key& declared = schema_->keys()[key];
+  const std::string place =
+      name_ + ":" + std::to_string(value.line) + ": " + (label.empty() ? declared.name : std::string(label));
+  return read_values(declared, value, place);
+}
+
+void Config::set(Setting setting) {
+  entries_[setting.key].given =
+      std::make_shared<const Given>(Given{std::move(setting.values), setting.line, std::move(setting.place)});
+}
+
+void Config::reset(std::size_t key) { entries_[key].given = nullptr; }
+
+Config Config::with(std::span<const Setting> settings) const {
+  Config variant = *this;
+  for (Entry& entry : variant.entries_) {
+    entry.used = false;
+  }
+  variant.unused_reasons_.clear();
+  for (const Setting& setting : settings) {
+    variant.set(setting);
+  }
+  return variant;
+}
+
+std::string_view Config::why_unused(std::string_view key) const {
+  const UnusedReason* reason = unused_reason(key);
+  return reason == nullptr ? std::string_view() : std::string_view(reason->reason);
 }
 
 }  // namespace marti::sim

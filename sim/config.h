@@ -7,12 +7,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "sim/document.h"
 #include "sim/schema.h"
 #include "sim/time.h"
 
@@ -26,6 +28,15 @@ struct EffectiveValue {
   std::string source;  // "file:line", "--set key=value" or "default"
 };
 
+/// A value given to a key of a Config that was read before.
+struct Setting {
+  std::size_t key = 0;  // index into the schema's keys
+  std::vector<Value> values;
+  int line = 0;       // of the file it comes from; 0: it comes from none
+  std::string place;  // then what takes the place of "--set key=value" in messages
+};
+
+/// Cheap to copy: copies share the schema and the values given.
 class Config {
  public:
   /// Reads a file of at most 1 MiB. Each assignment is the "key=value" of a --set option; they override
@@ -82,28 +93,64 @@ class Config {
   /// The values of all keys read so far, in the order of the schema.
   [[nodiscard]] std::vector<EffectiveValue> effective_values() const;
 
-  [[nodiscard]] const Schema& schema() const { return schema_; }
+  /// What is written below a free section, but for its declared keys; an empty table where it is not given.
+  /// Lives as long as the Config and its copies.
+  [[nodiscard]] const DocumentValue::Table& free_section(std::string_view name) const;
+  /// The line of the section's name; 0 where it is not given.
+  [[nodiscard]] int free_section_line(std::string_view name) const;
+
+  /// The values that `value` gives the key of this index. Throws the UserError "file:line: key: message" for
+  /// another type and for a value out of range; `label` takes the key's place in it when it is not empty.
+  [[nodiscard]] std::vector<Value> parse(std::size_t key, const DocumentValue& value,
+                                         std::string_view label = {}) const;
+  /// Gives the key these values, which parse() has made or the schema declares.
+  void set(Setting setting);
+  /// Takes the key's value away: it has its default.
+  void reset(std::size_t key);
+  /// A copy with these settings, of which nobody has read a key yet.
+  [[nodiscard]] Config with(std::span<const Setting> settings) const;
+
+  // By index into the schema's keys. None of these marks the key as used.
+  [[nodiscard]] std::span<const Value> values_at(std::size_t key) const;
+  [[nodiscard]] bool given_at(std::size_t key) const { return entries_[key].given != nullptr; }
+  [[nodiscard]] bool used_at(std::size_t key) const { return entries_[key].used; }
+  /// Marks the key as used, for what was read from a copy.
+  void use(std::size_t key) { entries_[key].used = true; }
+  /// Why the key is not used, by mark_unused_reason; empty when nothing is known.
+  [[nodiscard]] std::string_view why_unused(std::string_view key) const;
+  /// Takes over the reasons that a copy was given.
+  void take_reasons(const Config& copy) { unused_reasons_ = copy.unused_reasons_; }
+
+  [[nodiscard]] const Schema& schema() const { return *schema_; }
   /// The file's name as it appears in messages.
   [[nodiscard]] const std::string& name() const { return name_; }
 
  private:
+  struct Given {
+    std::vector<Value> values;
+    int line = 0;       // in the file; 0: set by an assignment
+    std::string place;  // then "--set key=value"
+  };
   struct Entry {
-    std::vector<Value> values;  // the default when not given
-    bool given = false;
-    int line = 0;            // in the file; 0 when set by an assignment
-    std::string assignment;  // "key=value" of the --set option
+    std::shared_ptr<const Given> given;  // null: the default holds
     mutable bool used = false;
+    [[nodiscard]] int line() const { return given == nullptr ? 0 : given->line; }
+  };
+  struct FreeSection {
+    std::string name;
+    std::shared_ptr<const DocumentValue> table;
   };
 
-  Config(Schema schema, std::string name);
-  const Entry& read(std::string_view key, ValueType type, bool is_list) const;
+  Config(std::shared_ptr<const Schema> schema, std::string name);
+  std::span<const Value> read(std::string_view key, ValueType type, bool is_list) const;
   [[nodiscard]] std::size_t index_of(std::string_view key) const;
   [[nodiscard]] std::string where(const Entry& entry) const;
 
   friend class ConfigReader;
 
-  Schema schema_;
+  std::shared_ptr<const Schema> schema_;
   std::string name_;
+  std::vector<FreeSection> free_sections_;
   std::vector<Entry> entries_;  // one for each key of the schema, in its order
   struct UnusedReason {
     std::string covers;  // key or section

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <sstream>
 
 #include <toml++/toml.h>
@@ -9,9 +10,9 @@
 #include "sim/config.h"
 #include "sim/error.h"
 #include "sim/files.h"
+#include "sim/key_value.h"
 #include "sim/nearest.h"
 #include "sim/toml_text.h"
-#include "sim/units.h"
 
 namespace marti::sim {
 
@@ -62,50 +63,86 @@ void check_depth(std::string_view text, std::string_view name) {
   }
 }
 
-std::string describe(const toml::node& node) {
-  std::ostringstream out;
-  switch (node.type()) {
-    case toml::node_type::table:
-      return "a table";
-    case toml::node_type::array:
-      return "a list";
-    case toml::node_type::string:
-      out << "the text \"" << node.ref<std::string>().substr(0, 60) << "\"";
-      return out.str();
-    case toml::node_type::integer:
-      return "the integer " + std::to_string(node.ref<std::int64_t>());
-    case toml::node_type::floating_point:
-      out << "the real " << node.ref<double>();
-      return out.str();
-    case toml::node_type::boolean:
-      return "a boolean";
-    default:
-      return "a date or time";
+DocumentValue document_of(const toml::node& node, int line);
+
+/// Where two names of one table stand in the file decides their order, not their letters.
+DocumentValue::Table entries_of(const toml::table& table) {
+  struct Place {
+    toml::source_position at;
+    DocumentEntry entry;
+  };
+  std::vector<Place> places;
+  places.reserve(table.size());
+  for (const auto& [key, node] : table) {
+    const toml::source_position at = key.source().begin;
+    const int line = static_cast<int>(at.line);
+    places.push_back({at, {std::string(key.str()), line, document_of(node, line)}});
   }
+  std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.at < b.at; });
+  DocumentValue::Table entries;
+  entries.reserve(places.size());
+  for (Place& place : places) {
+    entries.push_back(std::move(place.entry));
+  }
+  return entries;
 }
 
-std::string expectation(const Key& key) {
-  switch (key.type) {
-    case ValueType::boolean:
-      return "true or false";
-    case ValueType::integer:
-      return "an integer";
-    case ValueType::real:
-      return "a number";
-    case ValueType::text:
-      return "a text in quotation marks";
-    case ValueType::choice:
-      return print_range(key);
-    case ValueType::size:
-      return "a size such as \"16 KiB\"";
-    case ValueType::frequency:
-      return "a frequency such as \"33 MHz\"";
-    case ValueType::duration:
-      return "a duration such as \"10 ns\"";
-    case ValueType::percentage:
-      return "a percentage such as \"42 %\"";
+/// `line` is that of what surrounds the node, for a node that does not know its own.
+DocumentValue document_of(const toml::node& node, int line) {
+  DocumentValue value;
+  value.line = node.source().begin ? static_cast<int>(node.source().begin.line) : line;
+  switch (node.type()) {
+    case toml::node_type::table:
+      value.content = entries_of(*node.as_table());
+      break;
+    case toml::node_type::array: {
+      DocumentValue::List list;
+      list.reserve(node.as_array()->size());
+      for (const toml::node& element : *node.as_array()) {
+        list.push_back(document_of(element, value.line));
+      }
+      value.content = std::move(list);
+      break;
+    }
+    case toml::node_type::string:
+      value.content = node.ref<std::string>();
+      break;
+    case toml::node_type::integer:
+      value.content = node.ref<std::int64_t>();
+      break;
+    case toml::node_type::floating_point:
+      value.content = node.ref<double>();
+      break;
+    case toml::node_type::boolean:
+      value.content = node.ref<bool>();
+      break;
+    default:
+      break;  // a date or time
   }
-  throw InternalError("unknown type of value");
+  return value;
+}
+
+/// Refuses what no free section may hold.
+void check_free(const DocumentValue& value, const std::string& name, std::string_view file) {
+  const auto fail = [&] {
+    throw UserError(std::string(file) + ":" + std::to_string(value.line) + ": " + name + ": must not be " +
+                    describe(value));
+  };
+  if (std::holds_alternative<std::monostate>(value.content)) {
+    fail();
+  } else if (const double* real = std::get_if<double>(&value.content)) {
+    if (!std::isfinite(*real)) {
+      fail();
+    }
+  } else if (const DocumentValue::List* list = value.list()) {
+    for (const DocumentValue& element : *list) {
+      check_free(element, name, file);
+    }
+  } else if (const DocumentValue::Table* table = value.table()) {
+    for (const DocumentEntry& entry : *table) {
+      check_free(entry.value, name + "." + entry.name, file);
+    }
+  }
 }
 
 }  // namespace
@@ -113,7 +150,8 @@ std::string expectation(const Key& key) {
 /// Builds one Config. Everything wrong is thrown at once, in the order of the text.
 class ConfigReader {
  public:
-  ConfigReader(const Schema& schema, std::string name) : config_(schema, std::move(name)) {}
+  ConfigReader(std::shared_ptr<const Schema> schema, std::string name)
+      : config_(std::move(schema), std::move(name)) {}
 
   Config read(std::string_view text, std::span<const std::string> assignments) {
     read_text(text);
@@ -144,7 +182,7 @@ class ConfigReader {
                        [](const Found& a, const Found& b) { return a.line < b.line; });
       for (const Found& one : found) {
         const Origin origin{config_.name_ + ":" + std::to_string(one.line) + ": " + one.key, one.line, {}};
-        store(one.key, *one.node, origin);
+        store(one.key, document_of(*one.node, one.line), origin);
       }
     } catch (const toml::parse_error& error) {
       const toml::source_position at = error.source().begin;
@@ -155,25 +193,45 @@ class ConfigReader {
   }
 
   /// Lists the values below `table` under their dotted names. A table without values stands for itself.
-  void flatten(const toml::table& table, const std::string& prefix, std::vector<Found>& found) const {
+  void flatten(const toml::table& table, const std::string& prefix, std::vector<Found>& found) {
     for (const auto& [key, node] : table) {
       // A part that has dots itself would look like several: it is shown in quotation marks and unknown.
       const bool plain = key.str().find('.') == std::string_view::npos && !key.str().empty();
       const std::string part = plain ? std::string(key.str()) : "\"" + std::string(key.str()) + "\"";
       const std::string name = prefix.empty() ? part : prefix + "." + part;
       const toml::table* inner = node.as_table();
+      if (inner != nullptr && prefix.empty() && config_.schema_->is_free_section(name)) {
+        keep_free(*inner, name, static_cast<int>(key.source().begin.line), found);
+        continue;
+      }
       // An empty section of a known name says nothing and does no harm.
-      if (inner != nullptr && !config_.schema_.find(name)) {
+      if (inner != nullptr && !config_.schema_->find(name)) {
         if (!inner->empty()) {
           flatten(*inner, name, found);
           continue;
         }
-        if (config_.schema_.is_section(name)) {
+        if (config_.schema_->is_section(name)) {
           continue;
         }
       }
       found.push_back({name, &node, static_cast<int>(key.source().begin.line)});
     }
+  }
+
+  /// What a free section holds stays as it is, but for the declared keys.
+  void keep_free(const toml::table& table, const std::string& name, int line, std::vector<Found>& found) {
+    DocumentValue::Table free;
+    for (DocumentEntry& entry : entries_of(table)) {
+      const std::string key = name + "." + entry.name;
+      if (config_.schema_->find(key)) {
+        found.push_back({key, table.get(entry.name), entry.line});
+      } else {
+        check_free(entry.value, key, config_.name_);
+        free.push_back(std::move(entry));
+      }
+    }
+    config_.free_sections_.push_back(
+        {name, std::make_shared<const DocumentValue>(DocumentValue{std::move(free), line})});
   }
 
   void assign(const std::string& assignment) {
@@ -186,10 +244,10 @@ class ConfigReader {
     const std::string text = trim(assignment.substr(equals + 1));
     const Key& declared = find(key, nullptr, origin);
     if (text.empty()) {
-      fail_at(origin, "the value is missing; it must be " + expected(declared));
+      fail_at(origin, "the value is missing; it must be " + expected_of(declared));
     }
     check_depth(text, origin.place);
-    const toml::value<std::string> bare(text);
+    const DocumentValue bare{text, 0};
     // A line break could smuggle in further keys.
     if (text.find_first_of("\r\n") == std::string::npos && line_beyond_ascii(text) == 0) {
       try {
@@ -197,7 +255,7 @@ class ConfigReader {
         const toml::node& node = *document.get("value");
         const bool wants_text = declared.type == ValueType::text || declared.type == ValueType::choice;
         if (!wants_text || node.is_string() || node.is_array()) {
-          store(key, node, origin);
+          store(key, document_of(node, 0), origin);
           return;
         }
       } catch (const toml::parse_error&) {
@@ -212,27 +270,25 @@ class ConfigReader {
     return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
   }
 
-  static std::string expected(const Key& key) {
-    return key.is_list ? "a list in brackets, each " + expectation(key) : expectation(key);
-  }
-
   /// The declaration of `key`, or a UserError that knows the nearest valid name.
-  const Key& find(const std::string& key, const toml::node* node, const Origin& origin) const {
-    const Schema& schema = config_.schema_;
+  const Key& find(const std::string& key, const DocumentValue* value, const Origin& origin) const {
+    const Schema& schema = *config_.schema_;
     if (const std::optional<std::size_t> index = schema.find(key)) {
       return schema.keys()[*index];
     }
     if (schema.is_section(key)) {
-      fail_at(origin, "is a section and has no value of its own; its keys are " + keys_below(key));
+      const std::string keys = keys_below(key);
+      fail_at(origin,
+              "is a section and has no value of its own" + (keys.empty() ? "" : "; its keys are " + keys));
     }
-    const bool is_table = node != nullptr && node->is_table();
+    const bool is_table = value != nullptr && value->table() != nullptr;
     fail_at(origin, std::string(is_table ? "unknown section" : "unknown key") + suggestion(key) +
                         "; `marti config` lists all keys");
   }
 
   [[nodiscard]] std::string keys_below(const std::string& section) const {
     std::string listed;
-    for (const std::string& name : config_.schema_.names()) {
+    for (const std::string& name : config_.schema_->names()) {
       if (name.starts_with(section + ".")) {
         listed += listed.empty() ? "" : ", ";
         listed += name;
@@ -246,126 +302,23 @@ class ConfigReader {
   [[nodiscard]] std::string suggestion(const std::string& key) const {
     const std::string ending = "." + key.substr(key.rfind('.') + 1);
     std::vector<std::string> same;
-    std::copy_if(config_.schema_.names().begin(), config_.schema_.names().end(), std::back_inserter(same),
+    std::copy_if(config_.schema_->names().begin(), config_.schema_->names().end(), std::back_inserter(same),
                  [&](const std::string& name) { return name.ends_with(ending); });
-    std::string near = did_you_mean(key, config_.schema_.names());
+    std::string near = did_you_mean(key, config_.schema_->names());
     if (near.empty() && same.size() == 1) {
       return " (did you mean \"" + same.front() + "\"?)";
     }
     return near;
   }
 
-  void store(const std::string& key, const toml::node& node, const Origin& origin) {
-    const Key& declared = find(key, &node, origin);
-    std::vector<Value> values;
-    if (declared.is_list) {
-      const toml::array* list = node.as_array();
-      if (list == nullptr) {
-        fail_at(origin, "must be " + expected(declared) + ", not " + describe(node));
-      }
-      for (const toml::node& element : *list) {
-        values.push_back(convert(declared, element, origin));
-      }
-    } else {
-      values.push_back(convert(declared, node, origin));
-    }
-    Config::Entry& entry = config_.entries_[*config_.schema_.find(key)];
-    entry.values = std::move(values);
-    entry.given = true;
-    entry.line = origin.line;
-    entry.assignment = origin.assignment;
-  }
-
-  static Value convert(const Key& key, const toml::node& node, const Origin& origin) {
-    Value value = typed(key, node, origin);
-    if (!in_range(key, value)) {
-      std::string message = "must be " + print_range(key);
-      if (!key.unit.empty()) {
-        message += " (" + key.unit + ")";
-      }
-      message += ", not " + print_value(key.type, value);
-      if (key.type == ValueType::choice) {
-        message += did_you_mean(std::get<std::string>(value), key.choices);
-      }
-      fail_at(origin, message);
-    }
-    return value;
-  }
-
-  /// The node as the key's type, its range not yet checked.
-  static Value typed(const Key& key, const toml::node& node, const Origin& origin) {
-    const auto wrong = [&]() { fail_at(origin, "must be " + expectation(key) + ", not " + describe(node)); };
-    const auto parsed = [&](auto parse) -> Value {
-      try {
-        return parse(node.ref<std::string>());
-      } catch (const UserError& error) {
-        fail_at(origin, error.what());
-      }
-    };
-    switch (key.type) {
-      case ValueType::boolean:
-        if (node.is_boolean()) {
-          return node.ref<bool>();
-        }
-        break;
-      case ValueType::integer:
-        if (node.is_integer()) {
-          return node.ref<std::int64_t>();
-        }
-        break;
-      case ValueType::real:
-        return real(node, wrong);
-      case ValueType::text:
-      case ValueType::choice:
-        if (node.is_string()) {
-          return node.ref<std::string>();
-        }
-        break;
-      case ValueType::size:
-        if (node.is_integer() && node.ref<std::int64_t>() >= 0) {
-          return node.ref<std::int64_t>();
-        }
-        if (node.is_string()) {
-          return parsed([](const std::string& text) { return parse_size(text); });
-        }
-        break;
-      case ValueType::frequency:
-        if (node.is_string()) {
-          return parsed([](const std::string& text) { return parse_frequency(text); });
-        }
-        break;
-      case ValueType::duration:
-        if (node.is_string()) {
-          return parsed([](const std::string& text) { return std::int64_t{parse_duration(text)}; });
-        }
-        break;
-      case ValueType::percentage:
-        if (node.is_string()) {
-          return parsed([](const std::string& text) { return parse_percentage(text); });
-        }
-        break;
-    }
-    wrong();
-    throw InternalError("a value of the wrong type was accepted");
-  }
-
-  template <class Wrong>
-  static Value real(const toml::node& node, const Wrong& wrong) {
-    double value = 0;
-    if (node.is_integer()) {
-      value = static_cast<double>(node.ref<std::int64_t>());
-      if (std::abs(value) > 0x1p53) {  // not every integer beyond is a double
-        wrong();
-      }
-    } else if (node.is_floating_point()) {
-      value = node.ref<double>();
-    } else {
-      wrong();
-    }
-    if (!std::isfinite(value)) {
-      wrong();
-    }
-    return value;
+  void store(const std::string& key, const DocumentValue& value, const Origin& origin) {
+    const Key& declared = find(key, &value, origin);
+    Config::Given given;
+    given.values = read_values(declared, value, origin.place);
+    given.line = origin.line;
+    given.place = origin.assignment.empty() ? "" : "--set " + origin.assignment;
+    config_.entries_[*config_.schema_->find(key)].given =
+        std::make_shared<const Config::Given>(std::move(given));
   }
 
   Config config_;
@@ -373,7 +326,7 @@ class ConfigReader {
 
 Config Config::from_text(const Schema& schema, std::string_view text, std::string_view name,
                          std::span<const std::string> assignments) {
-  return ConfigReader(schema, std::string(name)).read(text, assignments);
+  return ConfigReader(std::make_shared<const Schema>(schema), std::string(name)).read(text, assignments);
 }
 
 Config Config::from_file(const Schema& schema, const std::filesystem::path& file,

@@ -214,6 +214,13 @@ void Schema::section(std::string_view name, std::string_view meaning) {
   sections_.push_back({std::string(name), std::string(meaning)});
 }
 
+void Schema::free_section(std::string_view name, std::string_view meaning) {
+  ensure(valid_name(name) && name.find('.') == std::string_view::npos && !find(name),
+         "a free section needs a name of one part that is no key");
+  section(name, meaning);
+  free_sections_.emplace_back(name);
+}
+
 void Schema::boolean(std::string_view name, bool default_value, std::string_view meaning) {
   Key key = make_key(name, ValueType::boolean, "", meaning);
   key.default_value.emplace_back(default_value);
@@ -309,23 +316,28 @@ void Schema::add(Key key) {
     check(value.index() == alternative_of(key.type), "the default has another type");
     check(in_range(key, value), "the default is out of range");
   }
+  for (std::size_t dot = key.name.find('.'); dot != std::string::npos; dot = key.name.find('.', dot + 1)) {
+    prefixes_.insert(key.name.substr(0, dot));
+  }
   index_.emplace(key.name, keys_.size());
   names_.push_back(key.name);
   keys_.push_back(std::move(key));
 }
 
 std::optional<std::size_t> Schema::find(std::string_view name) const {
-  const auto found = index_.find(std::string(name));
+  const auto found = index_.find(name);
   if (found == index_.end()) {
     return std::nullopt;
   }
   return found->second;
 }
 
+bool Schema::is_free_section(std::string_view name) const {
+  return std::find(free_sections_.begin(), free_sections_.end(), name) != free_sections_.end();
+}
+
 bool Schema::is_section(std::string_view name) const {
-  const std::string prefix = std::string(name) + ".";
-  return std::any_of(names_.begin(), names_.end(),
-                     [&](const std::string& key) { return key.starts_with(prefix); });
+  return prefixes_.contains(name) || is_free_section(name);
 }
 
 }  // namespace marti::sim

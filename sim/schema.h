@@ -5,11 +5,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <variant>
 #include <vector>
 
@@ -55,6 +57,11 @@ struct Section {
   std::string meaning;
 };
 
+struct NameHash {
+  using is_transparent = void;
+  std::size_t operator()(std::string_view name) const { return std::hash<std::string_view>()(name); }
+};
+
 class Schema {
  public:
   template <class T>
@@ -65,6 +72,9 @@ class Schema {
 
   /// Describes the keys with this prefix. Call it before declaring them.
   void section(std::string_view name, std::string_view meaning);
+  /// Likewise, and what a file writes below this name, a table of the first level, is kept unread, but for
+  /// the keys that are declared there (Config::free_section).
+  void free_section(std::string_view name, std::string_view meaning);
 
   // A declaration throws InternalError when the name was declared before, is not made of lower-case
   // letters, digits, '_' and '.', or the default lies outside the range. Ranges and defaults of sizes,
@@ -99,14 +109,18 @@ class Schema {
   [[nodiscard]] std::span<const std::string> names() const { return names_; }
   /// Index into keys(), if the key is declared.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
-  /// Is `name` a proper prefix of declared keys ("cache" of "cache.size")?
+  [[nodiscard]] bool is_free_section(std::string_view name) const;
+  /// Is `name` a proper prefix of declared keys ("cache" of "cache.size"), or a free section?
   [[nodiscard]] bool is_section(std::string_view name) const;
 
  private:
   std::vector<Key> keys_;
   std::vector<std::string> names_;
   std::vector<Section> sections_;
-  std::unordered_map<std::string, std::size_t> index_;
+  std::vector<std::string> free_sections_;
+  // Looked up for every key of every machine of a sweep: without a copy of the name.
+  std::unordered_map<std::string, std::size_t, NameHash, std::equal_to<>> index_;
+  std::unordered_set<std::string, NameHash, std::equal_to<>> prefixes_;
 };
 
 /// Every key with type, default, unit, range and meaning, for a terminal `width` columns wide.

@@ -1,0 +1,43 @@
+// A part of a TOML file as it was written, with the line of each value: what a free section of a schema holds
+// (sim/schema.h), and what the value of a key is read from.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace marti::sim {
+
+struct DocumentEntry;
+
+/// One value. A free section's has neither dates nor times, and its reals are finite.
+struct DocumentValue {
+  using List = std::vector<DocumentValue>;
+  using Table = std::vector<DocumentEntry>;
+  /// std::monostate: a date or time.
+  using Content = std::variant<std::monostate, bool, std::int64_t, double, std::string, List, Table>;
+
+  Content content;
+  int line = 0;  ///< in the file, from 1; 0 where it comes from no file
+
+  [[nodiscard]] const List* list() const { return std::get_if<List>(&content); }
+  [[nodiscard]] const Table* table() const { return std::get_if<Table>(&content); }
+  [[nodiscard]] const std::string* text() const { return std::get_if<std::string>(&content); }
+};
+
+/// A value and its name, one part of a dotted name, in the order of the file.
+struct DocumentEntry {
+  std::string name;
+  int line = 0;  ///< of the name
+  DocumentValue value;
+};
+
+/// In words: "the integer 3", "a table".
+[[nodiscard]] std::string describe(const DocumentValue& value);
+
+/// The entry of that name; null when there is none.
+[[nodiscard]] const DocumentEntry* find(const DocumentValue::Table& table, std::string_view name);
+
+}  // namespace marti::sim

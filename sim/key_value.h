@@ -1,0 +1,21 @@
+// The values of a key from what a file or an assignment says.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/document.h"
+#include "sim/schema.h"
+
+namespace marti::sim {
+
+/// What a value of the key must be, in words: "a size such as \"16 KiB\"".
+[[nodiscard]] std::string expected_of(const Key& key);
+
+/// The values of `key`: one, or those of a list. Throws the UserError "place: message" for another type and
+/// for a value out of range.
+[[nodiscard]] std::vector<Value> read_values(const Key& key, const DocumentValue& value,
+                                             std::string_view place);
+
+}  // namespace marti::sim
