@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "memory/interconnect.h"
 #include "memory/record_kind.h"
 #include "processors/program/work_log.h"
 #include "sim/statistics.h"
@@ -127,5 +128,13 @@ inline std::int64_t& misses_of(NodeStatistics& statistics, memory::RecordKind ki
 [[nodiscard]] std::array<std::int64_t, memory::record_kinds> records_of(const StepCounts& steps);
 
 [[nodiscard]] sim::Ticks sum_of(const TimeDivision& time);
+
+/// The parts of a read, each to its activity.
+inline void add_service(TimeDivision& time, const memory::Service& service) {
+  time[static_cast<std::size_t>(Activity::interconnect_wait)] += service.wait_interconnect;
+  time[static_cast<std::size_t>(Activity::transfer)] += service.transfer;
+  time[static_cast<std::size_t>(Activity::bank_wait)] += service.wait_bank;
+  time[static_cast<std::size_t>(Activity::bank_access)] += service.bank;
+}
 
 }  // namespace marti::processors

@@ -7,7 +7,9 @@ struct CountConfig {
   bool miss_classes = false;  ///< why first-level caches missed
   bool sharing = false;       ///< how many nodes of a cluster fetched each line
   bool attribution = false;  ///< references, misses and waits by record kind, tree level, ray kind and bounce
+  bool working_set = false;  ///< misses of caches of other sizes and ways (processors/working_set.h)
 
+  /// Of those that nodes count while they are timed; the working set is worked out afterwards.
   [[nodiscard]] bool any() const { return miss_classes || sharing || attribution; }
 };
 

@@ -46,7 +46,7 @@ class CountedCaches {
  private:
   struct State {
     explicit State(const ReplayInput& input)
-        : counting(input.config, input.layout.end() / unit_of(input.config) + 1) {
+        : counting(input.config, input.layout.end() / input.config.reference_bytes() + 1) {
       const NodeCacheConfig& config = input.config.cache;
       if (config.organisation == CacheOrganisation::unified) {
         tags.emplace_back(config.cache, input.config.all_nodes());
@@ -57,9 +57,6 @@ class CountedCaches {
           tags.emplace_back(part, input.config.all_nodes());
         }
       }
-    }
-    static std::uint32_t unit_of(const MachineConfig& config) {
-      return Present ? config.cache.cache.line : config.banks.interleave;
     }
     std::vector<memory::TagArray> tags;  // of the unified cache, or of the split ones
     CacheCounting counting;

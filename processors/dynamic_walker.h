@@ -38,7 +38,7 @@ class DynamicWalker {
         layout_(input.layout),
         topology_(input.log.topology),
         caches_(std::move(caches)),
-        line_bytes_(Caches::present ? input.config.cache.cache.line : input.config.banks.interleave),
+        line_bytes_(input.config.reference_bytes()),
         unit_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
         copies_(plan_, topology_, layout_, input.config, unit_shift_),
         addresses_(plan_, topology_, layout_, copies_),

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <numeric>
-#include <random>
 #include <utility>
 #include <vector>
 
@@ -44,12 +42,7 @@ class FlowNodesBase : public FlowNodes {
 
   // All clusters, in an order drawn from `seed` (0: ascending).
   [[nodiscard]] std::vector<std::uint32_t> first_order(std::uint64_t seed) const {
-    std::vector<std::uint32_t> order(input_.config.clusters);
-    std::iota(order.begin(), order.end(), 0U);
-    if (seed != 0) {
-      std::shuffle(order.begin(), order.end(), std::mt19937_64(seed));
-    }
-    return order;
+    return order_drawn_from(seed, input_.config.clusters);
   }
 
   std::uint32_t cluster_of(std::uint32_t node) const {
@@ -64,10 +57,7 @@ class FlowNodesBase : public FlowNodes {
     statistics_[node].time[static_cast<std::size_t>(activity)] += time;
   }
   void spend(std::uint32_t node, const memory::Service& service) {
-    spend(node, Activity::interconnect_wait, service.wait_interconnect);
-    spend(node, Activity::transfer, service.transfer);
-    spend(node, Activity::bank_wait, service.wait_bank);
-    spend(node, Activity::bank_access, service.bank);
+    add_service(statistics_[node].time, service);
   }
 
   // Tells who watches, if anybody does, that the node was in `state` from where it was told last to `to`.

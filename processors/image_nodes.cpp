@@ -1,11 +1,20 @@
 #include "processors/image_nodes.h"
 
+#include "processors/log_walker.h"
 #include "processors/node_factory.h"
 
 namespace marti::processors {
 
+namespace {
+
+// Of one parameter, as make_nodes asks for: not every compiler leaves out a defaulted one.
+template <class Caches>
+using LoggedNodes = ImageNodes<Caches, LogWalker<Caches>>;
+
+}  // namespace
+
 std::unique_ptr<NodeArray> make_image_nodes(const ReplayInput& input, sim::Engine& engine, Host& host) {
-  return make_nodes<ImageNodes>(input, engine, host);
+  return make_nodes<LoggedNodes>(input, engine, host);
 }
 
 }  // namespace marti::processors

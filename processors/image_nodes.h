@@ -12,10 +12,11 @@
 
 namespace marti::processors {
 
-/// `Caches` is one of node_caches.h. See node_array.h for what the members do.
-template <class Caches>
-class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
-  using Base = PacketNodes<ImageNodes<Caches>, Cursor>;
+/// `Caches` is one of node_caches.h, `Walker` LogWalker or StrippedWalker of them. See node_array.h for what
+/// the members do.
+template <class Caches, class Walker = LogWalker<Caches>>
+class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> {
+  using Base = PacketNodes<ImageNodes<Caches, Walker>, Cursor>;
   friend Base;
   using Base::cursors_;
   using Base::dispatch;
@@ -96,13 +97,25 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
  private:
   static bool for_pixel(const Cursor& /*cursor*/) { return true; }
 
+  [[nodiscard]] std::span<const std::uint32_t> words_of(std::uint32_t x, std::uint32_t y) const {
+    return walker_.words_of(x, y);
+  }
+
+  Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
+    if constexpr (Walker::steps_singly) {
+      if (input_.step_by_step) {
+        return walker_.template advance<false>(node, cursor, statistics);
+      }
+    }
+    return walker_.template advance<true>(node, cursor, statistics);
+  }
+
   // Lets a node work until it needs something shared.
   void run(std::uint32_t node) {
     Cursor& cursor = cursors_[node];
     NodeStatistics& statistics = statistics_[node];
     const sim::Ticks from = cursor.time;
-    const Stop stop = input_.step_by_step ? walker_.template advance<false>(node, cursor, statistics)
-                                          : walker_.template advance<true>(node, cursor, statistics);
+    const Stop stop = advance(node, cursor, statistics);
     if (stop == Stop::end) {
       walker_.finish_pixel(cursor, statistics);
     }
@@ -126,7 +139,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches>, Cursor> {
     run(node);
   }
 
-  LogWalker<Caches> walker_;
+  Walker walker_;
 };
 
 }  // namespace marti::processors

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 #include <utility>
 
 #include "processors/accounting.h"
@@ -26,6 +27,8 @@ namespace marti::processors {
 template <class Caches>
 class LogWalker {
  public:
+  static constexpr bool steps_singly = true;  ///< can stop after every reference
+
   LogWalker(const ReplayInput& input, Caches caches)
       : input_(input),
         caches_(std::move(caches)),
@@ -34,7 +37,7 @@ class LogWalker {
         rank_(input.node_rank.empty() ? nullptr : input.node_rank.data()),
         node_bytes_(input.layout.record_bytes(memory::RecordKind::node)),
         entry_bytes_(input.layout.record_bytes(memory::RecordKind::list)),
-        line_bytes_(Caches::present ? input.config.cache.cache.line : input.config.banks.interleave),
+        line_bytes_(input.config.reference_bytes()),
         unit_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
         ticks_(step_ticks(input.config, input.log)),
         local_(input.config.local),
@@ -51,6 +54,10 @@ class LogWalker {
   [[nodiscard]] const PrivateSecondLevel& second_level() const { return second_level_; }
   [[nodiscard]] Caches& caches() { return caches_; }
   [[nodiscard]] const Caches& caches() const { return caches_; }
+
+  [[nodiscard]] std::span<const std::uint32_t> words_of(std::uint32_t x, std::uint32_t y) const {
+    return input_.log.pixel(x, y);
+  }
 
   /// Takes `node` on from its cursor. Without RunAhead it stops after every reference.
   template <bool RunAhead>
@@ -88,6 +95,9 @@ class LogWalker {
     }
     const memory::Address next = ((cursor.at >> unit_shift_) + 1) << unit_shift_;
     return static_cast<std::uint32_t>(std::min(cursor.end, next) - cursor.at);
+  }
+  [[nodiscard]] memory::RecordKind missed_kind(const Cursor& cursor) const {
+    return in_visit(cursor) ? kind_of_label(label_of(cursor.line)) : cursor.kind;
   }
   /// What the wait for the reference that missed was for, where that is counted.
   void note_wait(const Cursor& cursor, const memory::Service& service) const {

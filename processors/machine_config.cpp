@@ -51,7 +51,7 @@ void check_distribution(const MachineConfig& config) {
     throw sim::UserError("database.interleave: must be a power of two");
   }
   const bool cached = config.cache.organisation != CacheOrganisation::none;
-  const std::uint32_t unit = cached ? config.cache.cache.line : config.banks.interleave;
+  const std::uint32_t unit = config.reference_bytes();
   if (distribution.interleave < unit) {
     throw sim::UserError("database.interleave: must be at least " +
                          (cached ? "a cache line" : std::string("what one reference reads without a cache")) +

@@ -90,6 +90,10 @@ struct MachineConfig {
   CountConfig count;
 
   [[nodiscard]] std::uint32_t all_nodes() const { return clusters * nodes; }
+  /// Bytes that one reference reads at most: a cache line, or an interleave of the banks without a cache.
+  [[nodiscard]] std::uint32_t reference_bytes() const {
+    return cache.organisation == CacheOrganisation::none ? banks.interleave : cache.cache.line;
+  }
   /// Reads a node may have outstanding: one for each context, then one for each prefetch.
   [[nodiscard]] std::uint32_t ports_of_node() const {
     return contexts + (prefetch.on() ? prefetch.outstanding : 0);

@@ -53,6 +53,9 @@ class NodeArray : public sim::EventHandler {
   [[nodiscard]] virtual std::size_t bytes_per_node() const = 0;
 };
 
+/// The numbers from 0 to count - 1, in an order drawn from `seed` (0: ascending).
+[[nodiscard]] std::vector<std::uint32_t> order_drawn_from(std::uint64_t seed, std::size_t count);
+
 /// Builds the nodes with the look-up code that the cache configuration asks for.
 [[nodiscard]] std::unique_ptr<NodeArray> make_node_array(const ReplayInput& input, sim::Engine& engine,
                                                          Host& host);

@@ -17,6 +17,8 @@ namespace marti::processors {
                                                             Host& host);
 [[nodiscard]] std::unique_ptr<NodeArray> make_dynamic_nodes(const ReplayInput& input, sim::Engine& engine,
                                                             Host& host);
+[[nodiscard]] std::unique_ptr<NodeArray> make_stripped_nodes(const ReplayInput& input, sim::Engine& engine,
+                                                             Host& host);
 
 /// For the counts that a run may be asked for beside hits and misses.
 [[nodiscard]] std::unique_ptr<NodeArray> make_counted_nodes(const ReplayInput& input, sim::Engine& engine,

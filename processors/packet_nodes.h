@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <optional>
-#include <random>
 #include <span>
 #include <utility>
 #include <vector>
@@ -50,12 +48,7 @@ class PacketNodes : public NodeArray {
 
   // All nodes, in an order drawn from `seed` (0: ascending).
   [[nodiscard]] std::vector<std::uint32_t> first_order(std::uint64_t seed) const {
-    std::vector<std::uint32_t> order(cursors_.size());
-    std::iota(order.begin(), order.end(), 0U);
-    if (seed != 0) {
-      std::shuffle(order.begin(), order.end(), std::mt19937_64(seed));
-    }
-    return order;
+    return order_drawn_from(seed, cursors_.size());
   }
 
   // One cluster is the common case, and a division at every event shows.
@@ -74,10 +67,7 @@ class PacketNodes : public NodeArray {
     statistics_[node].time[static_cast<std::size_t>(activity)] += time;
   }
   void spend(std::uint32_t node, const memory::Service& service) {
-    spend(node, Activity::interconnect_wait, service.wait_interconnect);
-    spend(node, Activity::transfer, service.transfer);
-    spend(node, Activity::bank_wait, service.wait_bank);
-    spend(node, Activity::bank_access, service.bank);
+    add_service(statistics_[node].time, service);
   }
   // Tells who watches, if anybody does, that the node was in `state` from `from` to its present time.
   void watch(std::uint32_t node, NodeState state, sim::Ticks from, bool for_pixel = true) {
@@ -120,8 +110,13 @@ class PacketNodes : public NodeArray {
 
   [[nodiscard]] PixelPlace place_of(std::uint32_t node) const { return {cursors_[node].x, cursors_[node].y}; }
 
-  void begin_pixel(Cursor& cursor) const {
-    const std::span<const std::uint32_t> words = input_.log.pixel(cursor.x, cursor.y);
+  // What the node has to go through for a pixel. Derived may have its own.
+  [[nodiscard]] std::span<const std::uint32_t> words_of(std::uint32_t x, std::uint32_t y) const {
+    return input_.log.pixel(x, y);
+  }
+
+  void begin_pixel(Cursor& cursor) {
+    const std::span<const std::uint32_t> words = derived().words_of(cursor.x, cursor.y);
     cursor.word = words.data();
     cursor.word_end = words.data() + words.size();
   }

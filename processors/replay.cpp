@@ -11,6 +11,7 @@
 #include "processors/pipeline.h"
 #include "processors/replay_parts.h"
 #include "processors/space.h"
+#include "processors/stripped_log.h"
 #include "sim/engine.h"
 #include "sim/error.h"
 
@@ -92,7 +93,13 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
                              plan ? &*plan : nullptr,
                              options.report_built,
                              options.observer,
+                             options.stripped,
                              options.with_contexts};
+  if (options.stripped != nullptr) {
+    sim::ensure(options.stripped->fits(log) && !options.step_by_step && !options.with_contexts &&
+                    options.stripped->key() == StrippedLog::key_of(config),
+                "a stripped log is walked by a machine that it was not made for");
+  }
   if (options.observer != nullptr) {
     options.observer->begin(input);
   }

@@ -21,6 +21,7 @@
 namespace marti::processors {
 
 class Observer;
+class StrippedLog;
 
 /// What a cluster's distributed memory counted beside what every interconnect does.
 struct DistributedResult {
@@ -67,8 +68,10 @@ struct ReplayOptions {
   std::vector<BranchStart> starts{};
   bool report_built = false;     ///< fill BuildResult::built; empty all the same when the tree is given
   Observer* observer = nullptr;  ///< watches (processors/observer.h); same result
-  bool with_contexts = false;    ///< with a given tree: nodes that can hold several contexts, even for one;
-                                 ///< same result
+  /// Walked in the log's place: made of `log` for a machine of the same StrippedLog::key_of; same result.
+  const StrippedLog* stripped = nullptr;
+  bool with_contexts = false;  ///< with a given tree: nodes that can hold several contexts, even for one;
+                               ///< same result
 };
 
 /// Times `config` on `log`. Deterministic, single-threaded; many replays may share one log. Before it

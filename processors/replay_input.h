@@ -13,6 +13,7 @@
 namespace marti::processors {
 
 class Observer;
+class StrippedLog;
 
 /// References to objects that outlive the replay.
 struct ReplayInput {
@@ -25,6 +26,7 @@ struct ReplayInput {
   const TreePlan* tree = nullptr;            ///< how the tree is built; null when it is given
   bool report_built = false;                 ///< say which branches are built at the end
   Observer* observer = nullptr;              ///< who watches; null: nobody
+  const StrippedLog* stripped = nullptr;     ///< walked in the log's place; null: the log itself
   bool with_contexts = false;                ///< nodes that can hold several contexts, even for one
 };
 

@@ -9,11 +9,6 @@
 
 namespace marti::processors {
 
-std::uint32_t reference_unit(const MachineConfig& config) {
-  return config.cache.organisation == CacheOrganisation::none ? config.banks.interleave
-                                                              : config.cache.cache.line;
-}
-
 memory::Layout layout_of(const WorkLog& log, const MachineConfig& config, std::optional<TreePlan>& plan) {
   const memory::RecordCounts counts = {plan ? plan->initial_nodes() : log.topology.nodes.size(),
                                        plan ? plan->initial_entries() : log.topology.entries.size(),
@@ -22,7 +17,7 @@ memory::Layout layout_of(const WorkLog& log, const MachineConfig& config, std::o
                                        log.texture_begin.empty() ? 0 : log.texture_begin.back(),
                                        std::uint64_t{log.width} * log.height};
   const memory::Layout layout(config.layout, counts, log.quadrics.size());
-  const std::uint32_t unit = reference_unit(config);
+  const std::uint32_t unit = config.reference_bytes();
   if (plan) {
     plan->place_behind(layout, unit);
   }
@@ -77,7 +72,7 @@ MachineResult common_result(const MachineConfig& config, const sim::Engine& engi
   result.copies = config.placement == Placement::replicated ? config.all_nodes() : config.clusters;
   result.events = engine.events();
   result.host_bytes_per_node = nodes.bytes_per_node();
-  result.unloaded_miss = interconnects.front()->unloaded_read(reference_unit(config));
+  result.unloaded_miss = interconnects.front()->unloaded_read(config.reference_bytes());
   return result;
 }
 

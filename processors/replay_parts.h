@@ -15,9 +15,6 @@
 
 namespace marti::processors {
 
-/// Bytes of a cache line; without a cache the most that one reference reads.
-[[nodiscard]] std::uint32_t reference_unit(const MachineConfig& config);
-
 /// Where the database's records lie; places what is built during the frame behind them. Throws UserError for
 /// a database too large for line numbers.
 [[nodiscard]] memory::Layout layout_of(const WorkLog& log, const MachineConfig& config,

@@ -8,8 +8,7 @@ namespace marti::processors {
 
 memory::CacheConfig second_level_cache(const MachineConfig& config) {
   memory::CacheConfig cache = config.l2.cache;
-  cache.line = config.cache.organisation == CacheOrganisation::none ? config.banks.interleave
-                                                                    : config.cache.cache.line;
+  cache.line = config.reference_bytes();
   return cache;
 }
 

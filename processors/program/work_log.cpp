@@ -1,5 +1,7 @@
 #include "processors/program/work_log.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <string>
 
@@ -10,6 +12,8 @@ namespace marti::processors {
 namespace {
 
 using sim::ensure;
+
+constexpr const char* no_average = "work log: a cut without its averaged material, or the reverse";
 
 /// Walks one row's words; every problem is an InternalError that names what is out of bounds.
 class RowChecker {
@@ -31,13 +35,19 @@ class RowChecker {
   void check_pixel(std::size_t at, std::size_t end) {
     auto before = Step::ray;
     while (at < end) {
+      const std::size_t visits_end = check_whole_visits(at, end);
+      if (visits_end != at) {
+        ensure(before != Step::cut, no_average);
+        before = Step::branch;
+        at = visits_end;
+        continue;
+      }
       const std::uint32_t* const word = row_.words.data() + at;
       const Step step = step_of(*word);
       const std::uint32_t operand = operand_of(*word);
       const bool long_step = step != Step::mailed_leaf || end - at >= 2;
       ensure(long_step && step_words(word) <= end - at, "work log: a pixel ends between the words of a step");
-      ensure((before == Step::cut) == (step == Step::shade && averaged(operand)),
-             "work log: a cut without its averaged material, or the reverse");
+      ensure((before == Step::cut) == (step == Step::shade && averaged(operand)), no_average);
       ensure(before != Step::pass || step == Step::branch || step == Step::leaf ||
                  step == Step::partial_leaf || step == Step::mailed_leaf,
              "work log: a pass without its node");
@@ -50,6 +60,21 @@ class RowChecker {
       at += words;
     }
     ensure(before != Step::cut && before != Step::pass, "work log: a pixel ends in the middle of a voxel");
+  }
+
+  // Nearly all steps, and in no order that a processor could predict: no decision before the last of them.
+  [[nodiscard]] std::size_t check_whole_visits(std::size_t at, std::size_t end) const {
+    const std::span<const accel::TopologyNode> nodes(log_.topology.nodes);
+    bool right = true;
+    for (; at < end && whole_visit(row_.words[at]); ++at) {
+      const std::size_t node = operand_of(row_.words[at]);
+      if (node >= nodes.size()) [[unlikely]] {
+        break;  // for check_step to say
+      }
+      right &= nodes[node].leaf == (step_of(row_.words[at]) == Step::leaf);
+    }
+    ensure(right, "work log: a branch step on a leaf, or the reverse");
+    return at;
   }
 
   /// Whether the database has such a material, and it is an averaged one.
@@ -119,12 +144,17 @@ void check_topology(const WorkLog& log) {
            "work log: a triangle among the curved primitives");
   }
   const std::size_t nodes = log.topology.nodes.size();
+  std::vector<bool> has_parent(nodes);
   for (std::size_t n = 0; n < nodes; ++n) {
     const accel::TopologyNode& node = log.topology.nodes[n];
     const std::size_t end = std::size_t{node.first} + node.count;
     ensure(end <= (node.leaf ? log.topology.entries.size() : nodes),
            "work log: a node that points outside the tree");
     ensure(node.leaf || node.count == 0 || node.first > n, "work log: a branch above its parent");
+    for (std::size_t child = node.first; !node.leaf && child < end; ++child) {
+      ensure(!has_parent[child], "work log: a node with two parents");
+      has_parent[child] = true;
+    }
   }
   for (const std::uint32_t entry : log.topology.entries) {
     ensure(entry < log.primitives, "work log: a primitive that the database does not have");
@@ -219,9 +249,8 @@ void validate(const WorkLog& log) {
   ensure(log.voxels <= log.materials, "work log: more averaged materials than materials");
   ensure(log.rows.size() == log.height, "work log: the number of rows is not the image's height");
   check_topology(log);
-  for (const LogRow& row : log.rows) {
-    RowChecker(log, row).check();
-  }
+  tbb::parallel_for(std::size_t{0}, log.rows.size(),
+                    [&](std::size_t y) { RowChecker(log, log.rows[y]).check(); });
 }
 
 }  // namespace marti::processors

@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <set>
 
 #include "memory/layout.h"
 #include "processors/step_time.h"
+#include "processors/stripped_log.h"
 #include "sim/error.h"
 #include "tests/support/random_machine.h"
 
@@ -53,6 +55,43 @@ RC_GTEST_PROP(Replay, RunningAheadEqualsAnEventForEveryReference, (std::uint64_t
   expect_equal(ahead, stepped);
   RC_ASSERT(!::testing::Test::HasFatalFailure());
   RC_ASSERT(ahead.events <= stepped.events);
+}
+
+RC_GTEST_PROP(Replay, AStrippedLogGivesTheSameResult, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 12)),
+                                       static_cast<std::uint32_t>(test::pick(random, 1, 12)));
+  MachineConfig machine = test::random_machine(random);
+  test::add_random_second_level(random, machine);
+  const std::unique_ptr<const StrippedLog> stripped = StrippedLog::make(log, machine);
+  RC_ASSERT((stripped == nullptr) == StrippedLog::key_of(machine).empty());
+  RC_CLASSIFY(stripped != nullptr);
+  if (stripped == nullptr) {
+    return;
+  }
+  const MachineResult whole = replay(log, machine);
+  expect_equal(whole, replay(log, machine, {.stripped = stripped.get()}));
+  RC_ASSERT(!::testing::Test::HasFatalFailure());
+  // Other ways, clocks and machines around the caches share it.
+  MachineConfig other = test::random_machine(random);
+  other.layout = machine.layout;
+  other.operations = machine.operations;
+  other.word_bytes = machine.word_bytes;
+  other.packets.width = machine.packets.width;
+  other.packets.height = machine.packets.height;
+  other.cache = machine.cache;
+  other.banks.interleave = machine.banks.interleave;
+  other.distribution.interleave = std::max(other.distribution.interleave, other.cache.cache.line);
+  if (machine.cache.organisation == CacheOrganisation::unified) {
+    const std::uint32_t sets = memory::shape_of(machine.cache.cache).sets;
+    other.cache.cache.ways = static_cast<std::uint32_t>(test::pick(random, 1, 3));
+    other.cache.cache.size = std::uint64_t{sets} * other.cache.cache.ways * other.cache.cache.line;
+    other.cache.cache.replacement = memory::Replacement::lru;
+  }
+  if (StrippedLog::key_of(other) == stripped->key()) {
+    expect_equal(replay(log, other), replay(log, other, {.stripped = stripped.get()}));
+    RC_ASSERT(!::testing::Test::HasFatalFailure());
+  }
 }
 
 RC_GTEST_PROP(Replay, TheOrderOfTheFirstEventsDoesNotMatter, (std::uint64_t seed)) {
