@@ -5,22 +5,13 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "sim/statistics.h"
+#include "studies/json_parts.h"
 
 namespace marti::studies {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <class S>
-Json counters(const S& statistics) {
-  Json object = Json::object();
-  sim::for_each_counter(statistics, [&](const sim::Counter<S>& counter, std::int64_t value) {
-    object[std::string(counter.name)] = value;
-  });
-  return object;
-}
 
 double percent(double part, double whole) { return whole > 0.0 ? 100.0 * part / whole : 0.0; }
 
@@ -29,13 +20,13 @@ double percent(double part, double whole) { return whole > 0.0 ? 100.0 * part / 
 nlohmann::ordered_json build_json(const processors::BuildResult& build, bool per_node) {
   Json levels = Json::array();
   for (const processors::BuildLevel& level : build.levels) {
-    levels.push_back(counters(level));
+    levels.push_back(counters_json(level));
   }
   Json nodes = nullptr;
   if (per_node) {
     nodes = Json::array();
     for (const processors::BuildCounts& node : build.nodes) {
-      nodes.push_back(counters(node));
+      nodes.push_back(counters_json(node));
     }
   }
   return {{"sharing", processors::sharing_names[static_cast<std::size_t>(build.sharing)]},
@@ -44,8 +35,8 @@ nlohmann::ordered_json build_json(const processors::BuildResult& build, bool per
           {"databases", build.databases},
           {"trees", build.trees},
           {"wasted_splits", build.wasted_splits()},
-          {"counts", counters(build.counts())},
-          {"all_levels", counters(build.all_levels())},
+          {"counts", counters_json(build.counts())},
+          {"all_levels", counters_json(build.all_levels())},
           {"levels", levels},
           {"per_node", nodes}};
 }

@@ -4,6 +4,7 @@
 
 #include "processors/cache_counting.h"
 #include "processors/second_level.h"
+#include "processors/working_set.h"
 #include "sim/error.h"
 #include "studies/key_parts.h"
 
@@ -64,11 +65,14 @@ void declare_count_keys(sim::Schema& schema) {
   schema.boolean("count.sharing", false, "how many nodes of a cluster fetched each line");
   schema.boolean("count.attribution", false,
                  "references, misses and waits by record kind, tree level, ray kind and bounce");
+  schema.boolean("count.working_set", false,
+                 "what first-level LRU caches of every size, and of all ways, would have missed, from one "
+                 "pass over the references of each node");
 }
 
 void read_count(sim::Config& config, processors::MachineConfig& machine) {
   machine.count = {config.boolean("count.miss_classes"), config.boolean("count.sharing"),
-                   config.boolean("count.attribution")};
+                   config.boolean("count.attribution"), config.boolean("count.working_set")};
   try {
     processors::check_counting(machine);
   } catch (const sim::UserError& error) {
@@ -76,6 +80,11 @@ void read_count(sim::Config& config, processors::MachineConfig& machine) {
                 : machine.count.sharing    ? "count.sharing"
                                            : "count.attribution",
                 error.what());
+  }
+  try {
+    processors::check_working_set(machine);
+  } catch (const sim::UserError& error) {
+    config.fail("count.working_set", error.what());
   }
 }
 

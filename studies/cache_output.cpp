@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sim/statistics.h"
+#include "studies/json_parts.h"
 
 namespace marti::studies {
 
@@ -12,13 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using processors::SecondLevel;
-
-template <class S>
-void add_counters(Json& object, const S& statistics, const std::string& prefix = {}) {
-  sim::for_each_counter(statistics, [&](const sim::Counter<S>& counter, std::int64_t value) {
-    object[prefix + std::string(counter.name) + (counter.unit == "ps" ? "_ps" : "")] = value;
-  });
-}
 
 }  // namespace
 

@@ -5,20 +5,13 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "sim/statistics.h"
+#include "studies/json_parts.h"
 
 namespace marti::studies {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json counters(const processors::ContextCounts& counts) {
-  Json object = Json::object();
-  sim::for_each_counter(counts, [&](const sim::Counter<processors::ContextCounts>& counter,
-                                    std::int64_t value) { object[std::string(counter.name)] = value; });
-  return object;
-}
 
 }  // namespace
 
@@ -28,10 +21,10 @@ nlohmann::ordered_json context_json(const processors::MachineConfig& machine,
   if (per_node) {
     nodes = Json::array();
     for (const processors::ContextCounts& node : result.nodes) {
-      nodes.push_back(counters(node));
+      nodes.push_back(counters_json(node));
     }
   }
-  return {{"contexts", machine.contexts}, {"counts", counters(result.counts())}, {"per_node", nodes}};
+  return {{"contexts", machine.contexts}, {"counts", counters_json(result.counts())}, {"per_node", nodes}};
 }
 
 std::string context_lines(const processors::MachineConfig& machine, const processors::ContextResult& result) {

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "sim/statistics.h"
+#include "studies/json_parts.h"
 
 namespace marti::studies {
 
@@ -22,10 +23,6 @@ using processors::CacheCountResult;
 
 std::string_view name_of(memory::RecordKind kind) {
   return memory::record_kind_names[static_cast<std::size_t>(kind)];
-}
-
-std::string field(const sim::Counter<AttributionCounts>& counter) {
-  return std::string(counter.name) + (counter.unit == "ps" ? "_ps" : "");
 }
 
 CacheCountResult::ByClass all_classes(const CacheCountResult& counts) {
@@ -119,8 +116,7 @@ nlohmann::ordered_json counts_json(const processors::MachineConfig& machine, con
                                  {"level", row.level},
                                  {"ray", processors::ray_kind_names[static_cast<std::size_t>(row.ray)]},
                                  {"bounce", row.bounce}});
-      sim::for_each_counter(row.counts,
-                            [&](const auto& counter, std::int64_t value) { cell[field(counter)] = value; });
+      add_counters(cell, row.counts);
     }
     object["attribution"] = rows;
   }
@@ -167,8 +163,8 @@ Table attribution_table(const std::vector<AttributionRow>& rows) {
       {"ray", ColumnType::text, "", "kind of ray"},
       {"bounce", ColumnType::integer, "1", "surface points between the eye and the ray's origin"}};
   for (const auto& counter : AttributionCounts::counters()) {
-    columns.push_back(
-        {field(counter), ColumnType::integer, std::string(counter.unit), std::string(counter.description)});
+    columns.push_back({json_name(counter), ColumnType::integer, std::string(counter.unit),
+                       std::string(counter.description)});
   }
   Table table("attribution", "References, misses and waits by what they were for", columns);
   for (const AttributionRow& row : rows) {

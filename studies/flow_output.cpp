@@ -6,8 +6,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "sim/statistics.h"
 #include "studies/flow_figures.h"
+#include "studies/json_parts.h"
+#include "studies/text_units.h"
 
 namespace marti::studies {
 
@@ -18,17 +19,6 @@ using processors::FlowCounts;
 using processors::MachineConfig;
 using processors::MachineResult;
 using processors::Scheme;
-
-Json optional(std::optional<double> value) { return value ? Json(*value) : Json(nullptr); }
-
-template <class S>
-Json counters(const S& statistics) {
-  Json object = Json::object();
-  sim::for_each_counter(statistics, [&](const sim::Counter<S>& counter, std::int64_t value) {
-    object[std::string(counter.name) + (counter.unit == "ps" ? "_ps" : "")] = value;
-  });
-  return object;
-}
 
 FlowCounts sum_of_nodes(const MachineResult& result) {
   FlowCounts sum;
@@ -43,7 +33,7 @@ Json load_json(const StageLoad& load) {
           {"nodes", load.nodes},
           {"busy", load.busy},
           {"busiest_node", load.busiest},
-          {"imbalance", optional(load.imbalance())},
+          {"imbalance", optional_json(load.imbalance())},
           {"queue_full", load.queue_full},
           {"longest_queue", load.longest_queue}};
 }
@@ -51,8 +41,8 @@ Json load_json(const StageLoad& load) {
 Json networks_json(const processors::FlowResult& flow) {
   Json networks = Json::array();
   for (const memory::NetworkStatistics& network : flow.networks) {
-    Json object = counters(network);
-    object["waits"] = counters(network.waits);
+    Json object = counters_json(network);
+    object["waits"] = counters_json(network.waits);
     networks.push_back(object);
   }
   return networks;
@@ -61,13 +51,6 @@ Json networks_json(const processors::FlowResult& flow) {
 std::string seconds(double ticks) {
   const double s = ticks / static_cast<double>(sim::ticks_per_second);
   return s >= 1e-3 ? fmt::format("{:.3f} ms", s * 1e3) : fmt::format("{:.3f} us", s * 1e6);
-}
-
-std::string bytes(double count) {
-  if (count >= 1024.0 * 1024.0) {
-    return fmt::format("{:.1f} MiB", count / (1024.0 * 1024.0));
-  }
-  return count >= 1024.0 ? fmt::format("{:.1f} KiB", count / 1024.0) : fmt::format("{:.0f} B", count);
 }
 
 double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
@@ -95,7 +78,7 @@ nlohmann::ordered_json flow_json(const MachineConfig& machine, const MachineResu
   if (per_node) {
     nodes = Json::array();
     for (std::size_t node = 0; node < flow.nodes.size(); ++node) {
-      nodes.push_back(counters(flow.nodes[node]));
+      nodes.push_back(counters_json(flow.nodes[node]));
       nodes.back()["memory_bytes"] = flow.memory_bytes[node];
     }
   }
@@ -106,8 +89,8 @@ nlohmann::ordered_json flow_json(const MachineConfig& machine, const MachineResu
       {"messages", figures.messages},
       {"message_bytes", figures.bytes},
       {"hops_a_message", figures.hops_a_message},
-      {"network_utilisation", optional(figures.network)},
-      {"counts", counters(sum_of_nodes(result))},
+      {"network_utilisation", optional_json(figures.network)},
+      {"counts", counters_json(sum_of_nodes(result))},
       {"load", load_json(figures.all)},
       {"stages", stages},
       {"memory_bytes",

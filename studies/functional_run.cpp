@@ -77,7 +77,10 @@ void note_cut_tree(const FrameConfig& config, const accel::Structure& structure,
 }  // namespace
 
 FunctionalRun run_functional(const FrameConfig& config) {
-  const scenes::Scene scene = scenes::open_scene(config.scene, config.open, decode_image);
+  return run_functional(config, scenes::open_scene(config.scene, config.open, decode_image));
+}
+
+FunctionalRun run_functional(const FrameConfig& config, const scenes::Scene& scene) {
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
   const std::unique_ptr<accel::Structure> structure =
       accel::make_structure(config.structure, triangles, config.structure_options);

@@ -36,5 +36,7 @@ void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
 /// Opens the scene, builds the structure, renders and records. Throws UserError when the scene cannot be
 /// used or the frame would take more than the memory limit, which it estimates from a small rendering.
 [[nodiscard]] FunctionalRun run_functional(const FrameConfig& config);
+/// The same of a scene that is open already: the one that `config` names.
+[[nodiscard]] FunctionalRun run_functional(const FrameConfig& config, const scenes::Scene& scene);
 
 }  // namespace marti::studies

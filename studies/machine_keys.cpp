@@ -259,15 +259,9 @@ void read_cache(sim::Config& config, processors::NodeCacheConfig& cache) {
   }
 }
 
-// Bytes that one reference reads at most: the unit in which memory is shared out unless a key says more.
-std::uint32_t reference_bytes(const processors::MachineConfig& machine) {
-  return machine.cache.organisation == processors::CacheOrganisation::none ? memory::BankConfig{}.interleave
-                                                                           : machine.cache.cache.line;
-}
-
 void read_distribution(const sim::Config& config, processors::MachineConfig& machine) {
   processors::DistributionConfig& distribution = machine.distribution;
-  const std::uint32_t unit = reference_bytes(machine);
+  const std::uint32_t unit = machine.reference_bytes();
   distribution.interleave = unit;
   if (config.size("database.interleave") != 0) {
     distribution.interleave = power_of_two(config, "database.interleave");
@@ -305,7 +299,7 @@ void read_local(sim::Config& config, processors::MachineConfig& machine) {
 
 void read_interconnect(sim::Config& config, processors::MachineConfig& machine) {
   memory::InterconnectConfig& interconnect = machine.interconnect;
-  machine.banks.interleave = reference_bytes(machine);
+  machine.banks.interleave = machine.reference_bytes();
   if (machine.placement == processors::Placement::distributed) {
     const std::string_view reason =
         "a distributed database is in the nodes' own memories ([local]) and reached over [network]";

@@ -17,16 +17,20 @@
 #include "sim/files.h"
 #include "sim/schema.h"
 #include "sim/units.h"
+#include "studies/compare/compare.h"
 #include "studies/frames/frames.h"
 #include "studies/image_file.h"
 #include "studies/operations/operations.h"
 #include "studies/output.h"
 #include "studies/paper/paper.h"
 #include "studies/paper/paper_keys.h"
+#include "studies/ranks/ranks.h"
 #include "studies/run_result.h"
 #include "studies/schemes/schemes.h"
 #include "studies/schemes/schemes_keys.h"
 #include "studies/signals_held.h"
+#include "studies/sweep/sweep_keys.h"
+#include "studies/sweep_command.h"
 #include "studies/trace/trace.h"
 #include "studies/version.h"
 
@@ -132,6 +136,29 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
   schemes->callback([&] { run_study(arguments, studies::schemes_schema(), studies::run_schemes); });
 }
 
+void add_sweep_command(CLI::App& app, studies::SweepArguments& arguments) {
+  CLI::App* sweep =
+      app.add_subcommand("sweep", "Times every machine of a configuration's [sweep]; goes on where it was");
+  sweep->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
+  sweep->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
+      ->allow_extra_args(false);
+  sweep->add_option("-o,--output", arguments.directory, "directory for results.sqlite and points.csv")
+      ->check(no_empty_directory);
+  sweep->add_option("--threads", arguments.threads, "machines timed at a time; 0: as many as there are cores")
+      ->check(CLI::Range(0, 4096));
+  sweep
+      ->add_option("--keep-logs", arguments.keep_logs,
+                   "directory where work logs are kept, for the next sweep of the same frames")
+      ->check(no_empty_directory);
+  sweep->add_option("--best", arguments.best,
+                    "the best machines by this metric and their cost: end, speed_up, efficiency, ...");
+  sweep->add_option("--within", arguments.within, "the cost that the best machine may have, by [prices]");
+  sweep->add_flag("--plan", arguments.plan_only, "only say what would be run");
+  sweep->add_flag("--quiet", arguments.quiet, "no progress");
+  sweep->add_flag("--json", arguments.json, "print the points, or the best ones, as JSON");
+  sweep->callback([&] { studies::sweep_command(arguments, print); });
+}
+
 struct TraceArguments {
   std::string config;
   std::vector<std::string> assignments;
@@ -164,6 +191,22 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
     studies::prepare_output(arguments.directory);
     print(studies::write_traces(config, arguments.options, arguments.directory));
   });
+}
+
+struct CompareArguments {
+  std::string a;
+  std::string b;
+  studies::CompareOptions options;
+};
+
+void add_compare_command(CLI::App& app, CompareArguments& arguments) {
+  CLI::App* compare = app.add_subcommand("compare", "What differs between two runs, points or sweeps");
+  compare->add_option("A", arguments.a, "directory of a run or sweep; DIR:N is point N of a sweep")
+      ->required();
+  compare->add_option("B", arguments.b, "likewise")->required();
+  compare->add_flag("--json", arguments.options.json, "print the differences as JSON");
+  compare->add_flag("--all", arguments.options.all, "everything, what is equal too");
+  compare->callback([&] { print(studies::compare_results(arguments.a, arguments.b, arguments.options)); });
 }
 
 void list_scenes() {
@@ -246,8 +289,14 @@ int parse_and_run(int argc, char** argv) {
   StudyArguments study_arguments;
   add_study_commands(app, study_arguments);
 
+  studies::SweepArguments sweep_arguments;
+  add_sweep_command(app, sweep_arguments);
+
   TraceArguments trace_arguments;
   add_trace_command(app, trace_arguments);
+
+  CompareArguments compare_arguments;
+  add_compare_command(app, compare_arguments);
 
   bool markdown = false;
   CLI::App* config = app.add_subcommand("config", "Prints every configuration key");
@@ -256,6 +305,7 @@ int parse_and_run(int argc, char** argv) {
     sim::Schema schema = studies::run_schema();
     studies::declare_paper_keys(schema);
     studies::declare_schemes_keys(schema);
+    studies::declare_sweep_keys(schema);
     print(markdown ? sim::list_keys_as_markdown(schema) : sim::list_keys_as_text(schema));
   });
 
@@ -278,16 +328,21 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is refused like one on a full disk
   marti::studies::end_cleanly_on_signals();
+  // One of several processes takes the others with it.
+  const auto end = [](int status) {
+    marti::studies::end_all_ranks(status);
+    return status;
+  };
   try {
     return parse_and_run(argc, argv);
   } catch (const marti::sim::UserError& error) {
     std::fprintf(stderr, "marti: %s\n", error.what());
-    return wrong_input;
+    return end(wrong_input);
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "marti: not enough memory for this scene or machine\n");
-    return wrong_input;
+    return end(wrong_input);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "marti: internal error: %s\n", error.what());
-    return our_fault;
+    return end(our_fault);
   }
 }

@@ -8,6 +8,7 @@
 #include "studies/record/heat_files.h"
 #include "studies/results/csv.h"
 #include "studies/signals_held.h"
+#include "studies/working_set_output.h"
 
 namespace marti::studies {
 
@@ -50,6 +51,16 @@ std::vector<std::filesystem::path> write_output(const RunResult& result,
                     csv_of(attribution_table(*result.timed.counts.attribution)));
     attribution->commit();
     files.push_back(directory / "attribution.csv");
+  }
+  std::optional<sim::PendingFile> working_set;
+  std::optional<sim::PendingFile> curve;
+  if (result.working_set) {
+    const Table table = working_set_table(*result.working_set);
+    sim::write_file(working_set.emplace(directory / "working_set.csv").temporary(), csv_of(table));
+    sim::write_file(curve.emplace(directory / "working_set.vl.json").temporary(), working_set_chart(table));
+    working_set->commit();
+    curve->commit();
+    files.insert(files.end(), {directory / "working_set.csv", directory / "working_set.vl.json"});
   }
   if (result.timeline) {
     result.timeline->commit();

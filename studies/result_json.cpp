@@ -8,9 +8,11 @@
 #include "studies/context_output.h"
 #include "studies/count_output.h"
 #include "studies/flow_output.h"
+#include "studies/json_parts.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
 #include "studies/version.h"
+#include "studies/working_set_output.h"
 
 namespace marti::studies {
 
@@ -21,8 +23,6 @@ using Json = nlohmann::ordered_json;
 constexpr int schema_version = 1;
 // Beyond this many nodes or clusters their own figures are left out: sums remain.
 constexpr std::size_t most_listed = 4096;
-
-Json optional(std::optional<double> value) { return value ? Json(*value) : Json(nullptr); }
 
 Json hash(std::uint64_t value) { return fmt::format("{:016x}", value); }
 
@@ -134,16 +134,6 @@ Json voxel_json(const RunResult& r) {
           {"exact", exact}};
 }
 
-// Every declared counter under its name; times say so in theirs.
-template <class S>
-Json counters_json(const S& statistics) {
-  Json object = Json::object();
-  sim::for_each_counter(statistics, [&](const sim::Counter<S>& counter, std::int64_t value) {
-    object[std::string(counter.name) + (counter.unit == "ps" ? "_ps" : "")] = value;
-  });
-  return object;
-}
-
 Json wait_json(const memory::WaitStatistics& w) {
   Json object = counters_json(w);
   Json buckets = Json::array();
@@ -220,14 +210,14 @@ std::string json_of(const RunResult& r) {
       {"frame_time_ps", timed.end},
       {"node_clock_period_ps", r.machine.clock.period()},
       {"one_node_time_ps", r.scaling.one_node_end},
-      {"speed_up", optional(r.scaling.speed_up)},
-      {"efficiency", optional(r.scaling.efficiency)},
-      {"karp_flatt_serial_fraction", optional(r.scaling.serial_fraction)},
+      {"speed_up", optional_json(r.scaling.speed_up)},
+      {"efficiency", optional_json(r.scaling.efficiency)},
+      {"karp_flatt_serial_fraction", optional_json(r.scaling.serial_fraction)},
       {"speed_up_loss", loss_json(r)},
       {"bounds", bounds_json(r)},
       {"limit",
        {{"what", name_of(r.finding.limit)}, {"share", r.finding.share}, {"sentence", r.finding.sentence}}},
-      {"interconnect_utilisation", optional(used.interconnect)},
+      {"interconnect_utilisation", optional_json(used.interconnect)},
       {"busiest_bank_utilisation", used.bank},
       {"mean_bank_utilisation", used.mean_bank},
       {"packets", timed.packets},
@@ -251,6 +241,9 @@ std::string json_of(const RunResult& r) {
   }
   if (r.machine.count.any()) {
     machine["counts"] = counts_json(r.machine, timed.counts);
+  }
+  if (r.working_set) {
+    machine["working_set"] = working_set_json(*r.working_set);
   }
   if (!timed.contexts.nodes.empty()) {
     machine["contexts"] = context_json(r.machine, timed.contexts, timed.nodes.size() <= most_listed);

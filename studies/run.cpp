@@ -6,6 +6,7 @@
 #include "studies/record/observers.h"
 #include "studies/record_keys.h"
 #include "studies/run_result.h"
+#include "studies/sweep/sweep_keys.h"
 
 namespace marti::studies {
 
@@ -42,7 +43,7 @@ void refuse_maps_beyond_memory(const sim::Config& config, const RecordConfig& re
   }
 }
 
-// Times the machine, watched by what is asked for.
+// Times the machine, watched by what is asked for, and finds out afterwards what watching it makes known.
 processors::MachineResult watched_replay(const RecordConfig& record, const std::filesystem::path& directory,
                                          RunResult& result) {
   Observers observers;
@@ -54,9 +55,18 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
     result.heat_map = std::make_unique<HeatMap>();
     observers.add(*result.heat_map);
   }
+  processors::HandedOut handed_out;
+  if (result.machine.count.working_set) {
+    observers.add(handed_out);
+  }
   processors::ReplayOptions options;
   options.observer = observers.empty() ? nullptr : &observers;
-  return processors::replay(*result.functional.frame.log, result.machine, options);
+  processors::MachineResult timed = processors::replay(*result.functional.frame.log, result.machine, options);
+  if (result.machine.count.working_set) {
+    result.working_set = processors::working_set(handed_out);
+    processors::check_working_set(*result.working_set, result.machine, timed);
+  }
+  return timed;
 }
 
 }  // namespace
@@ -66,6 +76,7 @@ sim::Schema run_schema() {
   declare_frame_keys(schema);
   declare_machine_keys(schema);
   declare_record_keys(schema);
+  declare_sweep_sections(schema);
   return schema;
 }
 

@@ -10,6 +10,7 @@
 #include "processors/bounds.h"
 #include "processors/machine_config.h"
 #include "processors/replay.h"
+#include "processors/working_set.h"
 #include "sim/config.h"
 #include "studies/functional_run.h"
 #include "studies/loss.h"
@@ -32,6 +33,7 @@ struct RunResult {
   Finding finding;
   processors::FrameBounds bounds;
   std::optional<processors::Prediction> prediction;
+  std::optional<processors::WorkingSet> working_set;  ///< of the timed machine; empty: not asked for
   std::unique_ptr<Timeline> timeline;  ///< written, but not under its own name yet; null: not asked for
   std::unique_ptr<HeatMap> heat_map;   ///< null: not asked for
 };

@@ -1,7 +1,10 @@
 #include "studies/signals_held.h"
 
+#include <unistd.h>
+
 #include <csignal>
 #include <thread>
+#include <utility>
 
 #include "sim/files.h"
 
@@ -15,6 +18,11 @@ std::recursive_mutex& held() {
   return mutex;
 }
 
+std::function<void(int)>& action() {
+  static auto& function = *new std::function<void(int)>;  // NOLINT(cppcoreguidelines-owning-memory)
+  return function;
+}
+
 // Every thread blocks the signals, because each inherits the mask of the one that starts it; so they come
 // here.
 void watch(const sigset_t& signals) {
@@ -24,6 +32,10 @@ void watch(const sigset_t& signals) {
   }
   held().lock();  // for good: nothing else is to begin
   sim::abandon_pending_files();
+  if (action()) {
+    action()(signal);
+    _exit(128 + signal);  // as a shell would say it
+  }
   std::signal(signal, SIG_DFL);
   sigset_t mine;
   sigemptyset(&mine);
@@ -54,5 +66,15 @@ void end_cleanly_on_signals() {
 }
 
 SignalsHeld::SignalsHeld() : lock_(held()) {}
+
+AtSignal::AtSignal(std::function<void(int signal)> what) {
+  const SignalsHeld hold;
+  action() = std::move(what);
+}
+
+AtSignal::~AtSignal() {
+  const SignalsHeld hold;
+  action() = nullptr;
+}
 
 }  // namespace marti::studies

@@ -1,6 +1,7 @@
 // Signals that end the program: what it leaves behind then.
 #pragma once
 
+#include <functional>
 #include <mutex>
 
 namespace marti::studies {
@@ -17,6 +18,17 @@ class SignalsHeld {
 
  private:
   std::unique_lock<std::recursive_mutex> lock_;
+};
+
+/// What is to be done when such a signal comes while this lives: it is called once, in a thread of its own,
+/// after temporary files are removed; then the program exits with status 128 + signal. One at a time.
+class AtSignal {
+ public:
+  explicit AtSignal(std::function<void(int signal)> action);
+  /// Waits for the action, which does not return here, if it has begun.
+  ~AtSignal();
+  AtSignal(const AtSignal&) = delete;
+  AtSignal& operator=(const AtSignal&) = delete;
 };
 
 }  // namespace marti::studies

@@ -14,6 +14,7 @@
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
 #include "studies/text_units.h"
+#include "studies/working_set_output.h"
 
 namespace marti::studies {
 
@@ -37,13 +38,6 @@ std::string grouped(std::uint64_t value) { return grouped(static_cast<std::int64
 // "1 node", "16 nodes"
 std::string counted(std::uint64_t count, std::string_view what) {
   return fmt::format("{} {}{}", grouped(count), what, count == 1 ? "" : "s");
-}
-
-std::string bytes(double count) {
-  if (count >= 1024.0 * 1024.0) {
-    return fmt::format("{:.1f} MiB", count / (1024.0 * 1024.0));
-  }
-  return count >= 1024.0 ? fmt::format("{:.1f} KiB", count / 1024.0) : fmt::format("{:.0f} B", count);
 }
 
 std::string ratio(std::optional<double> value, int digits) {
@@ -261,6 +255,9 @@ std::string summary_of(const RunResult& r) {
   time_lines(out, r);
   memory_lines(out, r);
   text += counts_lines(r.machine, r.timed.counts);
+  if (r.working_set) {
+    text += working_set_lines(*r.working_set);
+  }
   text += context_lines(r.machine, r.timed.contexts);
   text += build_lines(r.timed);
   text += flow_lines(r.machine, r.timed);

@@ -1,4 +1,4 @@
-// Times as people read them.
+// Times and sizes as people read them.
 #pragma once
 
 #include <string>
@@ -9,5 +9,11 @@ namespace marti::studies {
 
 /// "1.234 s", "1.234 ms", "1.234 us".
 [[nodiscard]] std::string seconds(sim::Ticks ticks);
+
+/// Of real time: "1.2 s", "2 min 05 s", "3 h 20 min".
+[[nodiscard]] std::string duration_text(double seconds);
+
+/// "1.2 MiB", "1.2 KiB", "12 B".
+[[nodiscard]] std::string bytes(double count);
 
 }  // namespace marti::studies

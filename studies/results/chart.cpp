@@ -1,28 +1,15 @@
 #include "studies/results/chart.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "sim/error.h"
+#include "studies/results/json_table.h"
 
 namespace marti::studies {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json json_of(const Cell& cell) {
-  if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
-    return *integer;
-  }
-  if (const auto* real = std::get_if<double>(&cell)) {
-    return std::isfinite(*real) ? Json(*real) : Json();
-  }
-  if (const auto* text = std::get_if<std::string>(&cell)) {
-    return *text;
-  }
-  return {};
-}
 
 }  // namespace
 
@@ -37,15 +24,7 @@ std::string table_of(const ChartSpecification& chart) {
 
 std::string fill_chart(const ChartSpecification& chart, const Table& table) {
   Json specification = Json::parse(chart.json);
-  Json values = Json::array();
-  for (const std::vector<Cell>& row : table.rows()) {
-    Json object = Json::object();
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      object[table.columns()[i].name] = json_of(row[i]);
-    }
-    values.push_back(std::move(object));
-  }
-  specification["data"] = {{"name", table.name()}, {"values", std::move(values)}};
+  specification["data"] = {{"name", table.name()}, {"values", rows_json(table)}};
   return specification.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

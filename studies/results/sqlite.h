@@ -1,14 +1,12 @@
-// The little of SQLite that results need, with errors as exceptions. The only user of the library.
+// Tables as an SQLite database that is written once.
 #pragma once
 
 #include <filesystem>
 #include <span>
 #include <string>
-#include <string_view>
 
+#include "studies/results/sqlite_connection.h"
 #include "studies/results/table.h"
-
-struct sqlite3;
 
 namespace marti::studies {
 
@@ -19,24 +17,18 @@ class Database {
   /// Makes the file, which must be new or empty. It is not journalled: whoever writes it does so under a
   /// temporary name (sim::PendingFile).
   explicit Database(const std::filesystem::path& file);
-  ~Database();
-  Database(const Database&) = delete;
-  Database& operator=(const Database&) = delete;
 
   /// Runs statements without parameters and without results.
-  void execute(const std::string& sql);
+  void execute(const std::string& sql) { connection_.execute(sql); }
 
   /// Makes a table of this name with the columns and rows of `table`. NaN becomes NULL, as SQLite has none.
   void add(const Table& table);
 
   /// Ends the connection; a failure to do so is a UserError. The destructor only lets go.
-  void close();
+  void close() { connection_.close(); }
 
  private:
-  void check(int status) const;
-
-  std::string name_;
-  sqlite3* connection_ = nullptr;
+  SqliteConnection connection_;
 };
 
 /// Writes all tables into a new database file in one transaction. Tables come in the order given, so that

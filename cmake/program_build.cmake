@@ -1,0 +1,26 @@
+# cmake -DROOT=... -DVERSION=... -DOUTPUT=... -P program_build.cmake: writes the source that says which program this
+# is. Paths are hashed too; the output changes only when they or what is in the files do.
+cmake_minimum_required(VERSION 3.25)
+
+set(files "")
+foreach(folder sim scenes accel memory processors)
+  file(GLOB_RECURSE found RELATIVE "${ROOT}" "${ROOT}/${folder}/*.h" "${ROOT}/${folder}/*.cpp")
+  list(APPEND files ${found})
+endforeach()
+list(SORT files)
+set(hashes "")
+foreach(file IN LISTS files)
+  file(SHA256 "${ROOT}/${file}" hash)
+  string(APPEND hashes "${file} ${hash}\n")
+endforeach()
+string(SHA256 hash "${hashes}")
+string(SUBSTRING "${hash}" 0 16 digits)
+file(CONFIGURE OUTPUT "${OUTPUT}" @ONLY CONTENT [[
+#include "studies/program_build.h"
+
+namespace marti::studies {
+
+std::string_view build_of_program() { return "marti @VERSION@ @digits@"; }
+
+}  // namespace marti::studies
+]])

@@ -1,0 +1,126 @@
+#include "studies/compare/compare.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "sim/error.h"
+#include "studies/compare/compare_sweeps.h"
+#include "studies/compare/compare_text.h"
+#include "studies/compare/differences.h"
+#include "studies/compare/figures.h"
+
+namespace marti::studies {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Target {
+  enum class Kind : std::uint8_t { run, point, sweep };
+  Kind kind = Kind::run;
+  fs::path file;
+  std::int64_t point = 0;
+};
+
+constexpr std::string_view expected =
+    "expected is a directory of `marti run`, its result.json, the directory of a sweep, or DIR:N for point N "
+    "of "
+    "a sweep";
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+Target of_directory(const std::string& name) {
+  const fs::path run = fs::path(name) / "result.json";
+  const fs::path sweep = fs::path(name) / "results.sqlite";
+  if (is_there(run) && is_there(sweep)) {
+    throw sim::UserError(name +
+                         ": holds both a run (result.json) and a sweep (results.sqlite); name the file");
+  }
+  if (is_there(run)) {
+    return {Target::Kind::run, run, 0};
+  }
+  if (is_there(sweep)) {
+    return {Target::Kind::sweep, sweep, 0};
+  }
+  throw sim::UserError(name + ": holds neither result.json nor results.sqlite; " + std::string(expected));
+}
+
+// "DIR:N", where DIR is there.
+std::optional<Target> point_of(const std::string& name) {
+  const std::size_t colon = name.rfind(':');
+  if (colon == std::string::npos || colon + 1 == name.size()) {
+    return std::nullopt;
+  }
+  const fs::path directory = name.substr(0, colon);
+  std::int64_t number = 0;
+  const char* const end = name.data() + name.size();
+  const auto [stop, error] = std::from_chars(name.data() + colon + 1, end, number);
+  if (error != std::errc() || stop != end || !is_there(directory)) {
+    return std::nullopt;
+  }
+  std::error_code ignored;
+  const bool is_directory = fs::is_directory(directory, ignored);
+  return Target{Target::Kind::point, is_directory ? directory / "results.sqlite" : directory, number};
+}
+
+Target target_of(const std::string& name) {
+  std::error_code ignored;
+  if (fs::is_directory(name, ignored)) {
+    return of_directory(name);
+  }
+  if (is_there(name)) {
+    const bool sweep = fs::path(name).extension() == ".sqlite";
+    return {sweep ? Target::Kind::sweep : Target::Kind::run, name, 0};
+  }
+  if (const std::optional<Target> point = point_of(name)) {
+    return *point;
+  }
+  throw sim::UserError(name + ": there is no such file or directory; " + std::string(expected));
+}
+
+ComparedResult read(const Target& target, const std::string& name) {
+  return target.kind == Target::Kind::run ? read_run(target.file, name)
+                                          : read_point(SweepReader(target.file), target.point, name);
+}
+
+// A run and a point count much the same under different names: only what both have is compared.
+void make_comparable(ComparedResult& run, ComparedResult& point) {
+  run.figures = named_as_in_sweep(run.figures);
+  std::erase_if(run.figures, [&](const auto& figure) { return !point.figures.contains(figure.first); });
+  std::erase_if(point.figures, [&](const auto& figure) { return !run.figures.contains(figure.first); });
+}
+
+}  // namespace
+
+std::string compare_results(const std::string& a, const std::string& b, const CompareOptions& options) {
+  const Target from = target_of(a);
+  const Target to = target_of(b);
+  const bool sweep_a = from.kind == Target::Kind::sweep;
+  const bool sweep_b = to.kind == Target::Kind::sweep;
+  if (sweep_a && sweep_b) {
+    return compare_sweeps(from.file, to.file, options);
+  }
+  if (sweep_a || sweep_b) {
+    const std::string& sweep = sweep_a ? a : b;
+    throw sim::UserError(sweep + ": is a whole sweep, but " + (sweep_a ? b : a) + " is one machine; give " +
+                         sweep + ":N for point N of it");
+  }
+  ComparedResult one = read(from, a);
+  ComparedResult other = read(to, b);
+  if (from.kind == Target::Kind::run && to.kind == Target::Kind::point) {
+    make_comparable(one, other);
+  } else if (from.kind == Target::Kind::point && to.kind == Target::Kind::run) {
+    make_comparable(other, one);
+  }
+  const Differences found = differences_of(one, other);
+  return options.json ? differences_json(one, other, found, options.all)
+                      : differences_text(one, other, found, options.all);
+}
+
+}  // namespace marti::studies

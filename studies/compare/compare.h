@@ -1,0 +1,19 @@
+// `marti compare A B`: what differs between two results, or between two sweeps.
+#pragma once
+
+#include <string>
+
+namespace marti::studies {
+
+struct CompareOptions {
+  bool json = false;  ///< for programs
+  bool all = false;   ///< everything: all differences, and what is equal too
+};
+
+/// Each of `a` and `b` is a directory that `marti run` has written or its result.json, `DIR:N`, which is
+/// point N of the sweep in that directory, or the directory of a sweep; a sweep goes with a sweep. The text
+/// ends in a line break; equal files give equal texts. Throws UserError for what cannot be read or compared.
+[[nodiscard]] std::string compare_results(const std::string& a, const std::string& b,
+                                          const CompareOptions& options = {});
+
+}  // namespace marti::studies

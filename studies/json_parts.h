@@ -1,0 +1,40 @@
+// Pieces that all parts of `result.json` are made of.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "sim/statistics.h"
+
+namespace marti::studies {
+
+/// The value, or null.
+[[nodiscard]] inline nlohmann::ordered_json optional_json(std::optional<double> value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+/// The name of a counter in results for programs; times say so in theirs.
+template <class S>
+[[nodiscard]] std::string json_name(const sim::Counter<S>& counter) {
+  return std::string(counter.name) + (counter.unit == "ps" ? "_ps" : "");
+}
+
+/// Adds every declared counter to an object, under its name behind `prefix`.
+template <class S>
+void add_counters(nlohmann::ordered_json& object, const S& statistics, const std::string& prefix = {}) {
+  sim::for_each_counter(statistics, [&](const sim::Counter<S>& counter, std::int64_t value) {
+    object[prefix + json_name(counter)] = value;
+  });
+}
+
+/// An object of every declared counter.
+template <class S>
+[[nodiscard]] nlohmann::ordered_json counters_json(const S& statistics) {
+  nlohmann::ordered_json object = nlohmann::ordered_json::object();
+  add_counters(object, statistics);
+  return object;
+}
+
+}  // namespace marti::studies

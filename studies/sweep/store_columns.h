@@ -1,0 +1,23 @@
+// What the columns of a store mean, and the figures derived from them.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace marti::studies {
+
+struct StoreColumn {
+  std::string table;
+  std::string name;
+  std::string unit;
+  std::string description;
+};
+
+/// Every column of every table and view that is not of the host.
+[[nodiscard]] std::vector<StoreColumn> store_columns(std::span<const std::string> axes);
+
+/// The SQL that makes the view `summary`: points with what follows from their counters.
+[[nodiscard]] std::string summary_view(std::span<const std::string> axes);
+
+}  // namespace marti::studies

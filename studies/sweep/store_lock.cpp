@@ -1,0 +1,78 @@
+#include "studies/sweep/store_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "sim/error.h"
+
+namespace marti::studies {
+
+namespace {
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "an unknown host";
+}
+
+// Who wrote the file, as far as it can be read.
+std::string holder_of(int descriptor) {
+  std::array<char, 300> text{};
+  const ssize_t bytes = pread(descriptor, text.data(), text.size() - 1, 0);
+  std::string holder(text.data(), bytes > 0 ? static_cast<std::size_t>(bytes) : 0);
+  while (!holder.empty() && holder.back() == '\n') {
+    holder.pop_back();
+  }
+  return holder.empty() ? "another process" : holder;
+}
+
+// Whether the name still leads to the open file: its last holder may have removed it in between.
+bool still_there(int descriptor, const std::filesystem::path& file) {
+  struct stat open_file {};
+  struct stat named_file {};
+  return fstat(descriptor, &open_file) == 0 && stat(file.c_str(), &named_file) == 0 &&
+         open_file.st_dev == named_file.st_dev && open_file.st_ino == named_file.st_ino;
+}
+
+}  // namespace
+
+StoreLock::StoreLock(const std::filesystem::path& store) : file_(store.string() + ".lock") {
+  for (;;) {
+    descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) {
+      throw sim::UserError(file_.string() + ": cannot be made: " + std::strerror(errno));
+    }
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      const int reason = errno;
+      const std::string holder = holder_of(descriptor_);
+      ::close(descriptor_);
+      if (reason == EWOULDBLOCK) {
+        throw sim::UserError(store.string() + ": " + holder +
+                             " is writing it; wait for it to end, or give another directory");
+      }
+      throw sim::UserError(file_.string() + ": cannot be locked: " + std::strerror(reason));
+    }
+    if (still_there(descriptor_, file_)) {
+      break;
+    }
+    ::close(descriptor_);
+  }
+  const std::string holder = "process " + std::to_string(getpid()) + " on " + host_name() + "\n";
+  // Only for people: a full disk does not keep the lock from locking.
+  if (ftruncate(descriptor_, 0) == 0) {
+    [[maybe_unused]] const ssize_t written = pwrite(descriptor_, holder.data(), holder.size(), 0);
+  }
+}
+
+StoreLock::~StoreLock() {
+  unlink(file_.c_str());
+  ::close(descriptor_);
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,34 @@
+// The tables of a sweep's store, as docs/sweep-store.md describes them.
+#pragma once
+
+#include <filesystem>
+
+#include "studies/results/sqlite_connection.h"
+#include "studies/sweep/sweep_plan.h"
+
+namespace marti::studies {
+
+/// Where the counters of the tables begin, after the columns that are no counters.
+inline constexpr int first_result_counter = 1;
+inline constexpr int first_frame_counter = 5;
+
+/// Throws UserError when the file is there but is no whole SQLite database, before SQLite has touched it.
+void check_store_file(const std::filesystem::path& file);
+
+/// Whether nothing was ever written into the database: it is new.
+[[nodiscard]] bool is_empty_database(SqliteConnection& connection);
+
+/// Throws UserError unless the database is a store of a format that this program reads.
+void check_store_format(SqliteConnection& connection, const std::filesystem::path& file);
+
+/// Throws UserError unless this program may add results to the store: it must be of this version.
+void check_store_version(SqliteConnection& connection, const std::filesystem::path& file);
+
+/// Makes the tables that stay. Within a transaction.
+void create_store(SqliteConnection& connection);
+
+/// Makes table points, the view summary and table columns anew for the axes of a plan; points is left empty.
+/// Within a transaction.
+void create_points(SqliteConnection& connection, const SweepPlan& plan);
+
+}  // namespace marti::studies

@@ -1,0 +1,138 @@
+#include "studies/sweep/sweep.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/error.h"
+#include "sim/files.h"
+#include "sim/units.h"
+#include "studies/output.h"
+#include "studies/ranks/rank_sweep.h"
+#include "studies/results/csv.h"
+#include "studies/signals_held.h"
+#include "studies/sweep/coordinator.h"
+#include "studies/sweep/points_table.h"
+#include "studies/sweep/sweep_memory.h"
+#include "studies/sweep/sweep_outlook.h"
+#include "studies/sweep/sweep_reader.h"
+#include "studies/sweep/sweep_store.h"
+#include "studies/sweep/sweep_worker.h"
+
+namespace marti::studies {
+
+namespace {
+
+void refuse_large_machines(const SweepPlan& plan, std::uint64_t limit) {
+  for (const SweepMachine& machine : plan.machines) {
+    const std::uint64_t bytes = processors::host_bytes(machine.config);
+    if (bytes > limit) {
+      throw sim::UserError(
+          "a machine of " + std::to_string(machine.config.all_nodes()) + " nodes takes about " +
+          sim::print_size(static_cast<std::int64_t>(bytes >> 20U << 20U)) +
+          ", more than host_machine.memory_limit = " + sim::print_size(static_cast<std::int64_t>(limit)));
+    }
+  }
+}
+
+unsigned threads_of(const SweepOptions& options) {
+  return options.threads != 0       ? options.threads
+         : options.ranks != nullptr ? threads_of_rank(*options.ranks)
+                                    : static_cast<unsigned>(tbb::this_task_arena::max_concurrency());
+}
+
+template <class Part>
+std::vector<bool> found_in(const std::vector<std::string>& keys, const std::vector<Part>& parts) {
+  std::vector<bool> found;
+  for (const Part& part : parts) {
+    found.push_back(std::binary_search(keys.begin(), keys.end(), part.key));
+  }
+  return found;
+}
+
+}  // namespace
+
+SweepOutlook look_ahead(const SweepPlan& plan, const SweepOptions& options) {
+  std::vector<bool> machines(plan.machines.size());
+  std::vector<bool> frames(plan.frames.size());
+  const std::filesystem::path file = options.directory / "results.sqlite";
+  if (!options.directory.empty() && is_begun(file)) {
+    const SweepReader reader(file);
+    machines = found_in(reader.machines_done(), plan.machines);
+    frames = found_in(reader.frames_done(), plan.frames);
+  }
+  return outlook_of(plan, machines, frames, threads_of(options));
+}
+
+SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, std::uint64_t memory_limit,
+                      const std::function<void(const std::string&)>& announce) {
+  refuse_large_machines(plan, memory_limit);
+  prepare_output(options.directory);
+  announce(describe(plan, look_ahead(plan, options)));
+  const unsigned threads = threads_of(options);
+  const unsigned all_threads =
+      threads * (options.ranks != nullptr ? static_cast<unsigned>(options.ranks->size()) : 1U);
+  SweepReport report;
+  report.store = options.directory / "results.sqlite";
+  report.points = options.directory / "points.csv";
+  SweepStore store(report.store, plan);
+  const Schedule left(plan, store.done(), store.frames_done());
+  report.timed = left.machines_left();
+  report.traced = left.frames_left();
+
+  const auto begin = std::chrono::steady_clock::now();
+  const SweepMemory memory = shares_of(memory_limit);
+  LogShelf logs({memory.logs, options.directory, options.keep_logs});
+  StripShelf strips(memory.strips);
+  MemoryGate machines(memory.machines);
+  Progress progress({options.terminal, options.quiet, stderr, all_threads});
+  std::optional<RankServer> server;
+  if (options.ranks != nullptr) {
+    server.emplace(*options.ranks, plan);
+  }
+  Coordinator coordinator(plan, store, progress, [&](std::size_t frame) {
+    strips.drop(frame);
+    logs.drop(plan.frames[frame].key);
+    if (server) {
+      server->over(frame);
+    }
+  });
+  {
+    const AtSignal last_words([&](int /*signal*/) {
+      const std::size_t saved = coordinator.close_for_good();
+      std::fprintf(
+          stderr, "marti: interrupted: %zu of %zu machines are saved in %s; the same command does the rest\n",
+          saved, plan.machines.size(), report.store.c_str());
+    });
+    const SweepSite site{plan, logs, strips, machines};
+    try {
+      if (server) {
+        server->work(site, coordinator, options.configuration, threads);
+      } else {
+        LocalSource source(coordinator, 0);
+        // More workers than tasks would only wait.
+        const std::size_t tasks = std::max<std::size_t>(1, report.timed + report.traced);
+        work_together(site, source, static_cast<unsigned>(std::min<std::size_t>(threads, tasks)));
+      }
+    } catch (const sim::UserError& error) {
+      progress.end();
+      throw sim::UserError(error.what() + (" (" + std::to_string(coordinator.saved())) + " of " +
+                           std::to_string(plan.machines.size()) + " machines are saved)");
+    }
+  }
+  progress.end();
+  for (const std::string& note : logs.notes()) {
+    std::fprintf(stderr, "marti: note: %s\n", note.c_str());
+  }
+  store.close();
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  sim::write_file(report.points, csv_of(points_table(report.store)));
+  return report;
+}
+
+}  // namespace marti::studies

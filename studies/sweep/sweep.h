@@ -1,0 +1,44 @@
+// `marti sweep`: every machine of a configuration's [sweep], timed once, in a store that can be resumed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "sim/config.h"
+#include "studies/sweep/sweep_plan.h"
+
+namespace marti::studies {
+
+class Ranks;
+
+struct SweepOptions {
+  std::filesystem::path directory;  ///< results.sqlite and points.csv go there
+  std::filesystem::path keep_logs;  ///< where logs are kept for the next sweep; empty: nowhere
+  unsigned threads = 0;             ///< machines timed at a time; 0: as many as the computer has
+  bool terminal = false;            ///< progress as a bar
+  bool quiet = false;               ///< no progress
+  Ranks* ranks = nullptr;           ///< the processes that share the work, this being rank 0; null: none
+  std::string configuration;        ///< for them: the text of the file
+};
+
+/// What is known of the sweep before it runs, also of what its store holds already. Writes nothing. Throws
+/// UserError when the store cannot be read.
+[[nodiscard]] SweepOutlook look_ahead(const SweepPlan& plan, const SweepOptions& options);
+
+struct SweepReport {
+  std::size_t timed = 0;   ///< machines timed now, not before
+  std::size_t traced = 0;  ///< frames traced now
+  double seconds = 0.0;    ///< of real time
+  std::filesystem::path store;
+  std::filesystem::path points;  ///< the table as CSV
+};
+
+/// Runs what of the plan is not in the store yet. `announce` is called with the plan as text before anything
+/// is done. A program that is ended by a signal says what is saved and exits with 128 + signal. Throws
+/// UserError; what is done by then is saved.
+SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, std::uint64_t memory_limit,
+                      const std::function<void(const std::string&)>& announce);
+
+}  // namespace marti::studies

@@ -1,0 +1,29 @@
+// The best machine for a budget, and all machines that are the best for some budget.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace marti::studies {
+
+enum class Better : std::uint8_t { lower, higher };
+
+/// A machine as a buyer sees it. Neither figure is NaN.
+struct Offer {
+  double cost = 0.0;
+  double metric = 0.0;
+};
+
+/// Index of the offer with the best metric among those that cost at most `budget`; of equal ones the
+/// cheapest, of these the first. Nothing when none is within the budget.
+[[nodiscard]] std::optional<std::size_t> best_within(std::span<const Offer> offers,
+                                                     std::optional<double> budget, Better better);
+
+/// Indices of the offers that no other beats (costs no more and is no worse, and differs in one of them),
+/// ascending by cost, so that each is better than the one before. Of equal offers only the first is given.
+[[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const Offer> offers, Better better);
+
+}  // namespace marti::studies

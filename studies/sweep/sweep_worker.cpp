@@ -1,0 +1,140 @@
+#include "studies/sweep/sweep_worker.h"
+
+#include <chrono>
+#include <ctime>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "processors/replay.h"
+#include "scenes/open.h"
+#include "sim/error.h"
+#include "studies/functional_run.h"
+#include "studies/image_file.h"
+#include "studies/scene_hash.h"
+
+namespace marti::studies {
+
+namespace {
+
+// Processor time of the calling thread.
+std::int64_t thread_nanoseconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+FrameLog trace(const SweepFrame& frame) {
+  const FrameConfig& config = frame.config;
+  const scenes::Scene scene = scenes::open_scene(config.scene, config.open, decode_image);
+  const std::uint64_t hash = scene_hash(scene);
+  if (frame.scene_hash && *frame.scene_hash != hash) {
+    throw sim::UserError(config.scene + ": the scene has changed since the sweep was begun; begin it again");
+  }
+  const FunctionalRun run = run_functional(config, scene);
+  return {run.frame.log, frame_row(run, hash)};
+}
+
+// Tracing uses all of the computer's threads, so what it takes is the time that passes.
+void do_trace(const SweepSite& site, TaskSource& source, const SweepTask& task) {
+  const auto begin = std::chrono::steady_clock::now();
+  const SweepFrame& frame = site.plan.frames[task.frame];
+  FrameRow row;
+  std::string note;
+  if (const auto kept = site.logs.find_kept(frame.key, note)) {
+    row = kept->row;
+  } else {
+    FrameLog log = trace(frame);
+    row = log.row;
+    site.logs.put(frame.key, std::move(log));
+  }
+  const auto end = std::chrono::steady_clock::now();
+  source.traced(task.frame, row, std::chrono::duration_cast<std::chrono::nanoseconds>(end - begin).count());
+}
+
+std::string name_of(const SweepMachine& machine) {
+  std::string name;
+  for (const sim::EffectiveValue& value : machine.settings) {
+    if (value.given) {
+      name += (name.empty() ? "" : ", ") + value.key + " = " + value.value;
+    }
+  }
+  return name;
+}
+
+void do_time(const SweepSite& site, TaskSource& source, const SweepTask& task) {
+  const std::shared_ptr<const FrameLog> log = site.logs.take(site.plan.frames[task.frame].key);
+  for (const std::size_t number : task.machines) {
+    const SweepMachine& machine = site.plan.machines[number];
+    const std::int64_t begin = thread_nanoseconds();
+    SweepRow row;
+    try {
+      const std::shared_ptr<const processors::StrippedLog> stripped =
+          site.strips.get(task.frame, log->log, machine.config, task.sharing);
+      const MemoryGate::Pass pass(site.machines, processors::host_bytes(machine.config));
+      processors::ReplayOptions options;
+      options.stripped = stripped.get();
+      row = sweep_row(machine.config, processors::replay(*log->log, machine.config, options));
+    } catch (const sim::UserError& error) {
+      throw sim::UserError("the machine with " + name_of(machine) + ": " + error.what());
+    }
+    source.timed(number, row, thread_nanoseconds() - begin);
+  }
+}
+
+}  // namespace
+
+void work(const SweepSite& site, TaskSource& source) {
+  for (;;) {
+    const SweepTask task = source.next();
+    switch (task.kind) {
+      case SweepTask::Kind::trace:
+        do_trace(site, source, task);
+        break;
+      case SweepTask::Kind::time:
+        do_time(site, source, task);
+        break;
+      case SweepTask::Kind::wait:
+        throw sim::InternalError("a worker was told to wait");
+      case SweepTask::Kind::end:
+        return;
+    }
+  }
+}
+
+void work_together(const SweepSite& site, TaskSource& source, unsigned workers) {
+  std::mutex mutex;
+  std::exception_ptr first;
+  {
+    std::vector<std::jthread> threads;
+    const auto run = [&] {
+      try {
+        work(site, source);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (first == nullptr) {
+          first = std::current_exception();
+        }
+        source.stop();
+      }
+    };
+    try {
+      for (unsigned worker = 0; worker < workers; ++worker) {
+        threads.emplace_back(run);
+      }
+    } catch (const std::system_error& error) {
+      // The system gives no more threads: those that there are do the work.
+      if (threads.empty()) {
+        throw sim::UserError(std::string("no thread can be started: ") + error.what());
+      }
+    }
+  }
+  if (first != nullptr) {
+    std::rethrow_exception(first);
+  }
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,26 @@
+// What `marti sweep` does with its arguments.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace marti::studies {
+
+struct SweepArguments {
+  std::string config;
+  std::vector<std::string> assignments;
+  std::string directory;
+  std::string keep_logs;
+  unsigned threads = 0;
+  bool plan_only = false;
+  bool quiet = false;
+  bool json = false;
+  std::string best;
+  std::optional<double> within;
+};
+
+/// Runs it; `print` writes to standard output. Throws UserError.
+void sweep_command(const SweepArguments& arguments, void (*print)(const std::string&));
+
+}  // namespace marti::studies
