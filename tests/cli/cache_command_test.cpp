@@ -56,6 +56,44 @@ TEST(CacheCommand, WhatIsCountedAddsUpInTheResultAndInItsTable) {
             counts["attribution"].size() + 1);
 }
 
+TEST(CacheCommand, TheWorkingSetIsThatOfTheMachineAtItsOwnSize) {
+  const TemporaryDirectory directory;
+  const std::string run = "run " + counting + " --set count.working_set=true --set cache.replacement=lru";
+  for (const std::string organisation : {"unified", "split"}) {
+    const fs::path out = directory.path() / organisation;
+    const Outcome outcome = marti(run + " --set cache.organisation=" + organisation + " -o " + quoted(out));
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    for (const char* line :
+         {"working set ", "2 x compulsory with", "working_set.csv", "working_set.vl.json"}) {
+      EXPECT_NE(outcome.output.find(line), std::string::npos) << line << "\n" << outcome.output;
+    }
+    const auto machine = nlohmann::json::parse(read(out / "result.json"))["machine"];
+    std::int64_t misses = 0;
+    std::int64_t compulsory = 0;
+    for (const auto& [kind, counts] : machine["references"].items()) {
+      misses += counts["misses"].get<std::int64_t>();
+    }
+    std::size_t rows = 1;
+    for (const auto& cache : machine["working_set"]["caches"]) {
+      const auto& points = cache[cache["sets"] == 1 ? "fully_associative" : "ways"];
+      const auto own = std::find_if(points.begin(), points.end(),
+                                    [&](const auto& point) { return point[0] == cache["machine_ways"]; });
+      ASSERT_NE(own, points.end());
+      misses -= (*own)[1].get<std::int64_t>();
+      compulsory += cache["compulsory"].get<std::int64_t>();
+      EXPECT_EQ(cache["fully_associative"].back()[1], cache["compulsory"]);
+      rows += cache["fully_associative"].size() + cache["ways"].size();
+    }
+    EXPECT_EQ(misses, 0);
+    EXPECT_EQ(compulsory, machine["counts"]["miss_classes"]["all"]["compulsory"].get<std::int64_t>());
+    const std::string table = read(out / "working_set.csv");
+    EXPECT_GE(static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')), rows);
+    const auto chart = nlohmann::json::parse(read(out / "working_set.vl.json"));
+    EXPECT_EQ(chart["data"]["values"].size(),
+              static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')) - 1);
+  }
+}
+
 TEST(CacheCommand, RefusesWhatCannotBeBuiltOrCounted) {
   const auto refused = [](const std::string& options, const char* key) {
     const Outcome outcome = marti("run " + counting + options);
@@ -68,6 +106,7 @@ TEST(CacheCommand, RefusesWhatCannotBeBuiltOrCounted) {
   refused(" --set database.placement=replicated", "l2.sharing");
   refused(" --set build.sharing=shared", "count.miss_classes");
   refused(" --set l2.sharing=none --set l2.ways=2", "l2.ways");
+  refused(" --set count.working_set=true --set node.contexts=2", "count.working_set");
 }
 
 }  // namespace

@@ -1,0 +1,337 @@
+// `marti sweep` as its user runs it: what it prints, writes and refuses.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "studies/program_build.h"
+#include "studies/results/sqlite_connection.h"
+#include "studies/sweep/log_file.h"
+#include "tests/cli/sweep_files.h"
+#include "tests/support/temporary_directory.h"
+
+namespace marti::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// A directory with a small sweep's configuration in it.
+class SweepCommand : public testing::Test {
+ protected:
+  SweepCommand() { write(config, small_sweep); }
+  [[nodiscard]] fs::path place(const std::string& name) const { return directory.path() / name; }
+
+  const TemporaryDirectory directory;
+  const fs::path config = directory.path() / "sweep.toml";
+  const fs::path out = directory.path() / "out";
+  const fs::path store = out / "results.sqlite";
+};
+
+// What of the results does not depend on the order in which machines were entered.
+std::string results_by_key(const fs::path& store) {
+  return rows_of(store,
+                 "SELECT m.key, r.\"end\", r.events, r.hits, r.misses, r.time_idle FROM results r "
+                 "JOIN machines m ON m.id = r.machine ORDER BY m.key");
+}
+
+TEST_F(SweepCommand, SaysThePlanTimesAllAndIsDone) {
+  const Outcome first = sweep(config, out);
+  ASSERT_EQ(first.status, 0) << first.output;
+  EXPECT_TRUE(first.output.starts_with("axes          image.max_depth: 1, 2\n")) << first.output;
+  EXPECT_TRUE(says(first, "frames        2 functional runs, 0 done\n")) << first.output;
+  EXPECT_TRUE(says(first, "machines      24, 0 done\n")) << first.output;
+  EXPECT_TRUE(says(first, "timed         24 machines on 2 frames in ")) << first.output;
+  EXPECT_TRUE(says(first, "wrote         " + store.string())) << first.output;
+  EXPECT_EQ(files_in(out), 2U) << "results.sqlite and points.csv";
+  EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM results"), 24);
+  const std::string points = read(out / "points.csv");
+  EXPECT_EQ(std::count(points.begin(), points.end(), '\n'), 25);
+
+  const std::string before = dump(store);
+  const Outcome again = sweep(config, out);
+  ASSERT_EQ(again.status, 0) << again.output;
+  EXPECT_TRUE(says(again, "machines      24, 24 done\n")) << again.output;
+  EXPECT_TRUE(says(again, "all of it was there already\n")) << again.output;
+  EXPECT_EQ(dump(store), before);
+  EXPECT_EQ(read(out / "points.csv"), points);
+}
+
+TEST_F(SweepCommand, TheSameContentAtAnyNumberOfThreadsAndWithLittleMemory) {
+  ASSERT_EQ(sweep(config, out).status, 0);
+  const std::string expected = dump(store);
+  ASSERT_NE(expected.find("integrity: ok"), std::string::npos);
+  for (const std::string more : {"--threads 1", "--threads 2", "--threads 4", "--threads 4096",
+                                 "--threads 2 --set host_machine.memory_limit=1MiB"}) {
+    const TemporaryDirectory other;
+    const Outcome outcome = sweep(config, other.path(), more);
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_EQ(dump(other.path() / "results.sqlite"), expected) << more;
+    EXPECT_EQ(read(other.path() / "points.csv"), read(out / "points.csv")) << more;
+    EXPECT_EQ(files_in(other.path()), 2U) << more;
+  }
+}
+
+// The machine that `marti run` takes for a point has the same end, speed-up and counters.
+TEST_F(SweepCommand, EachPointIsWhatRunSays) {
+  ASSERT_EQ(sweep(config, out).status, 0);
+  const Outcome printed = marti("sweep " + quoted(config) + " -o " + quoted(out) + " --json 2> /dev/null");
+  ASSERT_EQ(printed.status, 0) << printed.output;
+  const json points = json::parse(printed.output)["rows"];
+  ASSERT_EQ(points.size(), 24U);
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 5; ++i) {
+    const json& point = points.at(random() % points.size());
+    std::string settings;
+    for (const auto& [key, name] :
+         {std::pair("image.max_depth", "image_max_depth"), std::pair("machine.nodes", "machine_nodes"),
+          std::pair("cache.size", "cache_size"), std::pair("cache.line", "cache_line")}) {
+      settings += std::string(" --set ") + key + "=" + point.at(name).dump();
+    }
+    const Outcome run = marti("run " + quoted(config) + settings + " --json");
+    ASSERT_EQ(run.status, 0) << run.output;
+    const json machine = json::parse(run.output)["machine"];
+    EXPECT_EQ(point["end"], machine["frame_time_ps"]) << settings;
+    EXPECT_EQ(point["speed_up"], machine["speed_up"]) << settings;
+    EXPECT_EQ(point["efficiency"], machine["efficiency"]) << settings;
+    EXPECT_EQ(point["packets"], machine["packets"]) << settings;
+    EXPECT_EQ(point["interconnect_utilisation"], machine["interconnect_utilisation"]) << settings;
+  }
+}
+
+TEST_F(SweepCommand, PointsAsCsvAreThoseOfJson) {
+  ASSERT_EQ(sweep(config, out).status, 0);
+  const json points =
+      json::parse(marti("sweep " + quoted(config) + " -o " + quoted(out) + " --json 2> /dev/null").output);
+  std::istringstream csv(read(out / "points.csv"));
+  const auto cells = [&] {
+    std::string line;
+    std::getline(csv, line, '\r');  // lines end as RFC 4180 has them
+    csv.get();
+    std::vector<std::string> all;
+    std::istringstream in(line + ",");
+    for (std::string cell; std::getline(in, cell, ',');) {
+      all.push_back(cell);
+    }
+    return all;
+  };
+  const std::vector<std::string> names = cells();
+  ASSERT_EQ(names.size(), points["columns"].size());
+  for (const json& point : points["rows"]) {
+    const std::vector<std::string> row = cells();
+    ASSERT_EQ(row.size(), names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const json value = point.value(names[i], json());  // what has no value is not there
+      if (value.is_null()) {
+        EXPECT_EQ(row[i], "") << names[i];
+      } else {
+        EXPECT_EQ(std::stod(row[i]), value.get<double>()) << names[i];
+      }
+    }
+  }
+}
+
+TEST_F(SweepCommand, AChangedConfigurationAddsPointsAndKeepsResults) {
+  ASSERT_EQ(sweep(config, out).status, 0);
+  const std::string old_results = results_by_key(store);
+  std::string more = small_sweep;
+  more.replace(more.find("[1, 2, 4]"), 9, "[1, 2, 3]");
+  write(config, more);
+  const Outcome outcome = sweep(config, out);
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_TRUE(says(outcome, "machines      24, 16 done\n")) << outcome.output;
+  EXPECT_TRUE(says(outcome, "timed         8 machines on 2 frames")) << outcome.output;
+  EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM results"), 32);
+  EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM points WHERE \"machine.nodes\" = 4"), 0);
+  EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM host_machines WHERE session = 2"), 8);
+  // The new ones are what a sweep of their own gives.
+  const fs::path fresh = place("fresh");
+  ASSERT_EQ(sweep(config, fresh).status, 0);
+  const std::string all = results_by_key(store);
+  for (const std::string& part : {old_results, results_by_key(fresh / "results.sqlite")}) {
+    std::istringstream lines(part);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_NE(all.find(line), std::string::npos) << line;
+    }
+  }
+  // And back: nothing is left to do.
+  write(config, small_sweep);
+  EXPECT_TRUE(says(sweep(config, out), "all of it was there already")) << outcome.output;
+}
+
+TEST_F(SweepCommand, ThePlanAloneWritesNothing) {
+  const Outcome outcome = marti("sweep " + quoted(config) + " --plan");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_TRUE(says(outcome, "machines      24")) << outcome.output;
+  EXPECT_EQ(marti("sweep " + quoted(config) + " --plan -o " + quoted(out)).status, 0);
+  EXPECT_FALSE(fs::exists(out));
+  EXPECT_EQ(files_in(directory.path()), 1U);
+  // It knows what is done, of this plan and of another.
+  ASSERT_EQ(sweep(config, out).status, 0);
+  const std::string before = read(store);
+  const Outcome all = sweep(config, out, "--plan");
+  EXPECT_TRUE(says(all, "frames        2 functional runs, 2 done\nmachines      24, 24 done\n"))
+      << all.output;
+  std::string other = small_sweep;
+  other.replace(other.find("[1, 2, 4]"), 9, "[1, 8]");
+  write(config, other);
+  const Outcome some = sweep(config, out, "--plan");
+  EXPECT_TRUE(says(some, "machines      16, 8 done\n")) << some.output;
+  EXPECT_TRUE(says(some, "\ntime          about ")) << some.output;
+  EXPECT_EQ(read(store), before);
+  EXPECT_EQ(files_in(out), 2U);
+}
+
+TEST_F(SweepCommand, FindsTheBestMachineForABudget) {
+  const Outcome best = sweep(config, out, "--best speed_up --within 6");
+  ASSERT_EQ(best.status, 0) << best.output;
+  EXPECT_TRUE(says(best, "best speed_up within 6: ")) << best.output;
+  const json front = json::parse(sweep(config, out, "--best end --json").output);
+  const json points = json::parse(sweep(config, out, "--json").output);
+  double least = 0.0;
+  double last_cost = -1.0;
+  for (const json& row : front["rows"]) {
+    EXPECT_GT(row["cost"].get<double>(), last_cost);
+    last_cost = row["cost"].get<double>();
+    least = row["end"].get<double>();
+    for (const json& point : points["rows"]) {
+      EXPECT_TRUE(point["cost"].get<double>() > last_cost || point["end"].get<double>() >= least) << point;
+    }
+  }
+  for (const json& point : points["rows"]) {
+    EXPECT_GE(point["end"].get<double>(), least);
+  }
+  const Outcome dear = sweep(config, out, "--best speed_up --within 0.5");
+  EXPECT_EQ(dear.status, 2);
+  EXPECT_TRUE(says(dear, "no point has a speed_up within a cost of 0.5")) << dear.output;
+  const Outcome wrong = sweep(config, place("none"), "--best sped_up");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_TRUE(says(wrong, "did you mean \"speed_up\"?")) << wrong.output;
+  EXPECT_FALSE(fs::exists(place("none"))) << "said before anything is done";
+  EXPECT_EQ(sweep(config, out, "--within 3").status, 2) << "without --best";
+  EXPECT_EQ(sweep(config, out, "--best end --within=-1").status, 2);
+  EXPECT_EQ(sweep(config, out, "--best end --within nan").status, 2);
+}
+
+TEST_F(SweepCommand, KeptLogsAreUsedAgain) {
+  const fs::path logs = place("logs");
+  ASSERT_EQ(sweep(config, out, "--keep-logs " + quoted(logs)).status, 0);
+  const std::string expected = dump(store);
+  ASSERT_EQ(files_in(logs), 2U);
+  const fs::path second = place("second");
+  const Outcome outcome = sweep(config, second, "--keep-logs " + quoted(logs));
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_EQ(dump(second / "results.sqlite"), expected);
+  // A log that says where it comes from shows that nothing was traced.
+  fs::path kept;
+  for (const auto& entry : fs::directory_iterator(logs)) {
+    kept = entry.path();
+    const std::string key = kept.stem().string();
+    studies::FrameLog log = studies::read_log(*studies::log_file_source(kept), key,
+                                              studies::build_of_program(), std::uint64_t{1} << 30U);
+    log.row.scene = "the kept one";
+    fs::remove(kept);
+    studies::write_log_file(kept, log, key, studies::build_of_program());
+  }
+  const fs::path third = place("third");
+  ASSERT_EQ(sweep(config, third, "--keep-logs " + quoted(logs)).status, 0);
+  const fs::path third_store = third / "results.sqlite";
+  EXPECT_EQ(number_of(third_store, "SELECT COUNT(*) FROM frame_results WHERE scene = 'the kept one'"), 2);
+  EXPECT_EQ(results_by_key(third_store), results_by_key(store));
+  // A damaged one is told, not used, and replaced.
+  std::string bytes = read(kept);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
+  write(kept, bytes);
+  const Outcome damaged = sweep(config, place("fourth"), "--keep-logs " + quoted(logs));
+  EXPECT_EQ(damaged.status, 0) << damaged.output;
+  EXPECT_TRUE(says(damaged, "marti: note: " + kept.string())) << damaged.output;
+  EXPECT_TRUE(says(damaged, "; the frame is traced again")) << damaged.output;
+  EXPECT_EQ(results_by_key(place("fourth") / "results.sqlite"), results_by_key(store));
+  const Outcome replaced = sweep(config, place("fifth"), "--keep-logs " + quoted(logs));
+  EXPECT_FALSE(says(replaced, "note")) << replaced.output;
+  EXPECT_EQ(number_of(place("fifth") / "results.sqlite",
+                      "SELECT COUNT(*) FROM frame_results WHERE scene = 'the kept one'"),
+            1);
+}
+
+TEST_F(SweepCommand, AKeepingPlaceThatCannotBeWrittenIsANote) {
+  write(place("file"), "in the way");
+  const Outcome outcome = sweep(config, out, "--keep-logs " + quoted(place("file")));
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_TRUE(says(outcome, "marti: note: " + place("file").string())) << outcome.output;
+}
+
+TEST_F(SweepCommand, ASceneFileIsPartOfTheFrame) {
+  const fs::path scene = place("scene.glb");
+  ASSERT_EQ(marti("scene export teapot:2 " + quoted(scene)).status, 0);
+  const std::string set = "--set scene.source=" + quoted(scene);
+  const Outcome first = sweep(config, out, set);
+  ASSERT_EQ(first.status, 0) << first.output;
+  const std::string old_results = results_by_key(store);
+  EXPECT_TRUE(says(sweep(config, out, set), "all of it was there already"));
+  // Another scene under the same name is another frame.
+  ASSERT_EQ(marti("scene export teapot:3 " + quoted(scene)).status, 0);
+  const Outcome other = sweep(config, out, set);
+  ASSERT_EQ(other.status, 0) << other.output;
+  EXPECT_TRUE(says(other, "timed         24 machines on 2 frames")) << other.output;
+  EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM frames"), 4);
+  EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM results"), 48);
+  fs::remove(scene);
+  const Outcome gone = sweep(config, out, set);
+  EXPECT_EQ(gone.status, 2);
+  EXPECT_TRUE(says(gone, scene.string())) << gone.output;
+}
+
+TEST_F(SweepCommand, RefusesWhatItCannotDo) {
+  const Outcome nowhere = marti("sweep " + quoted(config));
+  EXPECT_EQ(nowhere.status, 2);
+  EXPECT_TRUE(says(nowhere, "-o DIR is missing")) << nowhere.output;
+  write(place("file"), "in the way");
+  const Outcome blocked = sweep(config, place("file"));
+  EXPECT_EQ(blocked.status, 2);
+  EXPECT_TRUE(says(blocked, place("file").string())) << blocked.output;
+  const Outcome one = sweep(fs::path(MARTI_SOURCE) / "configs" / "marti.toml", out);
+  EXPECT_EQ(one.status, 2);
+  EXPECT_TRUE(says(one, "[sweep.axes], [[sweep.zip]] or [sweep.points.NAME]")) << one.output;
+  EXPECT_EQ(sweep(config, out, "--threads=-1").status, 2);
+  EXPECT_EQ(sweep(config, out, "--threads 4097").status, 2);
+  EXPECT_EQ(sweep(config, out, "--threads many").status, 2);
+  EXPECT_EQ(sweep(config, out, "--keep-logs ''").status, 2);
+  EXPECT_EQ(sweep(config, out, "--set cache.sise=1KiB").status, 2);
+  EXPECT_EQ(marti("sweep " + quoted(place("none.toml")) + " -o " + quoted(out)).status, 2);
+  EXPECT_FALSE(fs::exists(out)) << "none of them came so far";
+  // A machine that has no room in the memory given.
+  const Outcome large =
+      sweep(config, out, "--set host_machine.memory_limit=1MiB --set machine.clusters=4000");
+  EXPECT_EQ(large.status, 2);
+  EXPECT_TRUE(says(large, "host_machine.memory_limit = 1 MiB")) << large.output;
+  const Outcome closed = shell(quoted(MARTI_PROGRAM) + " sweep " + quoted(config) + " --plan > /dev/full");
+  EXPECT_EQ(closed.status, 2) << closed.output;
+}
+
+TEST_F(SweepCommand, AStoreOfAnotherVersionOrKindIsRefusedAndNotTouched) {
+  ASSERT_EQ(sweep(config, out).status, 0);
+  {
+    studies::SqliteConnection connection(store, studies::SqliteConnection::Access::write);
+    connection.execute("PRAGMA journal_mode = DELETE");
+    connection.execute("UPDATE store SET value = '0.0.0' WHERE what = 'version'");
+  }
+  const std::string before = read(store);
+  const Outcome other = sweep(config, out);
+  EXPECT_EQ(other.status, 2);
+  EXPECT_TRUE(says(other, "0.0.0")) << other.output;
+  EXPECT_TRUE(says(other, "give another directory")) << other.output;
+  EXPECT_EQ(read(store), before);
+  write(store, "no database");
+  const Outcome none = sweep(config, out);
+  EXPECT_EQ(none.status, 2);
+  EXPECT_TRUE(says(none, "is no SQLite database")) << none.output;
+  EXPECT_EQ(read(store), "no database");
+}
+
+}  // namespace
+}  // namespace marti::test

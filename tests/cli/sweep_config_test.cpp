@@ -1,0 +1,52 @@
+// A file that describes a sweep, given to the commands that run one machine.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "tests/cli/shell.h"
+#include "tests/support/temporary_directory.h"
+
+namespace marti::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string small = " --set image.width=16 --set image.height=16";
+
+TEST(SweepConfig, RunAndTraceTakeTheFilesOwnMachine) {
+  const TemporaryDirectory directory;
+  const std::string machine = "[scene]\nsource = \"teapot:2\"\n[machine]\nnodes = 3\n";
+  const fs::path plain = directory.path() / "plain.toml";
+  const fs::path sweep = directory.path() / "sweep.toml";
+  write(plain, machine);
+  write(sweep, machine +
+                   "[sweep]\nfilter = \"cache.ways < 3\"\n[sweep.axes]\nmachine.nodes = [1, 2]\n"
+                   "anything = \"goes\"\n[prices]\nnode = 3\n");
+  const Outcome expected = marti("run " + quoted(plain) + small);
+  const Outcome found = marti("run " + quoted(sweep) + small);
+  EXPECT_EQ(found.status, 0) << found.output;
+  EXPECT_EQ(found.output, expected.output);
+  const Outcome trace = marti("trace " + quoted(sweep) + small + " -o " + quoted(directory.path() / "trace"));
+  EXPECT_EQ(trace.status, 0) << trace.output;
+}
+
+TEST(SweepConfig, MisspeltSectionsStayErrors) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "a.toml";
+  for (const auto& [text, message] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"[swep.axes]\nmachine.nodes = [1]\n", ":2: swep.axes.machine.nodes: unknown key"},
+           {"[price]\nnode = 1\n", ":2: price.node: unknown key"},
+           {"sweep = 3\n", ":1: sweep: is a section and has no value of its own"},
+           {"[sweep]\na = 1979-05-27\n", ":2: sweep.a: must not be a date or time"},
+       }) {
+    write(file, text);
+    const Outcome outcome = marti("run " + quoted(file));
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.output.find(message), std::string::npos) << outcome.output;
+  }
+}
+
+}  // namespace
+}  // namespace marti::test

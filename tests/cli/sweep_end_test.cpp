@@ -1,0 +1,168 @@
+// A sweep that does not come to its end at once: killed, interrupted, on a full disk, beside another one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+#include "tests/cli/started.h"
+#include "tests/cli/sweep_files.h"
+#include "tests/support/temporary_directory.h"
+
+namespace marti::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+std::vector<std::string> arguments(const fs::path& config, const fs::path& out,
+                                   const std::vector<std::string>& more = {}) {
+  std::vector<std::string> all = {"sweep", config.string(), "-o", out.string(), "--quiet"};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+long results_in(const fs::path& out) {
+  const fs::path store = out / "results.sqlite";
+  // A program that has only begun may not have made its tables.
+  return fs::exists(store) ? std::max(0L, number_of(store, "SELECT COUNT(*) FROM results")) : 0;
+}
+
+// Waits until some machines are done; false when the program ended before.
+bool wait_for_results(Started& program, const fs::path& out, long how_many) {
+  while (results_in(out) < how_many) {
+    if (program.ended()) {
+      return false;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+class SweepKilled : public testing::TestWithParam<unsigned> {};
+
+// However often it was killed, at whatever instant, the same command does what is missing and nothing else.
+TEST_P(SweepKilled, ComesToTheSameEnd) {
+  const TemporaryDirectory directory;
+  const fs::path config = directory.path() / "sweep.toml";
+  write(config, long_sweep);
+  const fs::path whole = directory.path() / "whole";
+  const Clock::time_point begin = Clock::now();
+  ASSERT_EQ(sweep(config, whole).status, 0);
+  const std::chrono::duration<double> takes = Clock::now() - begin;
+  const std::string expected = dump(whole / "results.sqlite");
+
+  std::mt19937_64 random(GetParam());
+  std::uniform_real_distribution<double> part(0.02, 0.6);
+  const fs::path out = directory.path() / "out";
+  int killed = 0;
+  bool ended = false;
+  for (int round = 0; round < 6 && !ended; ++round) {
+    Started program(arguments(config, out, {"--threads", std::to_string(1 + random() % 4)}),
+                    directory.path() / "said");
+    // The first time surely before it ends.
+    std::this_thread::sleep_for(takes * part(random) * (round == 0 ? 0.4 : 1.0));
+    program.send(SIGKILL);
+    const int status = program.wait();
+    ASSERT_TRUE(status == 0 || status == -SIGKILL) << read(directory.path() / "said");
+    killed += status == 0 ? 0 : 1;
+    ended = status == 0;
+  }
+  EXPECT_GT(killed, 0);
+  const long before = results_in(out);
+  const Outcome last = sweep(config, out);
+  ASSERT_EQ(last.status, 0) << last.output;
+  EXPECT_TRUE(says(last, std::to_string(before) + " done\n")) << before << "\n" << last.output;
+  EXPECT_EQ(dump(out / "results.sqlite"), expected);
+  EXPECT_EQ(read(out / "points.csv"), read(whole / "points.csv"));
+  EXPECT_EQ(files_in(out), 2U) << "nothing that the killed ones left";
+}
+INSTANTIATE_TEST_SUITE_P(Seeds, SweepKilled, testing::Range(1U, 5U));
+
+class SweepInterrupted : public testing::TestWithParam<std::tuple<int, const char*>> {};
+
+TEST_P(SweepInterrupted, SaysWhatIsSavedAndCanGoOn) {
+  const auto& [signal, memory] = GetParam();
+  const TemporaryDirectory directory;
+  const fs::path config = directory.path() / "sweep.toml";
+  write(config, long_sweep);
+  const fs::path out = directory.path() / "out";
+  {
+    Started program(
+        arguments(config, out,
+                  {"--threads", "2", "--set", std::string("host_machine.memory_limit=") + memory}),
+        directory.path() / "said");
+    ASSERT_TRUE(wait_for_results(program, out, 3)) << read(directory.path() / "said");
+    program.send(signal);
+    EXPECT_EQ(program.wait(), 128 + signal) << read(directory.path() / "said");
+  }
+  const long saved = results_in(out);
+  EXPECT_GE(saved, 3);
+  EXPECT_LT(saved, 320);
+  const std::string said = read(directory.path() / "said");
+  EXPECT_NE(said.find("marti: interrupted: " + std::to_string(saved) + " of 320 machines are saved in " +
+                      (out / "results.sqlite").string()),
+            std::string::npos)
+      << saved << "\n"
+      << said;
+  EXPECT_EQ(files_in(out), 1U) << "the store alone, without its log or temporary files";
+  const Outcome last = sweep(config, out);
+  ASSERT_EQ(last.status, 0) << last.output;
+  EXPECT_TRUE(says(last, std::to_string(saved) + " done\n")) << last.output;
+  const fs::path whole = directory.path() / "whole";
+  ASSERT_EQ(sweep(config, whole).status, 0);
+  EXPECT_EQ(dump(out / "results.sqlite"), dump(whole / "results.sqlite"));
+}
+INSTANTIATE_TEST_SUITE_P(Signals, SweepInterrupted,
+                         testing::Values(std::tuple(SIGINT, "1GiB"), std::tuple(SIGTERM, "1GiB"),
+                                         std::tuple(SIGINT, "1MiB")));
+
+TEST(SweepEnd, TwoAtOnceOnOneStoreAreRefused) {
+  const TemporaryDirectory directory;
+  const fs::path config = directory.path() / "sweep.toml";
+  // Long enough that the second begins before it ends.
+  std::string longer = long_sweep;
+  for (std::size_t at = 0; (at = longer.find("= 32", at)) != std::string::npos;) {
+    longer.replace(at, 4, "= 96");
+  }
+  write(config, longer);
+  const fs::path out = directory.path() / "out";
+  Started first(arguments(config, out, {"--threads", "1"}), directory.path() / "said");
+  ASSERT_TRUE(wait_for_results(first, out, 1)) << read(directory.path() / "said");
+  const Outcome second = sweep(config, out);
+  if (first.ended()) {
+    GTEST_SKIP() << "the first was too quick for this test";
+  }
+  EXPECT_EQ(second.status, 2);
+  EXPECT_TRUE(says(second, (out / "results.sqlite").string())) << second.output;
+  EXPECT_TRUE(says(second, "process")) << second.output;
+  EXPECT_EQ(first.wait(), 0) << read(directory.path() / "said");
+  EXPECT_EQ(results_in(out), 320);
+}
+
+TEST(SweepEnd, AFullDiskIsToldAndTheSweepGoesOnLater) {
+  const TemporaryDirectory directory;
+  const fs::path config = directory.path() / "sweep.toml";
+  write(config, long_sweep);
+  const fs::path out = directory.path() / "out";
+  // In units of 512 bytes or 1 KiB, as the shell has it: room for the plan and for some machines, or not
+  // even for the plan.
+  for (const char* most : {"100", "400"}) {
+    const Outcome full = shell(std::string("ulimit -f ") + most + "; trap '' XFSZ; " + quoted(MARTI_PROGRAM) +
+                               " sweep " + quoted(config) + " --quiet -o " + quoted(out));
+    EXPECT_EQ(full.status, 2) << full.output;
+    EXPECT_TRUE(says(full, "marti: " + (out / "results.sqlite").string())) << full.output;
+  }
+  const Outcome last = sweep(config, out);
+  ASSERT_EQ(last.status, 0) << last.output;
+  const fs::path whole = directory.path() / "whole";
+  ASSERT_EQ(sweep(config, whole).status, 0);
+  EXPECT_EQ(dump(out / "results.sqlite"), dump(whole / "results.sqlite"));
+}
+
+}  // namespace
+}  // namespace marti::test

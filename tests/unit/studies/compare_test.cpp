@@ -1,0 +1,221 @@
+// What `marti compare` finds: a run and the same machine in a sweep's store have equal figures, and made-up
+// differences are all found.
+#include "studies/compare/compare.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "sim/config.h"
+#include "sim/error.h"
+#include "studies/compare/differences.h"
+#include "studies/run_result.h"
+#include "studies/sweep/sweep_store.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/support/user_error.h"
+#include "tests/unit/studies/sweep_parts.h"
+
+namespace marti::studies {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::TemporaryDirectory;
+using test::user_error_of;
+
+RunResult run_of(const std::vector<std::string>& assignments) {
+  sim::Config config = sim::Config::from_text(
+      run_schema(), "scene.source = \"teapot:2\"\nimage.width = 16\nimage.height = 12\nmachine.nodes = 4\n",
+      "test", assignments);
+  return run(config);
+}
+
+void write(const fs::path& file, const std::string& text) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+// The run as the only point of a sweep.
+void write_sweep(const fs::path& file, const RunResult& run) {
+  fs::create_directories(file.parent_path());
+  SweepPlan plan;
+  plan.frames.push_back({test::made_key(1), run.frame_config, {}});
+  plan.machines.push_back({test::made_key(2), 0, run.machine, run.values});
+  plan.points.push_back({{}, 0, 0, 1.0});
+  SweepStore store(file, plan);
+  store.add_frame(0, frame_row(run.functional, 0), 1);
+  store.add_result(0, sweep_row(run.machine, run.timed), 1);
+  store.close();
+}
+
+class ComparedMachines : public testing::TestWithParam<std::vector<std::string>> {};
+
+TEST_P(ComparedMachines, AreEqualInARunAndInASweep) {
+  const TemporaryDirectory directory;
+  const RunResult run = run_of(GetParam());
+  write(directory.path() / "run" / "result.json", json_of(run));
+  write_sweep(directory.path() / "sweep" / "results.sqlite", run);
+  const std::string a = (directory.path() / "run").string();
+  const std::string b = (directory.path() / "sweep").string() + ":0";
+  const json found = json::parse(compare_results(a, b, {true, true}));
+  EXPECT_TRUE(found["numbers"].empty()) << found["numbers"].dump(1);
+  EXPECT_TRUE(found["texts"].empty()) << found["texts"].dump(1);
+  EXPECT_TRUE(found["settings"].empty()) << found["settings"].dump(1);
+  // All counters are compared, but for the few that a result.json has not got.
+  std::size_t there = 0;
+  for (const auto& counter : sweep_row(run.machine, run.timed).counters) {
+    there += counter ? 1 : 0;
+  }
+  for (const auto& counter : frame_row(run.functional, 0).counters) {
+    there += counter ? 1 : 0;
+  }
+  constexpr std::size_t not_in_runs = 52;
+  EXPECT_GE(found["equal_figures"].get<std::size_t>() + not_in_runs, there);
+  EXPECT_GT(found["equal_figures"].get<std::size_t>(), 90U);
+  EXPECT_EQ(json::parse(compare_results(b, a, {true, true}))["equal"].size(), found["equal"].size());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Machines, ComparedMachines,
+    testing::Values(std::vector<std::string>{},
+                    std::vector<std::string>{"machine.clusters=2", "build.sharing=shared"},
+                    std::vector<std::string>{"count.miss_classes=true", "count.sharing=true",
+                                             "count.attribution=true", "l2.sharing=shared"},
+                    std::vector<std::string>{"database.placement=distributed"},
+                    std::vector<std::string>{"node.contexts=2"},
+                    std::vector<std::string>{"machine.scheme=space"}));
+
+TEST(Compare, FindsEveryDifferenceTheLargestFirst) {
+  ComparedResult a;
+  ComparedResult b;
+  a.settings = {{"cache.size", "1"}, {"machine.nodes", "4"}, {"only.a", "x"}};
+  b.settings = {{"cache.size", "2"}, {"machine.nodes", "4"}};
+  a.figures = {{"small", std::int64_t{1000}},
+               {"large", std::int64_t{10}},
+               {"zero", std::int64_t{0}},
+               {"same", 1.5},
+               {"hash", "one"},
+               {"gone", std::int64_t{1}},
+               {"kind", std::int64_t{2}}};
+  b.figures = {{"small", std::int64_t{1001}},
+               {"large", std::int64_t{1}},
+               {"zero", std::int64_t{7}},
+               {"same", 1.5},
+               {"hash", "two"},
+               {"kind", 2.0}};
+  const Differences found = differences_of(a, b);
+  ASSERT_EQ(found.settings.size(), 2U);
+  EXPECT_EQ(found.equal_settings, 1U);
+  ASSERT_EQ(found.numbers.size(), 3U);
+  EXPECT_EQ(found.numbers[0].name, "zero");
+  EXPECT_EQ(found.numbers[1].name, "large");
+  EXPECT_EQ(found.numbers[2].name, "small");
+  EXPECT_EQ(change_of(found.numbers[0]), "from 0");
+  EXPECT_EQ(change_of(found.numbers[1]), "-90.00 %");
+  EXPECT_EQ(change_of(found.numbers[2]), "+0.10 %");
+  ASSERT_EQ(found.texts.size(), 1U);
+  ASSERT_EQ(found.one_side.size(), 1U);
+  EXPECT_EQ(found.equal.size(), 2U) << "2 and 2.0 are the same";
+}
+
+TEST(Compare, SweepsAreMatchedBySettings) {
+  const TemporaryDirectory directory;
+  const fs::path a = directory.path() / "a" / "results.sqlite";
+  const fs::path b = directory.path() / "b" / "results.sqlite";
+  fs::create_directories(a.parent_path());
+  fs::create_directories(b.parent_path());
+  const auto fill = [](const fs::path& file, std::size_t first, bool changed) {
+    SweepStore store(file, test::made_plan(8, first));
+    for (std::size_t i = 0; i < 7; ++i) {
+      SweepRow row = test::made_row(first + i);
+      if (changed && first + i == 6) {
+        row.counters[0] = 2 * *row.counters[0];
+      }
+      store.add_result(i, row, 1);
+    }
+    store.close();
+  };
+  fill(a, 0, false);
+  fill(b, 4, true);
+  const auto compared = [&](const fs::path& x, const fs::path& y) {
+    return json::parse(compare_results(x.parent_path().string(), y.parent_path().string(), {true, false}));
+  };
+  const json same = compared(a, a);
+  EXPECT_EQ(same["timed_in_both"], 7);
+  EXPECT_EQ(same["equal_machines"], 7);
+  EXPECT_TRUE(same["counters"].empty());
+  const json found = compared(a, b);
+  EXPECT_EQ(found["machines_in_both"], 4);
+  EXPECT_EQ(found["timed_in_both"], 3) << "machine 7 is not done in a";
+  EXPECT_EQ(found["equal_machines"], 2);
+  EXPECT_EQ(found["points_only_in_a"], json({0, 1, 2, 3}));
+  EXPECT_EQ(found["points_only_in_b"], json({4, 5, 6, 7}));
+  ASSERT_EQ(found["counters"].size(), 1U);
+  EXPECT_EQ(found["counters"][0]["name"], "end_ps");
+  EXPECT_EQ(found["counters"][0]["relative"], 0.5);
+  EXPECT_EQ(found["counters"][0]["point_a"], 6);
+  EXPECT_EQ(found["counters"][0]["point_b"], 2);
+  const std::string text = compare_results(a.string(), b.string());
+  EXPECT_NE(text.find("+100.00 %"), std::string::npos) << text;
+}
+
+TEST(Compare, RefusesWhatIsNoResult) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "result.json";
+  const std::string good = json_of(run_of({}));
+  const auto refused = [&](const std::string& text, const char* reason) {
+    write(file, text);
+    const std::string message = user_error_of([&] { (void)compare_results(file.string(), file.string()); });
+    EXPECT_NE(message.find(reason), std::string::npos) << message;
+    EXPECT_TRUE(message.starts_with(file.string())) << message;
+  };
+  refused("", "is not JSON");
+  refused(good.substr(0, good.size() / 2), "is not JSON");
+  refused("[1, 2]", "is no JSON object");
+  refused("{}", "marti");
+  refused("{\"marti\": {\"schema\": 2, \"version\": \"9\"}}", "schema 2");
+  refused("{\"marti\": {\"schema\": \"1\"}}", "marti.schema");
+  refused("{\"marti\": {\"schema\": 1}}", "config");
+  refused("{\"marti\": {\"schema\": 1}, \"config\": {\"keys\": {\"a.b\": 3}}}", "config.keys.a.b");
+  refused("{\"marti\": {\"schema\": 1}, \"config\": {\"keys\": {}}}", "machine");
+  const std::string begin = "{\"marti\": {\"schema\": 1}, \"config\": {\"keys\": {}}, \"machine\": {";
+  std::string deep;
+  for (int i = 0; i < 100; ++i) {
+    deep += "{\"a\": ";
+  }
+  refused(begin + "\"a\": " + deep + "1" + std::string(100, '}') + "}}", "nested too deeply");
+  refused(begin + "\"l\": [{\"x\": 9223372036854775807}, {\"x\": 1}]}}", "does not fit");
+  write(file,
+        begin + "\"l\": [{\"x\": 18446744073709551615}, [], null, true], \"\\u0007\": \"\\u001b[1m\"}}");
+  EXPECT_NO_THROW((void)compare_results(file.string(), file.string(), {false, true}));
+  EXPECT_EQ(compare_results(file.string(), file.string(), {false, true}).find('\x1b'), std::string::npos);
+}
+
+TEST(Compare, SaysWhatItExpects) {
+  const TemporaryDirectory directory;
+  const std::string place = directory.path().string();
+  const auto message = [&](const std::string& a, const std::string& b) {
+    return user_error_of([&] { (void)compare_results(a, b); });
+  };
+  EXPECT_NE(message(place + "/none", place).find("no such file"), std::string::npos);
+  EXPECT_NE(message(place, place).find("neither result.json nor results.sqlite"), std::string::npos);
+  const RunResult run = run_of({});
+  write_sweep(directory.path() / "sweep" / "results.sqlite", run);
+  write(directory.path() / "run" / "result.json", json_of(run));
+  EXPECT_NE(message(place + "/sweep", place + "/run").find("is a whole sweep"), std::string::npos);
+  EXPECT_NE(message(place + "/sweep:1", place + "/run").find("no such point; the sweep has 1"),
+            std::string::npos);
+  EXPECT_NE(message(place + "/sweep:-1", place + "/run").find("no such point"), std::string::npos);
+  EXPECT_NE(message(place + "/run:0", place + "/run").find("no such file"), std::string::npos);
+  write(directory.path() / "run" / "results.sqlite", "");
+  EXPECT_NE(message(place + "/run", place + "/run").find("name the file"), std::string::npos);
+  EXPECT_EQ(message(place + "/run/result.json", place + "/sweep:0"), "no UserError");
+}
+
+}  // namespace
+}  // namespace marti::studies

@@ -1,0 +1,129 @@
+// Prices, the best machine, the Pareto front, metrics.
+#include "studies/sweep/sweep_best.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <map>
+
+#include "studies/sweep/sweep_cost.h"
+#include "studies/sweep/sweep_metrics.h"
+#include "tests/support/user_error.h"
+
+namespace marti::studies {
+namespace {
+
+// Few different figures, so that many are equal.
+std::vector<Offer> random_offers() {
+  const auto figures = *rc::gen::container<std::vector<std::pair<int, int>>>(
+      rc::gen::pair(rc::gen::inRange(0, 8), rc::gen::inRange(-8, 8)));
+  std::vector<Offer> offers;
+  for (const auto& [cost, metric] : figures) {
+    offers.push_back({static_cast<double>(cost), static_cast<double>(metric) / 4.0});
+  }
+  return offers;
+}
+
+bool no_worse(double a, double b, Better better) { return better == Better::lower ? a <= b : a >= b; }
+
+RC_GTEST_PROP(Best, BeatsAllOthersWithinTheBudget, ()) {
+  const std::vector<Offer> offers = random_offers();
+  const Better better = *rc::gen::element(Better::lower, Better::higher);
+  std::optional<double> budget;
+  if (*rc::gen::arbitrary<bool>()) {
+    budget = *rc::gen::inRange(-1, 9);
+  }
+  const std::optional<std::size_t> best = best_within(offers, budget, better);
+  std::size_t affordable = 0;
+  for (std::size_t i = 0; i < offers.size(); ++i) {
+    if (budget && offers[i].cost > *budget) {
+      continue;
+    }
+    ++affordable;
+    RC_ASSERT(best.has_value());
+    const Offer& chosen = offers[*best];
+    RC_ASSERT(no_worse(chosen.metric, offers[i].metric, better));
+    if (chosen.metric == offers[i].metric) {
+      RC_ASSERT(chosen.cost <= offers[i].cost);
+      RC_ASSERT((chosen.cost < offers[i].cost || *best <= i));
+    }
+  }
+  RC_ASSERT(best.has_value() == (affordable > 0));
+  RC_ASSERT((!best || !budget || offers[*best].cost <= *budget));
+}
+
+RC_GTEST_PROP(Pareto, IsWhatNoOtherOfferBeats, ()) {
+  const std::vector<Offer> offers = random_offers();
+  const Better better = *rc::gen::element(Better::lower, Better::higher);
+  const std::vector<std::size_t> front = pareto_front(offers, better);
+  std::vector<bool> on_front(offers.size());
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    on_front[front[i]] = true;
+    if (i > 0) {
+      RC_ASSERT(offers[front[i - 1]].cost < offers[front[i]].cost);
+    }
+  }
+  for (std::size_t i = 0; i < offers.size(); ++i) {
+    bool beaten = false;
+    for (std::size_t j = 0; j < offers.size(); ++j) {
+      const bool no_dearer =
+          offers[j].cost <= offers[i].cost && no_worse(offers[j].metric, offers[i].metric, better);
+      const bool equal = offers[j].cost == offers[i].cost && offers[j].metric == offers[i].metric;
+      beaten = beaten || (no_dearer && (!equal || j < i));
+    }
+    RC_ASSERT(on_front[i] == !beaten);
+  }
+}
+
+// The best for a budget is on the front, and each of the front is the best for its own price.
+RC_GTEST_PROP(Pareto, HoldsTheBestForEveryBudget, ()) {
+  const std::vector<Offer> offers = random_offers();
+  const Better better = *rc::gen::element(Better::lower, Better::higher);
+  for (const std::size_t i : pareto_front(offers, better)) {
+    RC_ASSERT(best_within(offers, offers[i].cost, better) == i);
+  }
+}
+
+TEST(Cost, IsThatOfEachPart) {
+  const Prices prices{1000.0, 100.0, 10.0, 3.0, 0.5, 7.0, 20.0, 11.0};
+  processors::MachineConfig machine;
+  machine.clusters = 2;
+  machine.nodes = 3;
+  machine.contexts = 4;
+  machine.cache.cache.size = 2048;
+  machine.interconnect.width = 8;
+  machine.banks.count = 5;
+  const double node = 100.0 + 3 * 10.0 + 2 * 3.0;
+  EXPECT_DOUBLE_EQ(cost_of(prices, machine), 2 * (1000.0 + 3 * node + 8 * 7.0 + 5 * 11.0));
+  machine.interconnect.kind = memory::InterconnectKind::crossbar;
+  EXPECT_DOUBLE_EQ(cost_of(prices, machine), 2 * (1000.0 + 3 * node + 5 * 8 * 7.0 + 5 * 11.0));
+  machine.interconnect.kind = memory::InterconnectKind::ideal;
+  EXPECT_DOUBLE_EQ(cost_of(prices, machine), 2 * (1000.0 + 3 * node));
+  machine.l2.sharing = processors::SecondLevel::shared;
+  machine.l2.cache.size = 8192;
+  EXPECT_DOUBLE_EQ(cost_of(prices, machine), 2 * (1000.0 + 3 * node + 8 * 0.5));
+  machine.l2.sharing = processors::SecondLevel::private_caches;
+  EXPECT_DOUBLE_EQ(cost_of(prices, machine), 2 * (1000.0 + 3 * (node + 8 * 0.5)));
+  machine.l2.sharing = processors::SecondLevel::none;
+  machine.cache.organisation = processors::CacheOrganisation::split;
+  machine.cache.split_sizes = {1024, 1024, 1024, 1024};
+  EXPECT_DOUBLE_EQ(cost_of(prices, machine), 2 * (1000.0 + 3 * (node + 2 * 3.0)));
+  machine.cache.organisation = processors::CacheOrganisation::none;
+  machine.placement = processors::Placement::distributed;
+  machine.network.width = 4;
+  EXPECT_DOUBLE_EQ(cost_of(prices, machine), 2 * (1000.0 + 3 * (130.0 + 4 * 20.0)));
+}
+
+TEST(Metrics, AreFoundByName) {
+  const std::vector<Column> columns = {{"end", ColumnType::integer, "ps", "frame time"},
+                                       {"node_hits", ColumnType::integer, "1", "hits"}};
+  EXPECT_EQ(find_metric("speed_up", columns).better, Better::higher);
+  EXPECT_EQ(find_metric("interconnect_utilisation", columns).better, Better::lower);
+  EXPECT_EQ(find_metric("end", columns).better, Better::lower);
+  EXPECT_EQ(find_metric("node_hits", columns).better, Better::higher);
+  EXPECT_NE(test::user_error_of([&] { (void)find_metric("speedup", columns); }).find("\"speed_up\""),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace marti::studies

@@ -1,0 +1,103 @@
+// Plans and rows made up for tests of the store.
+#pragma once
+
+#include <random>
+#include <string>
+
+#include "sim/statistics.h"
+#include "studies/sweep/sweep_plan.h"
+#include "studies/sweep/sweep_row.h"
+#include "tests/support/store_dump.h"
+
+namespace marti::test {
+
+/// A key as a plan has them: 32 hexadecimal digits.
+inline std::string made_key(std::uint64_t number) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string key(32, '0');
+  for (std::size_t i = 0; i < 16; ++i) {
+    key[31 - i] = digits[number >> (4 * i) & 15U];
+  }
+  return key;
+}
+
+/// Machines on two frames, with as many settings as real ones have; the point of every machine but the first
+/// is measured against the first.
+inline studies::SweepPlan made_plan(std::size_t machines, std::size_t first = 0) {
+  studies::SweepPlan plan;
+  plan.axes = {"point", "machine.nodes", "cache.size", "bus.\"odd\"", "l2.on"};
+  for (std::size_t frame = 0; frame < 2; ++frame) {
+    studies::SweepFrame& made = plan.frames.emplace_back();
+    made.key = made_key(1000000 + frame);
+    made.settings = {{"scene.source", "\"teapot:" + std::to_string(frame) + "\"", true, ""},
+                     {"image.width", "512", false, ""}};
+  }
+  for (std::size_t i = first; i < first + machines; ++i) {
+    studies::SweepMachine& made = plan.machines.emplace_back();
+    made.key = made_key(i);
+    made.frame = i % 2;
+    for (const char* section : {"machine", "cache", "interconnect", "banks", "host", "packets", "costs",
+                                "layout", "local", "database", "build", "l2"}) {
+      for (int key = 0; key < 6; ++key) {
+        made.settings.push_back(
+            {std::string(section) + ".key" + std::to_string(key), "\"16 KiB\"", false, ""});
+      }
+    }
+    made.settings[0].value = std::to_string(i % 64);
+    made.settings[6].value = std::to_string(i / 64) + " KiB";
+    plan.points.push_back({{std::string("named"), static_cast<std::int64_t>(i % 64),
+                            0.5 * static_cast<double>(i), std::string("it's \"quoted\"; --"), i % 2 == 0},
+                           i - first,
+                           0,
+                           1.5 * static_cast<double>(i)});
+  }
+  plan.compare = 0;
+  plan.filtered_out = 3;
+  return plan;
+}
+
+using Random = std::mt19937_64;
+
+/// Any row that a machine could have.
+inline studies::SweepRow random_sweep_row(Random& random) {
+  studies::SweepRow row;
+  for (std::size_t i = 0; i < studies::sweep_columns().size(); ++i) {
+    row.counters.emplace_back();
+    if (random() % 3 != 0) {
+      row.counters.back() = static_cast<std::int64_t>(random() >> (1 + random() % 63));
+    }
+  }
+  row.counters[0] = 1 + static_cast<std::int64_t>(random() % 1000000);
+  for (const std::string_view name : studies::sweep_histogram_names()) {
+    sim::LogHistogram waits;
+    for (std::uint64_t left = random() % 30; left > 0; --left) {
+      waits.add(static_cast<std::int64_t>(random() >> (1 + random() % 63)));
+    }
+    if (waits.count() == 0) {
+      continue;
+    }
+    row.histograms.push_back({std::string(name), {}});
+    for (const auto& bucket : waits.buckets()) {
+      row.histograms.back().buckets.push_back({bucket.lowest, bucket.highest, bucket.count});
+    }
+  }
+  return row;
+}
+
+/// The row of a machine in every run of these tests.
+inline studies::SweepRow made_row(std::size_t machine) {
+  Random random(machine);
+  return random_sweep_row(random);
+}
+
+inline studies::FrameRow made_frame_row(std::size_t frame) {
+  studies::FrameRow row;
+  row.counters.resize(studies::frame_columns().size());
+  row.counters[frame] = static_cast<std::int64_t>(7 * frame);
+  row.scene = "teapot's \"lid\"";
+  row.scene_hash = row.image_hash = row.hit_hash = "0123456789abcdef";
+  row.notes = {"first", "", "third"};
+  return row;
+}
+
+}  // namespace marti::test

@@ -1,0 +1,233 @@
+// A row holds what its machine counted, and survives being sent.
+#include "studies/sweep/sweep_row.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "processors/replay.h"
+#include "sim/error.h"
+#include "tests/support/random_flow.h"
+#include "tests/support/random_machine.h"
+#include "tests/unit/studies/sweep_parts.h"
+
+namespace marti::studies {
+namespace {
+
+using processors::MachineConfig;
+using processors::MachineResult;
+
+std::map<std::string, std::optional<std::int64_t>> named(const SweepRow& row) {
+  std::map<std::string, std::optional<std::int64_t>> values;
+  for (std::size_t i = 0; i < row.counters.size(); ++i) {
+    values[sweep_columns()[i].name] = row.counters[i];
+  }
+  return values;
+}
+
+std::int64_t waits_in(const SweepRow& row, std::string_view what) {
+  std::int64_t count = 0;
+  for (const SweepHistogram& histogram : row.histograms) {
+    for (const SweepHistogram::Bucket& bucket : histogram.buckets) {
+      count += histogram.what == what ? bucket.count : 0;
+    }
+  }
+  return count;
+}
+
+// A random machine of any scheme, with everything that can be asked of it.
+MachineConfig any_machine(test::Random& random) {
+  MachineConfig machine = test::random_machine(random);
+  test::add_random_second_level(random, machine);
+  const std::int64_t scheme = test::pick(random, 0, 5);
+  if (scheme == 0) {
+    machine.l2 = {};
+    test::make_random_pipeline(random, machine);
+  } else if (scheme == 1) {
+    machine.l2 = {};
+    test::make_random_space(random, machine);
+  } else if (scheme == 2 && machine.placement == processors::Placement::shared &&
+             machine.interconnect.arbitration == memory::Arbitration::fifo) {
+    machine.build = test::random_build(random);
+  }
+  return machine;
+}
+
+RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheirMachine, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const processors::WorkLog log = test::random_tree_log(random, 7, 5);
+  const MachineConfig machine = any_machine(random);
+  const MachineResult result = processors::replay(log, machine);
+  const SweepRow row = sweep_row(machine, result);
+  RC_ASSERT(row.counters.size() == sweep_columns().size());
+  auto values = named(row);
+  const auto value = [&](const std::string& name) { return values.at(name).value_or(-1); };
+
+  RC_ASSERT(value("end") == result.end);
+  RC_ASSERT(value("nodes") == static_cast<std::int64_t>(result.nodes.size()));
+  std::int64_t time = 0;
+  for (const std::string_view activity : processors::activity_names) {
+    time += value("time_" + std::string(activity));
+  }
+  RC_ASSERT(time == result.end * value("nodes"));
+  std::int64_t hits = 0;
+  std::int64_t misses = 0;
+  std::int64_t finish = 0;
+  for (const processors::NodeStatistics& node : result.nodes) {
+    hits += node.references.all_hits();
+    misses += node.references.all_misses();
+    finish += node.finish;
+  }
+  RC_ASSERT(value("hits") == hits);
+  RC_ASSERT(value("misses") == misses);
+  RC_ASSERT(value("node_finish") == finish);
+  RC_ASSERT(value("earliest_finish") * value("nodes") <= finish);
+  RC_ASSERT(value("latest_finish") * value("nodes") >= finish);
+  for (const std::string_view kind : memory::record_kind_names) {
+    hits -= value(std::string(kind) + "_hits");
+    misses -= value(std::string(kind) + "_misses");
+  }
+  RC_ASSERT(hits == 0);
+  RC_ASSERT(misses == 0);
+  std::int64_t tests = 0;
+  for (const processors::NodeStatistics& node : result.nodes) {
+    tests += node.steps.tests;
+  }
+  RC_ASSERT(value("steps_tests") == tests);
+}
+
+RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheMemory, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const processors::WorkLog log = test::random_tree_log(random, 7, 5);
+  const MachineConfig machine = any_machine(random);
+  const MachineResult result = processors::replay(log, machine);
+  const SweepRow row = sweep_row(machine, result);
+  auto values = named(row);
+  std::int64_t reads = 0;
+  std::int64_t waits = 0;
+  std::int64_t longest = 0;
+  std::int64_t count = 0;
+  std::int64_t banks = 0;
+  std::int64_t bank_waits = 0;
+  std::int64_t busiest = 0;
+  std::int64_t networks = 0;
+  std::int64_t bytes = 0;
+  for (const processors::ClusterResult& cluster : result.clusters) {
+    reads += cluster.interconnect.reads;
+    waits += cluster.interconnect.waits.sum;
+    count += cluster.interconnect.waits.count;
+    longest = std::max(longest, cluster.interconnect.waits.max);
+    for (const memory::BankStatistics& bank : cluster.banks) {
+      ++banks;
+      bank_waits += bank.waits.count;
+      busiest = std::max(busiest, bank.busy);
+    }
+    if (cluster.distributed) {
+      ++networks;
+      bytes += cluster.distributed->network.bytes;
+    }
+  }
+  for (const memory::NetworkStatistics& network : result.flow.networks) {
+    ++networks;
+    bytes += network.bytes;
+  }
+  RC_ASSERT(values.at("interconnect_reads") == reads);
+  RC_ASSERT(values.at("interconnect_wait_sum") == waits);
+  RC_ASSERT(values.at("interconnect_wait_max") == longest);
+  RC_ASSERT(values.at("interconnect_wait_count") == count);
+  RC_ASSERT(waits_in(row, "interconnect_wait") == count);
+  RC_ASSERT(values.at("banks") == (banks == 0 ? std::nullopt : std::optional(banks)));
+  RC_ASSERT(values.at("most_bank_busy") == (banks == 0 ? std::nullopt : std::optional(busiest)));
+  RC_ASSERT(waits_in(row, "bank_wait") == bank_waits);
+  RC_ASSERT(values.at("network_bytes") == (networks == 0 ? std::nullopt : std::optional(bytes)));
+  RC_ASSERT(waits_in(row, "network_wait") == values.at("network_wait_count").value_or(0));
+  RC_ASSERT(waits_in(row, "l2_wait") == values.at("l2_wait_count").value_or(0));
+  // A part that the machine has not got has no values, and one that it has all of them.
+  const auto there = [&](std::string_view prefix, bool expected) {
+    for (const auto& [name, value] : values) {
+      if (name.starts_with(prefix) && !name.starts_with("l2_wait_")) {
+        RC_ASSERT(value.has_value() == expected);
+      }
+    }
+  };
+  there("build_", result.build.sharing != processors::Sharing::given);
+  there("tree_", result.build.sharing != processors::Sharing::given);
+  there("l2_", !result.l2.caches.empty());
+  there("contexts_", !result.contexts.nodes.empty());
+  there("sharing_", false);
+  there("camera_ray_", false);
+  RC_ASSERT(values.at("flow_taken").has_value() == !result.flow.nodes.empty());
+}
+
+TEST(SweepRows, WhatIsCountedOnlyWhenAskedIsThere) {
+  test::Random random(11);
+  const processors::WorkLog log = test::random_tree_log(random, 9, 9);
+  MachineConfig machine;
+  machine.nodes = 3;
+  machine.count = {true, true, true};
+  const MachineResult result = processors::replay(log, machine);
+  auto values = named(sweep_row(machine, result));
+  std::int64_t classed = 0;
+  for (const std::string_view name : memory::miss_class_names) {
+    classed += values.at("all_misses_" + std::string(name)).value_or(0);
+  }
+  EXPECT_EQ(classed, values.at("misses"));
+  EXPECT_EQ(values.at("sharing_fetches"), values.at("misses"));
+  std::int64_t attributed = 0;
+  for (const std::string_view ray : processors::ray_kind_names) {
+    attributed += values.at(std::string(ray) + "_ray_misses").value_or(0);
+  }
+  EXPECT_EQ(attributed, values.at("misses"));
+}
+
+TEST(SweepRows, ColumnsAreDescribedOnce) {
+  for (const auto columns : {sweep_columns(), frame_columns()}) {
+    std::set<std::string> names;
+    for (const Column& column : columns) {
+      EXPECT_TRUE(names.insert(column.name).second) << column.name;
+      EXPECT_FALSE(column.description.empty()) << column.name;
+      EXPECT_FALSE(column.unit.empty()) << column.name;
+    }
+  }
+  EXPECT_EQ(sweep_columns()[0].name, "end");
+}
+
+RC_GTEST_PROP(SweepRows, ComeBackFromTheirBytes, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const SweepRow row = test::random_sweep_row(random);
+  RC_ASSERT(decode_sweep_row(encode(row)) == row);
+  FrameRow frame = test::made_frame_row(seed % 3);
+  frame.scene = std::string(seed % 40, '\0');
+  RC_ASSERT(decode_frame_row(encode(frame)) == frame);
+}
+
+// Garbled bytes are refused or are the bytes of another row; nothing else happens.
+template <class Decode>
+void garble(const std::string& bytes, std::uint64_t seed, const Decode& decode) {
+  test::Random random(seed);
+  const std::size_t cut = random() % bytes.size();
+  RC_ASSERT_THROWS_AS(decode(bytes.substr(0, cut)), sim::InternalError);
+  RC_ASSERT_THROWS_AS(decode(bytes + '\0'), sim::InternalError);
+  std::string other = bytes;
+  other[random() % other.size()] ^= static_cast<char>(1 + random() % 255);
+  try {
+    const auto row = decode(other);
+    RC_ASSERT(encode(row) == other);
+  } catch (const sim::InternalError&) {
+    return;
+  }
+}
+
+RC_GTEST_PROP(SweepRows, BytesThatAreNoRowAreRefused, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const auto sweep = [](std::string_view bytes) { return decode_sweep_row(bytes); };
+  const auto frame = [](std::string_view bytes) { return decode_frame_row(bytes); };
+  garble(encode(test::made_frame_row(seed % 3)), random(), frame);
+  garble(encode(test::random_sweep_row(random)), random(), sweep);
+  RC_ASSERT_THROWS_AS(decode_sweep_row(encode(test::made_frame_row(0))), sim::InternalError);
+}
+
+}  // namespace
+}  // namespace marti::studies

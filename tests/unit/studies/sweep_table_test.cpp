@@ -1,0 +1,230 @@
+// Reading [sweep]: axes, ranges, zipped keys, named points, and what is refused.
+#include "studies/sweep/sweep_table.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/user_error.h"
+#include "tests/unit/studies/sweep_tables.h"
+
+namespace marti::studies {
+namespace {
+
+using test::sweep_config;
+using test::user_error_of;
+
+SweepTable table_of(std::string_view text) { return read_sweep_table(sweep_config(text)); }
+
+std::string error_of(std::string_view text) {
+  return user_error_of([&] { (void)table_of(text); });
+}
+
+// The whole numbers of the first axis's first key.
+std::vector<std::int64_t> numbers(const SweepTable& table) {
+  std::vector<std::int64_t> found;
+  for (const std::vector<sim::Setting>& step : table.axes.front().steps) {
+    found.push_back(std::get<std::int64_t>(step.front().values.front()));
+  }
+  return found;
+}
+
+using Numbers = std::vector<std::int64_t>;
+
+TEST(SweepTable, RangesOfPowersOfTwoAreExact) {
+  const SweepTable table =
+      table_of("sweep.axes.cache.size = { from = \"4 KiB\", to = \"1 MiB\", steps = 9, scale = \"log\" }");
+  EXPECT_EQ(numbers(table), (Numbers{4096, 8192, 16384, 32768, 65536, 131072, 262144, 524288, 1048576}));
+  EXPECT_TRUE(table.notes.empty());
+  EXPECT_EQ(numbers(table_of(
+                "[sweep.axes]\n\"machine.nodes\" = { from = 64, to = 1, steps = 4, scale = \"log\" }")),
+            (Numbers{64, 16, 4, 1}));
+  EXPECT_EQ(
+      numbers(table_of("sweep.axes.node.write_buffer = { from = 1, to = 1000, steps = 4, scale = \"log\" }")),
+      (Numbers{1, 10, 100, 1000}));
+}
+
+TEST(SweepTable, RoundedRangesSaySo) {
+  const SweepTable rounded = table_of("sweep.axes.machine.nodes = { from = 1, to = 10, steps = 5 }");
+  EXPECT_EQ(numbers(rounded), (Numbers{1, 3, 6, 8, 10}));
+  ASSERT_EQ(rounded.notes.size(), 1U);
+  EXPECT_EQ(rounded.notes[0], "s.toml:1: machine.nodes: the steps of the range are rounded to whole numbers");
+  const SweepTable fewer = table_of("sweep.axes.machine.nodes = { from = 1, to = 3, steps = 10 }");
+  EXPECT_EQ(numbers(fewer), (Numbers{1, 2, 3}));
+  ASSERT_EQ(fewer.notes.size(), 2U);
+  EXPECT_EQ(fewer.notes[1], "s.toml:1: machine.nodes: of 10 steps 3 differ; the others are left out");
+  EXPECT_EQ(numbers(table_of("sweep.axes.machine.nodes = { from = 7, to = 7, steps = 1 }")), (Numbers{7}));
+}
+
+// Against the definition, in wide arithmetic.
+RC_GTEST_PROP(SweepTable, LinearStepsAreTheNearestWholeNumbers, ()) {
+  const auto from = *rc::gen::inRange<std::int64_t>(1, 100'000);
+  const auto to = *rc::gen::inRange<std::int64_t>(1, 100'000);
+  const auto steps = *rc::gen::inRange<std::int64_t>(2, 40);
+  const SweepTable table =
+      table_of("sweep.axes.machine.nodes = { from = " + std::to_string(from) +
+               ", to = " + std::to_string(to) + ", steps = " + std::to_string(steps) + " }");
+  Numbers expected;
+  for (std::int64_t i = 0; i < steps; ++i) {
+    const long double exact = static_cast<long double>(from) + static_cast<long double>(to - from) *
+                                                                   static_cast<long double>(i) /
+                                                                   static_cast<long double>(steps - 1);
+    // Halves go away from `from`.
+    const auto value =
+        static_cast<std::int64_t>(to >= from ? std::floor(exact + 0.5L) : std::ceil(exact - 0.5L));
+    if (expected.empty() || expected.back() != value) {
+      expected.push_back(value);
+    }
+  }
+  RC_ASSERT(numbers(table) == expected);
+}
+
+RC_GTEST_PROP(SweepTable, LogarithmicStepsHaveEqualRatios, ()) {
+  const auto from = *rc::gen::inRange<std::int64_t>(1000, 1'000'000);
+  const auto to = *rc::gen::inRange<std::int64_t>(1000, 1'000'000);
+  const auto steps = *rc::gen::inRange<std::int64_t>(2, 9);
+  RC_PRE(std::abs(std::log2(static_cast<double>(to) / static_cast<double>(from))) > 0.1);
+  const Numbers found = numbers(table_of("sweep.axes.cache.size = { from = " + std::to_string(from) +
+                                         ", to = " + std::to_string(to) +
+                                         ", steps = " + std::to_string(steps) + ", scale = \"log\" }"));
+  RC_ASSERT(found.size() == static_cast<std::size_t>(steps));
+  RC_ASSERT(found.front() == from);
+  RC_ASSERT(found.back() == to);
+  const double ratio =
+      std::log(static_cast<double>(to) / static_cast<double>(from)) / static_cast<double>(steps - 1);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double exact = static_cast<double>(from) * std::exp(ratio * static_cast<double>(i));
+    RC_ASSERT(std::abs(static_cast<double>(found[i]) - exact) <= 0.5 + 1e-9 * exact);
+  }
+}
+
+TEST(SweepTable, RealRangesKeepTheirEnds) {
+  const SweepTable table = table_of(
+      "sweep.axes.node.clock = { from = \"33.3 MHz\", to = \"100.1 MHz\", steps = 3, scale = \"log\" }");
+  ASSERT_EQ(table.axes[0].steps.size(), 3U);
+  const auto real = [&](std::size_t i) { return std::get<double>(table.axes[0].steps[i][0].values[0]); };
+  EXPECT_EQ(real(0), 33.3e6);
+  EXPECT_NEAR(real(1), std::sqrt(33.3e6 * 100.1e6), 1.0);
+  EXPECT_EQ(real(2), 100.1e6);
+}
+
+TEST(SweepTable, AxesComeInTheOrderOfTheFileAfterTheNamedPoints) {
+  const SweepTable table = table_of(
+      "[sweep.axes]\n"
+      "machine.nodes = [1, 2]\n"
+      "cache.ways = [4]\n"
+      "[[sweep.zip]]\n"
+      "cache.line = [\"16 B\", \"32 B\"]\n"
+      "memory.banks = [1, 2]\n"
+      "[sweep.points.\"a b\"]\n"
+      "cache.size = \"1 KiB\"\n"
+      "[sweep.points.other]\n"
+      "interconnect.width = 4\n"
+      "cache.size = 64\n"
+      "[sweep.base]\n"
+      "machine.nodes = 1\n"
+      "[sweep.compare]\n");
+  const sim::Config config = sweep_config("");
+  const auto& names = config.schema().names();
+  ASSERT_EQ(table.axes.size(), 4U);
+  EXPECT_EQ(table.points(), 8U);
+  EXPECT_EQ(table.axes[0].kind, SweepAxis::Kind::named);
+  EXPECT_EQ(table.axes[0].names, (std::vector<std::string>{"a b", "other"}));
+  ASSERT_EQ(table.axes[0].keys.size(), 2U);
+  EXPECT_EQ(names[table.axes[0].keys[0]], "cache.size");
+  EXPECT_EQ(table.axes[0].steps[0].size(), 1U);
+  EXPECT_EQ(table.axes[0].steps[1].size(), 2U);
+  EXPECT_EQ(table.axes[0].steps[1][0].line, 10);
+  EXPECT_EQ(names[table.axes[1].keys[0]], "machine.nodes");
+  EXPECT_EQ(names[table.axes[2].keys[0]], "cache.ways");
+  EXPECT_EQ(table.axes[3].kind, SweepAxis::Kind::zip);
+  ASSERT_EQ(table.axes[3].steps.size(), 2U);
+  EXPECT_EQ(std::get<std::int64_t>(table.axes[3].steps[1][1].values[0]), 2);
+  EXPECT_EQ(table.base.size(), 1U);
+  ASSERT_TRUE(table.compare.has_value());
+  EXPECT_TRUE(table.compare->empty());
+}
+
+TEST(SweepTable, WrongInputIsNamedWithFileLineAndKey) {
+  struct Wrong {
+    const char* text;
+    const char* message;
+  };
+  for (const Wrong& wrong : std::initializer_list<Wrong>{
+           {"", "s.toml:1: sweep: there is nothing to sweep over"},
+           {"\n[sweep]\nfilter = \"\"\n", "s.toml:2: sweep: there is nothing to sweep over"},
+           {"[sweep.axes]\ncache.sise = [1]\n",
+            "s.toml:2: cache.sise: unknown key in [sweep.axes] (did you mean \"cache.size\"?)"},
+           {"[sweep.axes]\ncahce.size = [1]\n", "s.toml:2: cahce: unknown key in [sweep.axes]"},
+           {"[sweep.axes]\ncache = [1]\n", "s.toml:2: cache: in [sweep.axes] is a section"},
+           {"[sweep.axes]\ncache.size = []\n", "s.toml:2: cache.size: the list of its values is empty"},
+           {"[sweep.axes]\ncache.size = \"4 KiB\"\n",
+            "s.toml:2: cache.size: an axis is a list of values in brackets"},
+           {"[sweep.axes]\ncache.size = [\"4 KB\"]\n", "s.toml:2: cache.size: "},
+           {"[sweep.axes]\ncache.ways = [1,\n 2, 1]\n", "s.toml:3: cache.ways: lists 1 twice"},
+           {"[sweep.axes]\ncache.replacement = [\"lur\"]\n",
+            "s.toml:2: cache.replacement: must be lru, fifo, random or plru, not \"lur\" (did you mean "
+            "\"lru\"?)"},
+           {"[sweep.axes]\nhost_machine.memory_limit = [1]\n",
+            "s.toml:2: host_machine.memory_limit: says nothing"},
+           {"[sweep.axes]\nprices.node = [1]\n", "s.toml:2: prices.node: says nothing"},
+           {"[sweep.axes]\nrecord.heat_maps = [true]\n", "s.toml:2: record.heat_maps: says nothing"},
+           {"[sweep.axes]\nmachine.nodes = [1]\n[[sweep.zip]]\nmachine.nodes = [2]\n",
+            "s.toml:4: machine.nodes: is swept over twice; the first time in line 2"},
+           {"[sweep.axes]\n\"machine.nodes\" = [1]\nmachine.nodes = [2]\n",
+            "s.toml:3: machine.nodes: is swept over twice; the first time in line 2"},
+           {"[[sweep.zip]]\nmachine.nodes = [1, 2]\ncache.ways = [1]\n",
+            "s.toml:3: cache.ways: has 1 values, but machine.nodes, which changes with it, has 2"},
+           {"[[sweep.zip]]\n", "s.toml:1: sweep.zip: names no keys"},
+           {"sweep.zip = 3\n", "s.toml:1: sweep.zip: must be a table, as [[sweep.zip]], not the integer 3"},
+           {"[sweep.points]\na = 3\n", "s.toml:2: sweep.points.a: must be a table"},
+           {"[sweep.points]\n", "s.toml:1: sweep.points: names no points"},
+           {"[sweep.points.\"\"]\n", "s.toml:1: sweep.points: a point's name has 1 to 60 printable"},
+           {"[sweep.axis]\n", "s.toml:1: sweep.axis: unknown key (did you mean \"sweep.axes\"?)"},
+           {"[sweep]\ncache.size = [1]\n",
+            "s.toml:2: sweep.cache: unknown key (the keys of axes belong in [sweep.axes])"},
+           {"[sweep.axes]\nmachine.nodes = [1]\n[sweep.base]\n", "s.toml:3: sweep.base: gives nothing"},
+           {"[sweep.axes]\nmachine.nodes = [1]\n[sweep.compare]\nmachine.nodes = [1]\n",
+            "s.toml:4: machine.nodes: must be an integer, not a list"},
+           {"[sweep.axes]\ncache.size = { from = 1, to = 2 }\n",
+            "s.toml:2: cache.size: the range lacks \"steps\""},
+           {"[sweep.axes]\ncache.size = { from = 1, to = 2, step = 2 }\n",
+            "s.toml:2: cache.size: a range has from, to, steps and scale, not \"step\" (did you mean "
+            "\"steps\"?)"},
+           {"[sweep.axes]\ncache.size = { from = 1, to = 2, steps = 100001 }\n",
+            "s.toml:2: cache.size: steps must be an integer from 1 to 100000, not the integer 100001"},
+           {"[sweep.axes]\ncache.size = { from = 1, to = 2, steps = 1 }\n", "s.toml:2: cache.size: one step"},
+           {"[sweep.axes]\ncache.size = { from = 0, to = 2, steps = 2 }\n",
+            "s.toml:2: cache.size.from: must be 1 B"},
+           {"[sweep.axes]\ncache.ways = { from = 0, to = 2, steps = 2, scale = \"log\" }\n",
+            "s.toml:2: cache.ways: a logarithmic range must lie above 0"},
+           {"[sweep.axes]\ncache.ways = { from = 0, to = 2, steps = 2, scale = \"lin\" }\n",
+            "s.toml:2: cache.ways: scale must be \"linear\" or \"log\", not the text \"lin\""},
+           {"[sweep.axes]\nscene.source = { from = 0, to = 2, steps = 2 }\n",
+            "s.toml:2: scene.source: only numbers have ranges"},
+           {"[sweep.axes]\nmachine.nodes = { from = 1, to = 2000, steps = 2000 }\n"
+            "cache.size = { from = 1, to = 2000, steps = 2000 }\n",
+            "s.toml:3: sweep: the axes up to this line make 4000000 points; a sweep has at most 1000000"},
+       }) {
+    const std::string message = error_of(wrong.text);
+    EXPECT_EQ(message.substr(0, std::string(wrong.message).size()), wrong.message) << wrong.text;
+  }
+  EXPECT_EQ(user_error_of([] {
+              (void)read_sweep_table(sweep_config("[sweep.axes]\ncache.ways = [1]\n", {"cache.ways=2"}));
+            }),
+            "s.toml:2: cache.ways: is swept over, so that \"--set cache.ways=2\" would have no effect");
+}
+
+TEST(SweepKeys, UnknownPricesAndRecordsAreRefused) {
+  EXPECT_EQ(
+      user_error_of([] { (void)test::plan_of("[prices]\nnod = 1\n[sweep.axes]\nmachine.nodes = [1]\n"); }),
+      "s.toml:2: prices.nod: unknown key (did you mean \"prices.node\"?); `marti config` lists all keys");
+  EXPECT_EQ(user_error_of(
+                [] { (void)test::plan_of("record.heat_maps = true\n[sweep.axes]\nmachine.nodes = [1]\n"); }),
+            "s.toml:1: record.heat_maps: a sweep records nothing beside its counters; leave it out, or use "
+            "`marti run`");
+}
+
+}  // namespace
+}  // namespace marti::studies
