@@ -1,6 +1,6 @@
 // Building octrees on the host: time per triangle, memory, and what the lazy octree and the partial rebuild
 // save.
-//   bench_build [million] [growth] [lazy] [update]     default: all four
+//   bench_build [million] [growth] [lazy] [update] [--json FILE]     default: all four
 //
 // The scenes that grow keep their shape: teapot:n is the same surface in about 65 n^2 triangles, tetra:n the
 // same Sierpinski tetrahedron in 4^n.
@@ -26,6 +26,7 @@
 #include "accel/octree.h"
 #include "accel/octree_update.h"
 #include "accel/structure.h"
+#include "bench/report.h"
 #include "processors/program/render.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
@@ -67,7 +68,7 @@ double best_build(const std::shared_ptr<const accel::TriangleSet>& triangles, un
 }
 
 /// Build time against the number of triangles, and c n log2 n fitted to it.
-void growth() {
+void growth(bench::Report& report) {
   const std::vector<std::vector<std::string>> families{
       {"teapot:4", "teapot:7", "teapot:12", "teapot:22", "teapot:39", "teapot:70", "teapot:124"},
       {"tetra:5", "tetra:6", "tetra:7", "tetra:8", "tetra:9", "tetra:10"}};
@@ -88,6 +89,11 @@ void growth() {
       std::printf("%-12s %9u %9zu %10zu | %7.2f ms %8.0f %10.2f | %7.2f ms %8.2f\n", scene.c_str(),
                   triangles->size(), octree.topology().nodes.size(), octree.topology().entries.size(),
                   1e3 * one, 1e9 * one / n, 1e9 * one / (n * std::log2(n)), 1e3 * all, one / all);
+      if (scene == family.back()) {
+        report.add({"octree build of " + scene + ", one thread", "ns/triangle", 1e9 * one / n});
+        report.add(bench::against("octree build of " + scene + ", all threads", "ms elapsed", 1e3 * all,
+                                  "one thread", 1e3 * one));
+      }
     }
     // In logarithms, so that each size counts alike.
     double mean = 0.0;
@@ -115,7 +121,7 @@ void growth() {
 }
 
 /// Builds and renders a scene in a process of its own; prints its times and the most memory it had.
-void build_and_render(const std::string& name) {
+void build_and_render(bench::Report& report, const std::string& name) {
   std::fflush(stdout);
   const pid_t child = fork();
   if (child < 0) {
@@ -141,15 +147,17 @@ void build_and_render(const std::string& name) {
   if (wait4(child, &status, 0, &usage) != child || status != 0) {
     throw sim::UserError("bench_build: the render of " + name + " failed");
   }
-  std::printf("%6.2f GiB\n", static_cast<double>(usage.ru_maxrss) / (1024.0 * 1024.0));
+  const double peak = static_cast<double>(usage.ru_maxrss) / (1024.0 * 1024.0);
+  std::printf("%6.2f GiB\n", peak);
+  report.add({name + " built and rendered", "GiB peak", peak, "", 0.0, std::nullopt, bench::Aim{4.0, false}});
 }
 
-void million() {
+void million(bench::Report& report) {
   std::printf("a million triangles, built and rendered (512 x 512, depth 2, all threads)\n");
   std::printf("%-12s %9s %9s %9s | %8s %8s %9s | %10s\n", "scene", "triangles", "nodes", "entries", "build",
               "render", "rays", "peak memory");
   for (const char* scene : {"teapot:124", "tetra:10", "gears:12"}) {
-    build_and_render(scene);
+    build_and_render(report, scene);
   }
 }
 
@@ -165,7 +173,7 @@ std::string label_of(const accel::BuildLimit& limit) {
 }
 
 /// Building to each initial level, then rendering, all on one thread; shares are of the fully built tree.
-void lazy() {
+void lazy(bench::Report& report) {
   for (const char* name : {"teapot:12", "teapot:39", "gears:2", "gears:4", "tetra:8"}) {
     const scenes::Scene scene = scenes::make_procedural(name);
     const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
@@ -217,11 +225,13 @@ void lazy() {
                   static_cast<unsigned long long>(r.state.all.pending),
                   100.0 * (1.0 - bytes(r) / bytes(full)), 100.0 * (1.0 - r.total / full.total));
     }
+    report.add(bench::against(std::string(name) + " built on demand, k = 10, and rendered", "ms",
+                              1e3 * results[2].total, "built in full", 1e3 * full.total));
   }
 }
 
 /// A share of neighbouring triangles moves: the partial rebuild against a fresh one, on one thread.
-void update() {
+void update(bench::Report& report) {
   std::printf(
       "partial rebuild after neighbouring triangles moved, processor time of one thread, best of 5\n");
   std::printf("%-12s %9s %9s | %9s %9s %7s | %10s %10s\n", "scene", "triangles", "moved", "fresh ms",
@@ -267,6 +277,10 @@ void update() {
       std::printf("%-12s %9u %9u | %9.2f %9.2f %7.3f | %10llu %8.1f %%\n", name, before->size(), moved,
                   1e3 * fresh, 1e3 * partial, partial / fresh, static_cast<unsigned long long>(tests),
                   100.0 * static_cast<double>(tests) / static_cast<double>(all_tests));
+      if (share == 0.01) {
+        report.add(bench::against(std::string(name) + ", 1 % moved: octree updated", "ms", 1e3 * partial,
+                                  "built anew", 1e3 * fresh));
+      }
     }
   }
 }
@@ -274,8 +288,8 @@ void update() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    std::vector<std::string_view> parts(argv + 1, argv + argc);
+  return bench::run_benchmark("bench_build", argc, argv, [](bench::Report& report, int count, char** values) {
+    std::vector<std::string_view> parts(values + 1, values + count);
     if (parts.empty()) {
       parts = {"million", "growth", "lazy", "update"};
     }
@@ -284,20 +298,16 @@ int main(int argc, char** argv) {
                      [](std::string_view a, std::string_view b) { return a == "million" && b != "million"; });
     for (const std::string_view part : parts) {
       if (part == "million") {
-        million();
+        million(report);
       } else if (part == "growth") {
-        growth();
+        growth(report);
       } else if (part == "lazy") {
-        lazy();
+        lazy(report);
       } else if (part == "update") {
-        update();
+        update(report);
       } else {
-        throw sim::UserError("usage: bench_build [million] [growth] [lazy] [update]");
+        throw sim::UserError("usage: bench_build [million] [growth] [lazy] [update] [--json FILE]");
       }
     }
-    return 0;
-  } catch (const sim::UserError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 2;
-  }
+  });
 }

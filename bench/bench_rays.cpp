@@ -1,6 +1,6 @@
 // All structures, their walks, with mailboxes and without, against Embree: primary rays on one thread, the
 // same triangles and the same rays.
-//   bench_rays [--scene NAME] [--size PIXELS] [--objects N] [--level N] [--json]
+//   bench_rays [--scene NAME] [--size PIXELS] [--objects N] [--level N] [--json FILE]
 #include <embree3/rtcore.h>
 
 #include <algorithm>
@@ -9,16 +9,17 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
-#include <exception>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "accel/mailbox.h"
 #include "accel/structure.h"
+#include "bench/report.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
 
@@ -33,7 +34,6 @@ struct Options {
   std::string scene = "teapot:12";
   std::uint32_t size = 512;
   marti::accel::OctreeOptions octree{16, 8};
-  bool json = false;
 };
 
 /// Processor time of this program, so that what else the computer does counts as little as may be.
@@ -157,13 +157,9 @@ Options read_options(int argc, char** argv) {
   Options options;
   for (int k = 1; k < argc; ++k) {
     const std::string_view key = argv[k];
-    if (key == "--json") {
-      options.json = true;
-      continue;
-    }
     if (k + 1 >= argc) {
       throw marti::sim::UserError(
-          "usage: bench_rays [--scene NAME] [--size PIXELS] [--objects N] [--level N] [--json]");
+          "usage: bench_rays [--scene NAME] [--size PIXELS] [--objects N] [--level N] [--json FILE]");
     }
     const char* value = argv[++k];
     const auto number = [value] { return static_cast<std::uint32_t>(std::strtoul(value, nullptr, 10)); };
@@ -176,7 +172,7 @@ Options read_options(int argc, char** argv) {
     } else if (key == "--level") {
       options.octree.max_level = number();
     } else {
-      throw marti::sim::UserError("bench_rays: unknown option " + std::string(key));
+      throw marti::sim::UserError("unknown option " + std::string(key));
     }
   }
   return options;
@@ -250,35 +246,11 @@ std::vector<Contestant> build_all(const std::shared_ptr<const TriangleSet>& tria
   return all;
 }
 
-void print_json(const Options& options, std::uint32_t triangles, std::size_t rays,
-                const std::vector<Contestant>& ours, const std::vector<double>& seconds,
-                const Agreement& with_fast, const Agreement& with_robust) {
-  const double million = static_cast<double>(rays) * 1e-6;
-  const double fast = seconds[ours.size()];
-  const double robust = seconds[ours.size() + 1];
-  std::printf(
-      "{\"scene\": \"%s\", \"triangles\": %u, \"rays\": %zu, \"max_objects\": %u, \"max_level\": %u, "
-      "\"embree_mrays_per_second\": %.6g, \"embree_robust_mrays_per_second\": %.6g, "
-      "\"same\": %zu, \"ties\": %zu, \"different\": %zu, "
-      "\"robust_same\": %zu, \"robust_ties\": %zu, \"robust_different\": %zu, \"structures\": [",
-      options.scene.c_str(), triangles, rays, options.octree.max_objects, options.octree.max_level,
-      million / fast, million / robust, with_fast.same, with_fast.tie, with_fast.other, with_robust.same,
-      with_robust.tie, with_robust.other);
-  for (std::size_t k = 0; k < ours.size(); ++k) {
-    std::printf(
-        "%s{\"name\": \"%s\", \"nodes\": %zu, \"build_cpu_seconds\": %.6g, \"mrays_per_second\": %.6g, "
-        "\"ratio\": %.6g, \"ratio_robust\": %.6g}",
-        k == 0 ? "" : ", ", ours[k].name.c_str(), ours[k].structure->topology().nodes.size(),
-        ours[k].build_seconds, million / seconds[k], fast / seconds[k], robust / seconds[k]);
-  }
-  std::printf("]}\n");
-}
-
-void run(const Options& options) {
+void run(marti::bench::Report& report, const Options& options) {
   const marti::scenes::Scene scene = marti::scenes::make_procedural(options.scene);
   const auto triangles = std::make_shared<const TriangleSet>(scene);
   if (!scene.quadrics.empty()) {
-    throw marti::sim::UserError("bench_rays: " + options.scene + " is not made of triangles alone");
+    throw marti::sim::UserError(options.scene + " is not made of triangles alone");
   }
   const marti::scenes::ImagePlane plane = scene.camera.image_plane(options.size, options.size);
   std::vector<Ray> rays;
@@ -306,10 +278,6 @@ void run(const Options& options) {
   }
   const Agreement with_fast = compare(ours[0].hits, fast);
   const Agreement with_robust = compare(ours[0].hits, robust);
-  if (options.json) {
-    print_json(options, triangles->size(), rays.size(), ours, seconds, with_fast, with_robust);
-    return;
-  }
   const double million = static_cast<double>(rays.size()) * 1e-6;
   const auto found = static_cast<std::size_t>(
       std::count_if(ours[0].hits.begin(), ours[0].hits.end(), [](const Hit& h) { return h.found(); }));
@@ -328,19 +296,23 @@ void run(const Options& options) {
   };
   embree("Embree rtcIntersect1", seconds[ours.size()], with_fast);
   embree("Embree, robust", seconds[ours.size() + 1], with_robust);
+
+  using marti::bench::against;
+  for (std::size_t k = 0; k < ours.size(); ++k) {
+    const std::optional<marti::bench::Aim> aim =
+        k == 0 ? std::optional(marti::bench::Aim{0.4}) : std::nullopt;
+    report.add(against("primary rays: " + ours[k].name, "M rays/s", million / seconds[k],
+                       "Embree rtcIntersect1", million / seconds[ours.size()], aim));
+  }
+  report.add(against("primary rays: " + ours[0].name, "M rays/s", million / seconds[0], "Embree, robust",
+                     million / seconds[ours.size() + 1]));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    run(read_options(argc, argv));
-    return 0;
-  } catch (const marti::sim::UserError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "internal error: %s\n", error.what());
-    return 1;
-  }
+  return marti::bench::run_benchmark("bench_rays", argc, argv,
+                                     [](marti::bench::Report& report, int count, char** values) {
+                                       run(report, read_options(count, values));
+                                     });
 }

@@ -1,16 +1,17 @@
-// What the work log costs: the render without and with it on one thread, its size, and the size that
-// other encodings of the same steps would have.
-//   bench_recording [SCENE [SIZE [REPEATS]]]     default: teapot:12 512 11
+// What the work log costs: the render without and with it in processor time of one thread, its size, and the
+// size that other encodings of the same steps would have.
+//   bench_recording [SCENE [SIZE [REPEATS]]] [--json FILE]     default: teapot:12 512 11
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "accel/structure.h"
+#include "bench/report.h"
 #include "processors/program/render.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
@@ -34,7 +35,7 @@ std::uint64_t partial_leaves(const processors::WorkLog& log) {
   return count;
 }
 
-void run(const std::string& name, std::uint32_t size, int repeats) {
+void run(bench::Report& report, const std::string& name, std::uint32_t size, int repeats) {
   const scenes::Scene scene = scenes::make_procedural(name);
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
   const auto structure = accel::make_structure("octree", triangles);
@@ -46,11 +47,11 @@ void run(const std::string& name, std::uint32_t size, int repeats) {
   for (int repeat = 0; repeat <= repeats; ++repeat) {
     for (const bool record : {false, true}) {
       options.record = record;
-      const auto start = std::chrono::steady_clock::now();
+      const std::clock_t start = std::clock();
       processors::Frame frame = processors::render(scene, *triangles, *structure, options, 1);
-      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+      const double took = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
       if (repeat > 0) {
-        times[record ? 1 : 0].push_back(took.count());
+        times[record ? 1 : 0].push_back(took);
       }
       if (record) {
         recorded = std::move(frame);
@@ -82,6 +83,12 @@ void run(const std::string& name, std::uint32_t size, int repeats) {
   std::printf("bytes per ray            %12.2f  (%.1f MB)\n", static_cast<double>(totals.bytes) / rays,
               static_cast<double>(totals.bytes) / 1e6);
 
+  report.add(bench::against("render with work log, best", "ms", 1e3 * times[1].front(), "without log",
+                            1e3 * times[0].front(), bench::Aim{1.3, false}));
+  report.add(bench::against("render with work log, median", "ms", 1e3 * seconds(times[1], 0.5), "without log",
+                            1e3 * seconds(times[0], 0.5), bench::Aim{1.3, false}));
+  report.add({"work log", "B/ray", static_cast<double>(totals.bytes) / rays});
+
   // Other encodings of the same steps. Offsets of pixels count in each.
   const double offsets = 4.0 * (pixels + size);
   const double every_step = 4.0 * (steps + static_cast<double>(totals.texels)) + offsets;
@@ -98,12 +105,10 @@ void run(const std::string& name, std::uint32_t size, int repeats) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    run(argc > 1 ? argv[1] : "teapot:12", argc > 2 ? static_cast<std::uint32_t>(std::atoi(argv[2])) : 512U,
-        std::max(1, argc > 3 ? std::atoi(argv[3]) : 11));
-  } catch (const sim::UserError& error) {
-    std::fprintf(stderr, "bench_recording: %s\n", error.what());
-    return 2;
-  }
-  return 0;
+  return bench::run_benchmark("bench_recording", argc, argv,
+                              [](bench::Report& report, int count, char** values) {
+                                run(report, count > 1 ? values[1] : "teapot:12",
+                                    count > 2 ? static_cast<std::uint32_t>(std::atoi(values[2])) : 512U,
+                                    std::max(1, count > 3 ? std::atoi(values[3]) : 11));
+                              });
 }

@@ -1,15 +1,16 @@
 // How fast machines are timed: exact replay of one frame on one host core, beside the native render of the
 // same frame by the same tracer.
-//   bench_replay [SIZE [REPEATS]]     default: 512 7
+//   bench_replay [SIZE [REPEATS]] [--json FILE]     default: 512 7
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "accel/structure.h"
+#include "bench/report.h"
 #include "processors/program/render.h"
 #include "processors/replay.h"
 #include "scenes/procedural.h"
@@ -19,9 +20,8 @@ namespace {
 
 using namespace marti;
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+// Processor time of this process, which other programs on the computer do not lengthen much.
+double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 // The machine of the measure: 4-way 16 KiB private caches on a split bus that 64 nodes nearly fill.
 processors::MachineConfig machine_of(std::uint32_t nodes, std::uint32_t packet) {
@@ -73,7 +73,7 @@ void print(const char* name, const Timing& t, double render, double per_referenc
   std::printf("\n");
 }
 
-void run(std::uint32_t size, int repeats) {
+void run(bench::Report& report, std::uint32_t size, int repeats) {
   const scenes::Scene scene = scenes::make_procedural("teapot:12");
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
   const auto structure = accel::make_structure("octree", triangles);
@@ -92,6 +92,10 @@ void run(std::uint32_t size, int repeats) {
       "one-thread replay: time, references a second, time a reference, miss ratio, bus load, ratios\n");
   const Timing base = time_replay(*frame.log, machine_of(64, 8), repeats);
   print("64 nodes, 8x8 packets", base, render, 0.0);
+  const auto rate = [](const Timing& t) { return t.references / t.seconds / 1e6; };
+  report.add({"replay of 64 nodes", "M refs/s", rate(base), "", 0.0, std::nullopt, bench::Aim{100.0}});
+  report.add(bench::against("replay of 64 nodes", "ms", 1e3 * base.seconds, "native render", 1e3 * render,
+                            bench::Aim{1.0, false}));
   const double per_reference = 1e9 * base.seconds / base.references;
   processors::MachineConfig longer = machine_of(64, 8);
   longer.cache.cache.line = 64;
@@ -111,7 +115,10 @@ void run(std::uint32_t size, int repeats) {
     print(nodes == 64 ? "64 nodes, distributed" : "65,536 nodes, distributed",
           time_replay(*frame.log, spread, repeats), render, 0.0);
   }
-  print("1 node, 8x8 packets", time_replay(*frame.log, machine_of(1, 8), repeats), render, per_reference);
+  const Timing one = time_replay(*frame.log, machine_of(1, 8), repeats);
+  print("1 node, 8x8 packets", one, render, per_reference);
+  report.add({"replay of one node", "M refs/s", rate(one), "", 0.0, std::nullopt, bench::Aim{200.0}});
+  report.add(bench::against("replay of one node", "ms", 1e3 * one.seconds, "native render", 1e3 * render));
   print("1,024 nodes, 8x8 packets", time_replay(*frame.log, machine_of(1024, 8), repeats), render,
         per_reference);
   print("65,536 nodes, 8x8 packets", time_replay(*frame.log, machine_of(65536, 8), repeats), render,
@@ -122,17 +129,17 @@ void run(std::uint32_t size, int repeats) {
   print("65,536 nodes, 2x2 packets", many, render, 1e9 * same.seconds / same.references);
   std::printf("events a miss %.2f; %zu host bytes a simulated node beside its tags\n",
               base.events / base.misses, many.bytes_per_node);
+  report.add(bench::against("a reference of 65,536 nodes", "ns", 1e9 * many.seconds / many.references,
+                            "of 64, same packets", 1e9 * same.seconds / same.references));
+  report.add({"a simulated node beside its tags", "B", static_cast<double>(many.bytes_per_node)});
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    run(argc > 1 ? static_cast<std::uint32_t>(std::atoi(argv[1])) : 512U,
-        std::max(1, argc > 2 ? std::atoi(argv[2]) : 7));
-  } catch (const sim::UserError& error) {
-    std::fprintf(stderr, "bench_replay: %s\n", error.what());
-    return 2;
-  }
-  return 0;
+  return bench::run_benchmark(
+      "bench_replay", argc, argv, [](bench::Report& report, int count, char** values) {
+        run(report, count > 1 ? static_cast<std::uint32_t>(std::atoi(values[1])) : 512U,
+            std::max(1, count > 2 ? std::atoi(values[2]) : 7));
+      });
 }

@@ -1,6 +1,6 @@
 // How fast each parallel scheme is timed: replay of one frame on one host core, beside the native render of
 // the same frame by the same tracer. They are timed in turns, in processor time.
-//   bench_schemes [SIZE [REPEATS]]    64 nodes; default: 512 5
+//   bench_schemes [SIZE [REPEATS]] [--json FILE]    64 nodes; default: 512 5
 //   bench_schemes many SCHEME [SIZE]  65,536 nodes of one scheme: time and the process's peak memory
 #include <sys/resource.h>
 
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "accel/structure.h"
+#include "bench/report.h"
 #include "processors/program/render.h"
 #include "processors/replay.h"
 #include "scenes/procedural.h"
@@ -74,7 +75,7 @@ void print(std::string_view name, const processors::MachineResult& result, doubl
               seconds / render);
 }
 
-void compare(std::uint32_t size, int repeats) {
+void compare(bench::Report& report, std::uint32_t size, int repeats) {
   const Work work(size);
   const processors::Frame frame = work.render(true);
   double render = 1e300;
@@ -94,6 +95,9 @@ void compare(std::uint32_t size, int repeats) {
               size, size, 1e3 * render, repeats);
   for (std::size_t i = 0; i < schemes.size(); ++i) {
     print(name_of(schemes[i]), results[i], best[i], render);
+    report.add(bench::against("replay, " + std::string(name_of(schemes[i])) + " scheme", "ms", 1e3 * best[i],
+                              "native render", 1e3 * render,
+                              bench::Aim{schemes[i] == Scheme::image ? 1.0 : 1.5, false}));
   }
 }
 
@@ -118,16 +122,13 @@ void many(std::string_view name, std::uint32_t size) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    if (argc > 2 && std::string_view(argv[1]) == "many") {
-      many(argv[2], argc > 3 ? static_cast<std::uint32_t>(std::atoi(argv[3])) : 512U);
-    } else {
-      compare(argc > 1 ? static_cast<std::uint32_t>(std::atoi(argv[1])) : 512U,
-              std::max(1, argc > 2 ? std::atoi(argv[2]) : 5));
-    }
-  } catch (const sim::UserError& error) {
-    std::fprintf(stderr, "bench_schemes: %s\n", error.what());
-    return 2;
-  }
-  return 0;
+  return bench::run_benchmark(
+      "bench_schemes", argc, argv, [](bench::Report& report, int count, char** values) {
+        if (count > 2 && std::string_view(values[1]) == "many") {
+          many(values[2], count > 3 ? static_cast<std::uint32_t>(std::atoi(values[3])) : 512U);
+        } else {
+          compare(report, count > 1 ? static_cast<std::uint32_t>(std::atoi(values[1])) : 512U,
+                  std::max(1, count > 2 ? std::atoi(values[2]) : 5));
+        }
+      });
 }

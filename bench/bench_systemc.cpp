@@ -1,13 +1,15 @@
 // How fast the SystemC model of tests/validation/systemc times a machine, beside the replay of the same one.
-//   bench_systemc [SIZE [NODES]]     default: 256 16
+//   bench_systemc [SIZE [NODES]] [--json FILE]     default: 256 16
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <memory>
+#include <string>
 
 #include "accel/structure.h"
+#include "bench/report.h"
 #include "processors/program/render.h"
 #include "processors/replay.h"
 #include "scenes/procedural.h"
@@ -29,7 +31,7 @@ void print(const char* name, double seconds, double references) {
 }
 
 // The machine of bench_replay: 4-way 16 KiB private caches on a split bus.
-int run(std::uint32_t size, std::uint32_t nodes) {
+void run(bench::Report& report, std::uint32_t size, std::uint32_t nodes) {
   const scenes::Scene scene = scenes::make_procedural("teapot:12");
   const auto primitives = std::make_shared<const accel::TriangleSet>(scene);
   const auto structure = accel::make_structure("octree", primitives);
@@ -63,17 +65,20 @@ int run(std::uint32_t size, std::uint32_t nodes) {
               simulation.seconds / ahead, simulation.seconds / stepped);
   const std::size_t differing = oracle::differences(result, simulation.machines[0]).size();
   std::printf("figures that differ: %zu\n", differing);
-  return differing == 0 ? 0 : 1;
+  sim::ensure(differing == 0, "the replay and the SystemC model find the same figures");
+  const double millions = references / 1e6;
+  report.add(bench::against("replay, " + std::to_string(nodes) + " nodes", "M refs/s", millions / ahead,
+                            "SystemC model", millions / simulation.seconds, bench::Aim{20.0}));
+  report.add(bench::against("an event for every reference, " + std::to_string(nodes) + " nodes", "M refs/s",
+                            millions / stepped, "SystemC model", millions / simulation.seconds));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc > 1 ? static_cast<std::uint32_t>(std::atoi(argv[1])) : 256U,
-               argc > 2 ? static_cast<std::uint32_t>(std::atoi(argv[2])) : 16U);
-  } catch (const sim::UserError& error) {
-    std::fprintf(stderr, "bench_systemc: %s\n", error.what());
-    return 2;
-  }
+  return bench::run_benchmark(
+      "bench_systemc", argc, argv, [](bench::Report& report, int count, char** values) {
+        run(report, count > 1 ? static_cast<std::uint32_t>(std::atoi(values[1])) : 256U,
+            count > 2 ? static_cast<std::uint32_t>(std::atoi(values[2])) : 16U);
+      });
 }
