@@ -8,14 +8,14 @@
 
 namespace marti::scenes {
 
-namespace {
-
 bool names_a_file(std::string_view spec) {
   std::string lower(spec);
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return lower.ends_with(".gltf") || lower.ends_with(".glb");
 }
+
+namespace {
 
 // An absolute path on the right replaces the base directory.
 std::filesystem::path path_of(std::string_view spec, const OpenOptions& options) {

@@ -25,6 +25,9 @@ struct OpenOptions {
 [[nodiscard]] AnimatedScene open_animated(std::string_view spec, const OpenOptions& options,
                                           const ImageDecoder& decode);
 
+/// Whether `spec` is a file's name, by its ending, and not a procedural scene's.
+[[nodiscard]] bool names_a_file(std::string_view spec);
+
 /// The pose at `options.gltf.time`. A time other than 0 is an error where nothing moves.
 [[nodiscard]] Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode);
 
