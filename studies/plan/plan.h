@@ -1,0 +1,91 @@
+// The plan of a run: what this scene and machine do not need, and what that rests on.
+//
+// An item is left out only when it is sure that nothing a run reports can differ; whatever is only nearly so
+// is no item of the plan but an approximation, which `marti study error` measures.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace marti::studies {
+
+enum class PlanItem : std::uint8_t {
+  shadow_rays,
+  reflection_rays,
+  refraction_rays,
+  textures,
+  texture_coordinates,
+  normals,
+  unreachable,
+  off_camera,
+  rebuild,
+  structures,
+  deep_levels,
+  mailboxes,
+  contention,
+  cache,
+};
+inline constexpr std::size_t plan_items = 14;
+/// As --keep and reports name them.
+inline constexpr std::array<std::string_view, plan_items> plan_item_names = {
+    "shadow-rays", "reflection-rays", "refraction-rays", "textures", "texture-coordinates",
+    "normals",     "unreachable",     "off-camera",      "rebuild",  "structures",
+    "deep-levels", "mailboxes",       "contention",      "cache"};
+
+/// How it is known that an item is not needed.
+enum class PlanClass : std::uint8_t {
+  proved,     ///< before the run, from facts of the scene and the machine
+  on_demand,  ///< during the run, which does what it turns out to need and nothing else
+};
+
+enum class PlanDecision : std::uint8_t {
+  left_out,
+  needed,    ///< could not be left out
+  kept,      ///< could be left out, but the user wants it kept
+  no_matter  ///< there is nothing of it in this scene or machine
+};
+
+/// What an item costs.
+struct PlanCost {
+  std::int64_t bytes = 0;       ///< of the host's memory
+  std::int64_t operations = 0;  ///< rays, texels, vertices, references, ...; the entry's `unit`
+};
+
+struct PlanEntry {
+  PlanItem item{};
+  PlanClass kind = PlanClass::proved;
+  PlanDecision decision = PlanDecision::needed;
+  std::string fact;                 ///< what the decision rests on, as "0 of 12 materials reflect"
+  std::string unit;                 ///< of PlanCost::operations; empty without any
+  PlanCost saved;                   ///< estimated before the run; all 0 unless left out
+  std::optional<PlanCost> counted;  ///< after the run; nothing where it cannot be counted
+};
+
+/// Items that the user wants kept.
+class KeptItems {
+ public:
+  KeptItems() = default;
+  /// Of names of items, or "all". Throws UserError for another name, with the nearest.
+  explicit KeptItems(std::span<const std::string> names);
+  static KeptItems all();
+
+  [[nodiscard]] bool has(PlanItem item) const { return bits_[static_cast<std::size_t>(item)]; }
+  [[nodiscard]] bool any() const { return bits_.any(); }
+  void keep(PlanItem item) { bits_.set(static_cast<std::size_t>(item)); }
+
+ private:
+  std::bitset<plan_items> bits_;
+};
+
+struct Plan {
+  std::vector<PlanEntry> entries;  ///< at most one for each item, in the order of PlanItem
+};
+
+}  // namespace marti::studies
