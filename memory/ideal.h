@@ -9,7 +9,7 @@ namespace marti::memory {
 class Ideal final : public Interconnect {
  public:
   Ideal(const InterconnectConfig& config, const InterconnectSite& site)
-      : site_(site), latency_(config.clock.cycles(config.latency_cycles)) {
+      : site_(site), latency_(ideal_read(config)) {
     statistics_.links = site.ports;
   }
 
@@ -18,6 +18,12 @@ class Ideal final : public Interconnect {
     count(transaction);
     const sim::Ticks done = sim::add_ticks(site_.engine.now(), latency_);
     site_.client.read_done(transaction.port, {done, 0, latency_, 0, 0});
+  }
+  void count_reads(std::int64_t reads, std::int64_t bytes) override {
+    statistics_.reads += reads;
+    statistics_.bytes += bytes;
+    statistics_.busy = sim::add_ticks(statistics_.busy, sim::multiply_ticks(latency_, reads));
+    statistics_.waits.add_unwaited(reads);
   }
   void write(const Transaction& transaction) override {
     ++statistics_.writes;

@@ -16,6 +16,12 @@ void Interconnect::proceed(std::uint32_t /*port*/, std::uint32_t /*sequence*/) {
   throw sim::InternalError("an event of the memory's own for an interconnect that posts none");
 }
 
+void Interconnect::count_reads(std::int64_t /*reads*/, std::int64_t /*bytes*/) {
+  throw sim::InternalError("reads that an interconnect was not asked for, which it would have delayed");
+}
+
+sim::Ticks ideal_read(const InterconnectConfig& config) { return config.clock.cycles(config.latency_cycles); }
+
 std::unique_ptr<Interconnect> make_interconnect(const InterconnectConfig& config, const BankConfig& banks,
                                                 const InterconnectSite& site) {
   if (config.width == 0) {

@@ -102,6 +102,9 @@ class Interconnect {
   virtual void read(const Transaction& transaction) = 0;
   /// A posted write at the engine's current time.
   virtual void write(const Transaction& transaction) = 0;
+  /// Reads that the port has made by itself, without asking: only where every read takes unloaded_read()
+  /// whatever else goes on. Any number, of so many bytes together, at any time.
+  virtual void count_reads(std::int64_t reads, std::int64_t bytes);
   /// The event of the site's reply class for `port` has come up; only an interconnect that posts such
   /// events is ever called.
   virtual void reply(std::uint32_t port);
@@ -132,6 +135,9 @@ struct InterconnectSite {
   std::uint32_t ports = 0;
   std::uint8_t memory_class = 0;
 };
+
+/// What every read of an ideal interconnect takes.
+[[nodiscard]] sim::Ticks ideal_read(const InterconnectConfig& config);
 
 /// Builds the interconnect that the configuration names. Engine and client must outlive it.
 [[nodiscard]] std::unique_ptr<Interconnect> make_interconnect(const InterconnectConfig& config,

@@ -21,6 +21,11 @@ struct WaitStatistics {
     max = std::max(max, wait);
     histogram.add(wait);
   }
+  /// So many that did not wait.
+  void add_unwaited(std::int64_t tenures) {
+    count += tenures;
+    histogram.add_repeated(0, tenures);
+  }
 
   static constexpr auto counters() {
     using C = sim::Counter<WaitStatistics>;

@@ -80,6 +80,9 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
       node.time[static_cast<std::size_t>(Activity::idle)] = end_ - node.finish;
     }
     Base::watch_idle();
+    if (input_.own_reads) {
+      count_own_reads();
+    }
   }
 
   SecondLevelResult second_level() const override { return walker_.second_level().result(); }
@@ -95,6 +98,19 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
   std::size_t bytes_per_node() const override { return Base::common_bytes(); }
 
  private:
+  void count_own_reads() {
+    if constexpr (requires { walker_.own_read_bytes(0); }) {
+      for (std::uint32_t cluster = 0; cluster < input_.config.clusters; ++cluster) {
+        const std::uint32_t first = cluster * input_.config.nodes;
+        std::int64_t reads = 0;
+        for (std::uint32_t node = first; node < first + input_.config.nodes; ++node) {
+          reads += statistics_[node].references.all_misses();
+        }
+        interconnect_of(first).count_reads(reads, walker_.own_read_bytes(cluster));
+      }
+    }
+  }
+
   static bool for_pixel(const Cursor& /*cursor*/) { return true; }
 
   [[nodiscard]] std::span<const std::uint32_t> words_of(std::uint32_t x, std::uint32_t y) const {

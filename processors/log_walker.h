@@ -6,6 +6,7 @@
 #include <bit>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "processors/accounting.h"
 #include "processors/cache_counting.h"
@@ -43,7 +44,8 @@ class LogWalker {
         local_(input.config.local),
         local_database_(input.config.placement == Placement::replicated),
         second_level_(input.config),
-        passes_misses_on_(!local_database_ || second_level_.present()) {
+        passes_misses_on_((!local_database_ && !input.own_reads) || second_level_.present()),
+        own_read_bytes_(input.own_reads ? input.config.clusters : 0) {
     if (Caches::present && !counted && !guarded && !input.step_by_step) {
       plan_ = plan_visits(input.log, input.layout, input.node_rank, unit_shift_, ticks_);
       plan_limit_ = plan_.empty() ? 0 : 2U << operand_bits;
@@ -72,8 +74,14 @@ class LogWalker {
       stop = Stop::hit;
     } while (RunAhead);
     flush(tally, statistics);
+    if (!own_read_bytes_.empty()) {
+      own_read_bytes_[node / input_.config.nodes] += std::exchange(read_bytes_, 0);
+    }
     return stop;
   }
+
+  /// Of the reads that a cluster's nodes have made by themselves.
+  [[nodiscard]] std::int64_t own_read_bytes(std::uint32_t cluster) const { return own_read_bytes_[cluster]; }
 
   /// The steps of a pixel are done; what is left is to convert and store it.
   void finish_pixel(Cursor& cursor, NodeStatistics& statistics) const {
@@ -240,7 +248,7 @@ class LogWalker {
   }
 
   // `line` of a visit has missed. False when the node has to stop for it.
-  bool miss(Cursor& cursor, NodeStatistics& statistics, const std::uint32_t* line, Stop& stop) const {
+  bool miss(Cursor& cursor, NodeStatistics& statistics, const std::uint32_t* line, Stop& stop) {
     const std::uint32_t label = label_of(line);
     settle_visit(ticks_, cursor, line, tests_of_label(label));
     --hits_of(statistics, kind_of_label(label));
@@ -249,7 +257,7 @@ class LogWalker {
       stop = Stop::miss;
       return false;
     }
-    read_local(cursor, statistics, line_bytes_);
+    read_alone(cursor, statistics, line_bytes_);
     ++cursor.line;
     return true;
   }
@@ -300,7 +308,7 @@ class LogWalker {
           stop = Stop::miss;
           return false;
         }
-        read_local(cursor, statistics, missed_bytes(cursor));
+        read_alone(cursor, statistics, missed_bytes(cursor));
         cursor.at = (unit + 1) << unit_shift_;
       }
       if constexpr (!RunAhead) {
@@ -446,7 +454,7 @@ class LogWalker {
       if (!local_database_) {
         return false;
       }
-      read_local(cursor, statistics, line_bytes_);
+      read_alone(cursor, statistics, line_bytes_);
     } else if constexpr (counted) {
       caches_.counting().second_level_hit(cursor.kind, cursor.origin);
     }
@@ -454,12 +462,19 @@ class LogWalker {
     return true;
   }
 
-  void read_local(Cursor& cursor, NodeStatistics& statistics, std::uint32_t bytes) const {
-    const memory::Service service = local_.read(bytes, cursor.time);
+  // A read that asks nobody: of the node's own memory, or one that always takes the same time.
+  void read_alone(Cursor& cursor, NodeStatistics& statistics, std::uint32_t bytes) {
+    const memory::Service service =
+        own_read_bytes_.empty() ? local_.read(bytes, cursor.time) : own_read(cursor.time);
+    read_bytes_ += bytes;
     statistics.time[static_cast<std::size_t>(Activity::transfer)] += service.transfer;
     statistics.time[static_cast<std::size_t>(Activity::bank_access)] += service.bank;
     cursor.time = service.done;
     note_wait(cursor, service);
+  }
+
+  [[nodiscard]] memory::Service own_read(sim::Ticks now) const {
+    return {sim::add_ticks(now, *input_.own_reads), 0, *input_.own_reads, 0, 0};
   }
 
   ReplayInput input_;
@@ -480,7 +495,9 @@ class LogWalker {
   LocalMemory local_;
   bool local_database_;
   PrivateSecondLevel second_level_;
-  bool passes_misses_on_;  ///< to the second level or the interconnect
+  bool passes_misses_on_;                     ///< to the second level or the interconnect
+  std::vector<std::int64_t> own_read_bytes_;  // of each cluster; empty where the interconnect is asked
+  std::int64_t read_bytes_ = 0;               // since advance() was called
 };
 
 }  // namespace marti::processors

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "memory/line_set.h"
 #include "memory/record_kind.h"
 #include "memory/tags.h"
 #include "processors/machine_config.h"
@@ -88,6 +89,29 @@ class SplitCaches {
 
  private:
   std::vector<Tags> tags_;
+};
+
+/// Unified caches that never replace a line, as ReplayInput::line_set says.
+class RoomyCaches {
+ public:
+  static constexpr bool present = true;
+  static constexpr bool by_kind = false;
+  RoomyCaches(const MachineConfig& config, std::uint64_t lines) : lines_(lines, config.all_nodes()) {}
+  class View {
+   public:
+    View(memory::LineSet& lines, std::uint32_t node) : lines_(&lines), node_(node) {}
+    [[gnu::always_inline]] bool access(memory::RecordKind /*kind*/, std::uint32_t line) const {
+      return lines_->access(node_, line);
+    }
+
+   private:
+    memory::LineSet* lines_;
+    std::uint32_t node_;
+  };
+  [[nodiscard]] View view(std::uint32_t node) { return {lines_, node}; }
+
+ private:
+  memory::LineSet lines_;
 };
 
 /// Nodes without a cache: every reference misses, and only its own bytes are moved.

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "processors/bounds.h"
+#include "processors/left_out.h"
 #include "processors/node_array.h"
 #include "processors/observer.h"
 #include "processors/packets.h"
@@ -36,6 +37,28 @@ std::optional<TreePlan> plan_of(const WorkLog& log, const MachineConfig& config,
     throw sim::UserError("build.sharing: \"none\" leaves no branch to be split during the frame");
   }
   return plan;
+}
+
+// Decides what is left out, and enters it.
+LeftOut leave_out(const ReplayOptions& options, ReplayInput& input) {
+  LeftOut left;
+  if (options.step_by_step || options.with_contexts || options.stripped != nullptr) {
+    return left;
+  }
+  const MachineConfig& config = input.config;
+  if (!options.keep_lookups && why_lookups(config, input.layout) == nullptr) {
+    input.line_set = lines_of(input.layout, config.cache.cache.line);
+    left.lookups = true;
+    left.tag_bytes =
+        memory::shape_of(config.cache.cache).lines() * sizeof(std::uint32_t) * config.all_nodes();
+    left.line_set_bytes = (input.line_set + 7) / 8 * config.all_nodes();
+  }
+  // Who watches is told of each read.
+  if (!options.keep_read_events && options.observer == nullptr && why_read_events(config) == nullptr) {
+    input.own_reads = memory::ideal_read(config.interconnect);
+    left.read_events = true;
+  }
+  return left;
 }
 
 }  // namespace
@@ -84,17 +107,18 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   sim::Engine engine;
   engine.reserve(std::size_t{config.all_nodes()} * config.contexts + 1);
   Host host(config.host, packets.size(), config.all_nodes());
-  const ReplayInput input = {log,
-                             config,
-                             layout,
-                             packets,
-                             rank,
-                             options.step_by_step,
-                             plan ? &*plan : nullptr,
-                             options.report_built,
-                             options.observer,
-                             options.stripped,
-                             options.with_contexts};
+  ReplayInput input = {log,
+                       config,
+                       layout,
+                       packets,
+                       rank,
+                       options.step_by_step,
+                       plan ? &*plan : nullptr,
+                       options.report_built,
+                       options.observer,
+                       options.stripped,
+                       options.with_contexts};
+  const LeftOut left_out = leave_out(options, input);
   if (options.stripped != nullptr) {
     sim::ensure(options.stripped->fits(log) && !options.step_by_step && !options.with_contexts &&
                     options.stripped->key() == StrippedLog::key_of(config),
@@ -121,6 +145,13 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   MachineResult result = common_result(config, engine, *nodes, interconnects, layout);
   result.host = host.statistics();
   result.packets = packets.size();
+  result.left_out = left_out;
+  if (left_out.lookups) {
+    result.left_out.references = result.references().references();
+  }
+  if (left_out.read_events) {
+    result.left_out.reads = result.references().all_misses();
+  }
   check_conservation(log, config, result);
   check_bounds(config, result);
   return result;

@@ -14,6 +14,7 @@
 #include "processors/context_result.h"
 #include "processors/flow_result.h"
 #include "processors/host.h"
+#include "processors/left_out.h"
 #include "processors/machine_config.h"
 #include "processors/program/work_log.h"
 #include "processors/second_level.h"
@@ -52,6 +53,7 @@ struct MachineResult {
   std::uint64_t database_bytes = 0;  ///< of one copy, as the frame begins
   std::uint64_t copies = 0;          ///< one for each cluster, or for each node when replicated
   std::uint64_t events = 0;
+  LeftOut left_out;
   std::size_t host_bytes_per_node = 0;
   sim::Ticks unloaded_miss = 0;  ///< a miss that meets no other transaction
 
@@ -70,6 +72,10 @@ struct ReplayOptions {
   Observer* observer = nullptr;  ///< watches (processors/observer.h); same result
   /// Walked in the log's place: made of `log` for a machine of the same StrippedLog::key_of; same result.
   const StrippedLog* stripped = nullptr;
+  /// Look tags up, and make an event of each read, even where left_out.h says that the outcome is known;
+  /// same result but for `events` and `left_out`.
+  bool keep_lookups = false;
+  bool keep_read_events = false;
   bool with_contexts = false;  ///< with a given tree: nodes that can hold several contexts, even for one;
                                ///< same result
 };

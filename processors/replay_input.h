@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "memory/layout.h"
@@ -9,6 +10,7 @@
 #include "processors/packets.h"
 #include "processors/program/work_log.h"
 #include "processors/tree_plan.h"
+#include "sim/time.h"
 
 namespace marti::processors {
 
@@ -28,6 +30,10 @@ struct ReplayInput {
   Observer* observer = nullptr;              ///< who watches; null: nobody
   const StrippedLog* stripped = nullptr;     ///< walked in the log's place; null: the log itself
   bool with_contexts = false;                ///< nodes that can hold several contexts, even for one
+  /// Caches never replace one of so many lines, and are asked for no other; 0: their tags are looked up.
+  std::uint64_t line_set = 0;
+  /// What every read takes, so that nodes make theirs by themselves; nothing: they ask the interconnect.
+  std::optional<sim::Ticks> own_reads{};
 };
 
 }  // namespace marti::processors

@@ -196,6 +196,15 @@ class LogHistogram {
     ++count_;
     maximum_ = std::max(maximum_, sample);
   }
+  /// The same `times` times, at least 0.
+  void add_repeated(std::int64_t sample, std::int64_t times) {
+    if (times == 0) {
+      return;
+    }
+    add(sample);
+    buckets_[bucket_of(sample)] += times - 1;
+    count_ += times - 1;
+  }
   void merge(const LogHistogram& other);
 
   [[nodiscard]] std::int64_t count() const { return count_; }

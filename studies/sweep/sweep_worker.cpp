@@ -77,6 +77,8 @@ void do_time(const SweepSite& site, TaskSource& source, const SweepTask& task) {
       const MemoryGate::Pass pass(site.machines, processors::host_bytes(machine.config));
       processors::ReplayOptions options;
       options.stripped = stripped.get();
+      // The events that a row holds must not depend on whether there was room for a stripped log.
+      options.keep_read_events = true;
       row = sweep_row(machine.config, processors::replay(*log->log, machine.config, options));
     } catch (const sim::UserError& error) {
       throw sim::UserError("the machine with " + name_of(machine) + ": " + error.what());

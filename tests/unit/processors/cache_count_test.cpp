@@ -149,7 +149,7 @@ RC_GTEST_PROP(CacheCount, NodesThatCountAreNodesThatDoNot, (std::uint64_t seed))
   const WorkLog log = test::random_log(random, 9, 9);
   MachineConfig machine = test::random_machine(random);
   test::add_random_second_level(random, machine);
-  const MachineResult fast = replay(log, machine);
+  const MachineResult fast = replay(log, machine, {.keep_read_events = true});
   machine.count = everything;
   machine.count.miss_classes = machine.cache.organisation != CacheOrganisation::none;
   for (const bool step_by_step : {false, true}) {

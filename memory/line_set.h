@@ -1,0 +1,42 @@
+// Which lines have been brought in, of many equal caches that never have to give one up.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "memory/cache_config.h"
+#include "sim/large_pages.h"
+
+namespace marti::memory {
+
+/// Whether a cache of this shape holds `lines` consecutive lines, the first being number 0, without ever
+/// replacing one: then no set gets more lines than it has ways, and as empty ways are filled first, that
+/// holds for every replacement.
+[[nodiscard]] constexpr bool holds_all(const CacheShape& shape, std::uint64_t lines) {
+  return (lines + shape.sets - 1) / shape.sets <= shape.ways;
+}
+
+/// A bit for each line of each cache. Says what a tag store with such caches says.
+class LineSet {
+ public:
+  LineSet(std::uint64_t lines, std::uint32_t caches)
+      : words_((lines + 63) / 64), bits_(static_cast<std::size_t>(words_) * caches) {}
+
+  /// Looks `line` up in `cache`; true when it is there. Brings it in when it is not.
+  [[gnu::always_inline]] bool access(std::uint32_t cache, std::uint32_t line) {
+    std::uint64_t& word = bits_[cache * words_ + line / 64];
+    const std::uint64_t bit = std::uint64_t{1} << (line % 64);
+    const bool there = (word & bit) != 0;
+    word |= bit;
+    return there;
+  }
+
+  [[nodiscard]] std::size_t bytes() const { return bits_.size() * sizeof(std::uint64_t); }
+
+ private:
+  std::uint64_t words_;  // of each cache
+  sim::LargeVector<std::uint64_t> bits_;
+};
+
+}  // namespace marti::memory
