@@ -29,6 +29,9 @@ if(MARTI_SANITIZE)
     -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(marti_options INTERFACE -fsanitize=address,undefined)
 endif()
+if(MARTI_FUZZ)
+  target_compile_options(marti_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 
 # The folders that are installed as libraries, each a component of the package (cmake/MartiPackage.cmake).
 set(MARTI_COMPONENTS sim scenes accel memory processors)

@@ -1,0 +1,74 @@
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/error.h"
+#include "studies/frame_keys.h"
+#include "studies/machine_keys.h"
+#include "studies/record_keys.h"
+#include "studies/run_result.h"
+#include "studies/sweep/sweep_keys.h"
+#include "studies/sweep/sweep_table.h"
+#include "target.h"
+
+namespace marti::fuzz {
+
+namespace {
+
+std::vector<sim::EffectiveValue> read_run(std::string_view text) {
+  static const sim::Schema schema = studies::run_schema();
+  sim::Config config = sim::Config::from_text(schema, text, "fuzz.toml");
+  (void)studies::read_frame(config);
+  (void)studies::read_machine(config);
+  (void)studies::read_record(config, true);
+  config.refuse_unused();
+  return config.effective_values();
+}
+
+void read_sweep(std::string_view text) {
+  static const sim::Schema schema = studies::sweep_schema();
+  const sim::Config config = sim::Config::from_text(schema, text, "fuzz.toml");
+  const studies::SweepTable table = studies::read_sweep_table(config);
+  promise(!table.axes.empty(), "a sweep without an axis");
+  promise(table.points() >= 1 && table.points() <= studies::most_sweep_points, "too many points");
+  (void)studies::read_prices(config);
+}
+
+// Calls `read`; whether its input was accepted.
+template <class Read>
+bool accepted(const Read& read) {
+  try {
+    read();
+    return true;
+  } catch (const sim::UserError& error) {
+    promise(std::string_view(error.what()).starts_with("fuzz.toml"),
+            "a message without a place: " + std::string(error.what()));
+    return false;
+  }
+}
+
+}  // namespace
+
+void try_config(std::span<const std::uint8_t> bytes) {
+  const std::string text(bytes.begin(), bytes.end());
+  std::vector<sim::EffectiveValue> values;
+  if (accepted([&] { values = read_run(text); })) {
+    std::string again;
+    for (const sim::EffectiveValue& value : values) {
+      if (value.given) {
+        again += value.key + " = " + value.value + "\n";
+      }
+    }
+    const std::vector<sim::EffectiveValue> reread = read_run(again);
+    promise(values.size() == reread.size(), "other keys are used when read again");
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      promise(values[i].key == reread[i].key && values[i].value == reread[i].value,
+              values[i].key + " = " + values[i].value + " is read again as " + reread[i].value);
+    }
+  }
+  if (text.find("sweep") != std::string::npos) {
+    (void)accepted([&] { read_sweep(text); });
+  }
+}
+
+}  // namespace marti::fuzz
