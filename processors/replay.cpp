@@ -38,6 +38,18 @@ std::optional<TreePlan> plan_of(const WorkLog& log, const MachineConfig& config,
   return plan;
 }
 
+std::uint64_t pixels_of(const PacketList& packets, const WorkLog& log, const PacketSample* sample) {
+  if (sample == nullptr) {
+    return std::uint64_t{log.width} * log.height;
+  }
+  std::uint64_t pixels = 0;
+  for (std::uint64_t i = 0; i < packets.size(); ++i) {
+    const Packet packet = packets[i];
+    pixels += std::uint64_t{packet.x1 - packet.x0} * (packet.y1 - packet.y0);
+  }
+  return pixels;
+}
+
 }  // namespace
 
 StepCounts MachineResult::steps() const {
@@ -69,6 +81,12 @@ TimeDivision MachineResult::time() const {
 MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
   check(config);
   check_prefetch(config.prefetch, log.traversal);
+  if (options.sample != nullptr) {
+    check_sampled(config);
+  }
+  if (options.quantum > 1) {
+    check_relaxed(config);
+  }
   switch (config.scheme) {
     case Scheme::image:
       break;
@@ -79,7 +97,9 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   }
   std::optional<TreePlan> plan = plan_of(log, config, options);
   const memory::Layout layout = layout_of(log, config, plan);
-  const PacketList packets(log.width, log.height, config.packets);
+  const PacketList all_packets(log.width, log.height, config.packets);
+  const PacketList packets =
+      options.sample == nullptr ? all_packets : all_packets.only(options.sample->chosen());
   const std::vector<std::uint32_t> rank = node_ranks(log, config);
   sim::Engine engine;
   engine.reserve(std::size_t{config.all_nodes()} * config.contexts + 1);
@@ -94,10 +114,12 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
                              options.report_built,
                              options.observer,
                              options.stripped,
-                             options.with_contexts};
+                             options.with_contexts,
+                             options.sample,
+                             &all_packets};
   if (options.stripped != nullptr) {
     sim::ensure(options.stripped->fits(log) && !options.step_by_step && !options.with_contexts &&
-                    options.stripped->key() == StrippedLog::key_of(config),
+                    options.sample == nullptr && options.stripped->key() == StrippedLog::key_of(config),
                 "a stripped log is walked by a machine that it was not made for");
   }
   if (options.observer != nullptr) {
@@ -111,6 +133,7 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
   }
   nodes->start(options.start_seed);
+  engine.relax(options.quantum);
   // Every event moves some node on by at least one step of a finite log, so no limit is needed.
   engine.run(std::numeric_limits<std::uint64_t>::max());
   nodes->finish();
@@ -121,6 +144,8 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   MachineResult result = common_result(config, engine, *nodes, interconnects, layout);
   result.host = host.statistics();
   result.packets = packets.size();
+  result.pixels = pixels_of(packets, log, options.sample);
+  result.packet_figures = nodes->packet_figures();
   check_conservation(log, config, result);
   check_bounds(config, result);
   return result;

@@ -6,6 +6,7 @@
 
 #include "memory/layout.h"
 #include "processors/machine_config.h"
+#include "processors/packet_sample.h"
 #include "processors/packets.h"
 #include "processors/program/work_log.h"
 #include "processors/tree_plan.h"
@@ -28,6 +29,8 @@ struct ReplayInput {
   Observer* observer = nullptr;              ///< who watches; null: nobody
   const StrippedLog* stripped = nullptr;     ///< walked in the log's place; null: the log itself
   bool with_contexts = false;                ///< nodes that can hold several contexts, even for one
+  const PacketSample* sample = nullptr;      ///< `packets` are these of all; null: they are all
+  const PacketList* all_packets = nullptr;   ///< with a sample
 };
 
 }  // namespace marti::processors
