@@ -61,7 +61,8 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
   }
   const StepCounts steps = result.steps();
   if (config.scheme == Scheme::image) {
-    require(steps.pixels == static_cast<std::int64_t>(log.width) * log.height, "every pixel is written once");
+    require(steps.pixels == static_cast<std::int64_t>(result.pixels),
+            "every pixel that is handed out is written once");
     std::int64_t packets = 0;
     for (const NodeStatistics& node : result.nodes) {
       packets += node.packets;

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "processors/log_walker.h"
 #include "processors/node_caches.h"
@@ -34,7 +37,9 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
 
  public:
   ImageNodes(const ReplayInput& input, sim::Engine& engine, Host& host, Caches caches)
-      : Base(input, engine, host), walker_(input, std::move(caches)) {}
+      : Base(input, engine, host),
+        walker_(input, std::move(caches)),
+        begun_(input.sample == nullptr ? 0 : input.config.all_nodes()) {}
 
   void start(std::uint64_t seed) override {
     for (const std::uint32_t node : Base::first_order(seed)) {
@@ -117,6 +122,30 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
     return walker_.words_of(x, y);
   }
 
+  // The node's caches meet what has been left out before its next packet: no time passes, nothing is counted
+  // and nothing is read.
+  void warm_up(std::uint32_t node, std::uint64_t packet) {
+    if constexpr (Walker::steps_singly) {
+      const std::uint64_t next = input_.sample->chosen()[packet];
+      NodeStatistics unused;
+      input_.sample->for_each_warmed(begun_[node], next, begun_.size(), [&](std::uint64_t left_out) {
+        const Packet area = (*input_.all_packets)[left_out];
+        for (std::uint32_t y = area.y0; y < area.y1; ++y) {
+          for (std::uint32_t x = area.x0; x < area.x1; ++x) {
+            const std::span<const std::uint32_t> words = words_of(x, y);
+            Cursor cursor;
+            cursor.word = words.data();
+            cursor.word_end = words.data() + words.size();
+            while (walker_.template advance<true>(node, cursor, unused) != Stop::end) {
+              walker_.pass(cursor);
+            }
+          }
+        }
+      });
+      begun_[node] = next + 1;
+    }
+  }
+
   Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
     if constexpr (Walker::steps_singly) {
       if (input_.step_by_step) {
@@ -156,6 +185,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
   }
 
   Walker walker_;
+  std::vector<std::uint64_t> begun_;  // with a sample: one past the packet that each node has begun last
 };
 
 }  // namespace marti::processors

@@ -49,6 +49,8 @@ class NodeArray : public sim::EventHandler {
   [[nodiscard]] virtual CacheCountResult cache_counts() const { return {}; }
   /// After the run: what contexts and prefetches did; nothing where there are none.
   [[nodiscard]] virtual ContextResult context_result() const { return {}; }
+  /// After the run: what each packet of a sample took; nothing where there is none.
+  [[nodiscard]] virtual std::vector<PacketFigures> packet_figures() const { return {}; }
   /// Host bytes per simulated node beside its cache tags.
   [[nodiscard]] virtual std::size_t bytes_per_node() const = 0;
 };

@@ -29,6 +29,7 @@ class PacketNodes : public NodeArray {
   memory::InterconnectClient& client(std::uint32_t cluster) override { return clients_[cluster]; }
   sim::Ticks end() const override { return end_; }
   std::vector<NodeStatistics> statistics() const override { return {statistics_.begin(), statistics_.end()}; }
+  std::vector<PacketFigures> packet_figures() const override { return meter_.figures(); }
 
  protected:
   PacketNodes(const ReplayInput& input, sim::Engine& engine, Host& host)
@@ -38,6 +39,7 @@ class PacketNodes : public NodeArray {
         cursors_(input.config.all_nodes()),
         statistics_(input.config.all_nodes()),
         ports_(input.config.ports_of_node()),
+        meter_(input.sample == nullptr ? 0 : input.packets.size(), input.config.all_nodes()),
         writes_(std::size_t{input.config.all_nodes()} * input.config.write_buffer),
         late_(writes_done_later(input.config) ? input.config.all_nodes() : 0) {
     clients_.reserve(input.config.clusters);
@@ -125,6 +127,9 @@ class PacketNodes : public NodeArray {
   void dispatch(std::uint32_t node) {
     Cursor& cursor = cursors_[node];
     watch_misses(node, {});  // those before the frame are no pixel's
+    if (meter_.on()) {
+      meter_.end(node, cursor.time, statistics_[node]);
+    }
     const std::optional<Grant> grant = host_.next(node, cursor.time);
     if (!grant) {
       statistics_[node].finish = cursor.time;
@@ -137,6 +142,12 @@ class PacketNodes : public NodeArray {
     if (input_.observer != nullptr) {
       watch(node, NodeState::dispatch_wait, asked, false);
       input_.observer->began_packet(node, grant->packet, grant->start);
+    }
+    if (meter_.on()) {
+      meter_.begin(node, grant->packet, grant->start, statistics_[node]);
+      if constexpr (requires { derived().warm_up(node, grant->packet); }) {
+        derived().warm_up(node, grant->packet);
+      }
     }
     cursor.packet = input_.packets[grant->packet];
     cursor.y = cursor.packet.y0;
@@ -266,6 +277,7 @@ class PacketNodes : public NodeArray {
   };
   static constexpr sim::Ticks not_known = std::numeric_limits<sim::Ticks>::max();
 
+  PacketMeter meter_;                    // on with a sample of packets
   sim::LargeVector<sim::Ticks> writes_;  // when each entry of each node's write buffer is free
   sim::LargeVector<LateWrites> late_;    // empty where writes say at once when they are done
   std::int64_t late_writes_ = 0;         // of which it is not known

@@ -73,6 +73,16 @@ PacketList::PacketList(std::uint32_t image_width, std::uint32_t image_height, co
   }
 }
 
+PacketList PacketList::only(std::span<const std::uint64_t> indices) const {
+  PacketList part = *this;
+  part.count_ = indices.size();
+  part.order_.clear();
+  for (const std::uint64_t index : indices) {
+    part.order_.push_back(order_.empty() ? static_cast<std::uint32_t>(index) : order_[index]);
+  }
+  return part;
+}
+
 Packet PacketList::operator[](std::uint64_t index) const {
   const std::uint64_t number = order_.empty() ? index : order_[index];
   const auto x0 = static_cast<std::uint32_t>(number % columns_) * config_.width;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -39,6 +40,8 @@ class PacketList {
 
   [[nodiscard]] std::uint64_t size() const { return count_; }
   [[nodiscard]] Packet operator[](std::uint64_t index) const;
+  /// Only these of the packets, in this order.
+  [[nodiscard]] PacketList only(std::span<const std::uint64_t> indices) const;
 
  private:
   std::uint32_t image_width_;

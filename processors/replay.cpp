@@ -42,7 +42,8 @@ std::optional<TreePlan> plan_of(const WorkLog& log, const MachineConfig& config,
 // Decides what is left out, and enters it.
 LeftOut leave_out(const ReplayOptions& options, ReplayInput& input) {
   LeftOut left;
-  if (options.step_by_step || options.with_contexts || options.stripped != nullptr) {
+  if (options.step_by_step || options.with_contexts || options.stripped != nullptr ||
+      options.sample != nullptr || options.quantum > 1) {
     return left;
   }
   const MachineConfig& config = input.config;
@@ -59,6 +60,18 @@ LeftOut leave_out(const ReplayOptions& options, ReplayInput& input) {
     left.read_events = true;
   }
   return left;
+}
+
+std::uint64_t pixels_of(const PacketList& packets, const WorkLog& log, const PacketSample* sample) {
+  if (sample == nullptr) {
+    return std::uint64_t{log.width} * log.height;
+  }
+  std::uint64_t pixels = 0;
+  for (std::uint64_t i = 0; i < packets.size(); ++i) {
+    const Packet packet = packets[i];
+    pixels += std::uint64_t{packet.x1 - packet.x0} * (packet.y1 - packet.y0);
+  }
+  return pixels;
 }
 
 }  // namespace
@@ -92,6 +105,12 @@ TimeDivision MachineResult::time() const {
 MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
   check(config);
   check_prefetch(config.prefetch, log.traversal);
+  if (options.sample != nullptr) {
+    check_sampled(config);
+  }
+  if (options.quantum > 1) {
+    check_relaxed(config);
+  }
   switch (config.scheme) {
     case Scheme::image:
       break;
@@ -102,7 +121,9 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   }
   std::optional<TreePlan> plan = plan_of(log, config, options);
   const memory::Layout layout = layout_of(log, config, plan);
-  const PacketList packets(log.width, log.height, config.packets);
+  const PacketList all_packets(log.width, log.height, config.packets);
+  const PacketList packets =
+      options.sample == nullptr ? all_packets : all_packets.only(options.sample->chosen());
   const std::vector<std::uint32_t> rank = node_ranks(log, config);
   sim::Engine engine;
   engine.reserve(std::size_t{config.all_nodes()} * config.contexts + 1);
@@ -117,11 +138,13 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
                        options.report_built,
                        options.observer,
                        options.stripped,
-                       options.with_contexts};
+                       options.with_contexts,
+                       options.sample,
+                       &all_packets};
   const LeftOut left_out = leave_out(options, input);
   if (options.stripped != nullptr) {
     sim::ensure(options.stripped->fits(log) && !options.step_by_step && !options.with_contexts &&
-                    options.stripped->key() == StrippedLog::key_of(config),
+                    options.sample == nullptr && options.stripped->key() == StrippedLog::key_of(config),
                 "a stripped log is walked by a machine that it was not made for");
   }
   if (options.observer != nullptr) {
@@ -135,6 +158,7 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
   }
   nodes->start(options.start_seed);
+  engine.relax(options.quantum);
   // Every event moves some node on by at least one step of a finite log, so no limit is needed.
   engine.run(std::numeric_limits<std::uint64_t>::max());
   nodes->finish();
@@ -152,6 +176,8 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   if (left_out.read_events) {
     result.left_out.reads = result.references().all_misses();
   }
+  result.pixels = pixels_of(packets, log, options.sample);
+  result.packet_figures = nodes->packet_figures();
   check_conservation(log, config, result);
   check_bounds(config, result);
   return result;

@@ -16,6 +16,7 @@
 #include "processors/host.h"
 #include "processors/left_out.h"
 #include "processors/machine_config.h"
+#include "processors/packet_sample.h"
 #include "processors/program/work_log.h"
 #include "processors/second_level.h"
 
@@ -44,14 +45,16 @@ struct MachineResult {
   std::vector<NodeStatistics> nodes;
   std::vector<ClusterResult> clusters;
   HostStatistics host;
-  BuildResult build;        ///< empty when the tree is given
-  FlowResult flow;          ///< empty with the image scheme
-  ContextResult contexts;   ///< empty with one context and no prefetch
-  SecondLevelResult l2;     ///< empty without a second level
-  CacheCountResult counts;  ///< what MachineConfig::count asks for
-  std::uint64_t packets = 0;
-  std::uint64_t database_bytes = 0;  ///< of one copy, as the frame begins
-  std::uint64_t copies = 0;          ///< one for each cluster, or for each node when replicated
+  BuildResult build;                          ///< empty when the tree is given
+  FlowResult flow;                            ///< empty with the image scheme
+  ContextResult contexts;                     ///< empty with one context and no prefetch
+  SecondLevelResult l2;                       ///< empty without a second level
+  CacheCountResult counts;                    ///< what MachineConfig::count asks for
+  std::uint64_t packets = 0;                  ///< that were handed out
+  std::uint64_t pixels = 0;                   ///< image scheme: of these packets
+  std::vector<PacketFigures> packet_figures;  ///< of a sample's packets, in its order; else empty
+  std::uint64_t database_bytes = 0;           ///< of one copy, as the frame begins
+  std::uint64_t copies = 0;                   ///< one for each cluster, or for each node when replicated
   std::uint64_t events = 0;
   LeftOut left_out;
   std::size_t host_bytes_per_node = 0;
@@ -76,6 +79,13 @@ struct ReplayOptions {
   /// same result but for `events` and `left_out`.
   bool keep_lookups = false;
   bool keep_read_events = false;
+  /// Only these packets are handed out; the result is that of a frame which has no others. For the image
+  /// scheme with a given tree, dynamic assignment, one context, and no second level of caches, `stripped` or
+  /// counting of more than hits and misses (check_sampled).
+  const PacketSample* sample = nullptr;
+  /// Not exact (sim::Engine::relax): what is first come, first served, serves whoever's turn it is. For a
+  /// machine that check_relaxed() lets pass. 0 or 1: exact.
+  sim::Ticks quantum = 0;
   bool with_contexts = false;  ///< with a given tree: nodes that can hold several contexts, even for one;
                                ///< same result
 };
@@ -85,6 +95,12 @@ struct ReplayOptions {
 /// Throws UserError for a machine that cannot be built or a time that does not fit.
 [[nodiscard]] MachineResult replay(const WorkLog& log, const MachineConfig& config,
                                    const ReplayOptions& options = {});
+
+/// Throws UserError with the reason when some of the machine's packets cannot be replayed without the others.
+void check_sampled(const MachineConfig& config);
+
+/// Throws UserError with the reason when the machine's components need events in their exact order.
+void check_relaxed(const MachineConfig& config);
 
 /// The conservation laws that every result must obey: each node's time adds up to the end; every pixel is
 /// written once, or where rays move, every ray of the log is made, traced and ended once, and every message

@@ -7,6 +7,7 @@
 
 #include "memory/layout.h"
 #include "processors/machine_config.h"
+#include "processors/packet_sample.h"
 #include "processors/packets.h"
 #include "processors/program/work_log.h"
 #include "processors/tree_plan.h"
@@ -30,6 +31,8 @@ struct ReplayInput {
   Observer* observer = nullptr;              ///< who watches; null: nobody
   const StrippedLog* stripped = nullptr;     ///< walked in the log's place; null: the log itself
   bool with_contexts = false;                ///< nodes that can hold several contexts, even for one
+  const PacketSample* sample = nullptr;      ///< `packets` are these of all; null: they are all
+  const PacketList* all_packets = nullptr;   ///< with a sample
   /// Caches never replace one of so many lines, and are asked for no other; 0: their tags are looked up.
   std::uint64_t line_set = 0;
   /// What every read takes, so that nodes make theirs by themselves; nothing: they ask the interconnect.

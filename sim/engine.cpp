@@ -1,10 +1,29 @@
 #include "sim/engine.h"
 
+#include <algorithm>
 #include <string>
 
 namespace marti::sim {
 
+void Engine::handle(const Event& event, std::uint64_t& at_this_tick, std::uint64_t limit_per_tick) {
+  at_this_tick = event.time == now_ ? at_this_tick + 1 : 1;
+  if (at_this_tick > limit_per_tick) [[unlikely]] {
+    throw InternalError("no progress: " + std::to_string(at_this_tick) + " events at tick " +
+                        std::to_string(now_) + ", the last of class " + std::to_string(event.event_class()) +
+                        ", component " + std::to_string(event.component()));
+  }
+  now_ = event.time;
+  ++events_;
+  EventHandler* handler = handlers_[event.event_class() % max_classes];
+  ensure(handler != nullptr, "an event of a class that no component handles");
+  handler->handle(event);
+}
+
 void Engine::run(std::uint64_t limit_per_tick) {
+  if (quantum_ > 1) {
+    run_relaxed(limit_per_tick);
+    return;
+  }
   std::uint64_t at_this_tick = 0;
   while (!queue_.empty()) {
     const Event event = queue_.pop();
@@ -15,19 +34,26 @@ void Engine::run(std::uint64_t limit_per_tick) {
         }
       });
     }
-    at_this_tick = event.time == now_ ? at_this_tick + 1 : 1;
-    if (at_this_tick > limit_per_tick) [[unlikely]] {
-      throw InternalError("no progress: " + std::to_string(at_this_tick) + " events at tick " +
-                          std::to_string(now_) + ", the last of class " +
-                          std::to_string(event.event_class()) + ", component " +
-                          std::to_string(event.component()));
-    }
-    now_ = event.time;
-    ++events_;
-    EventHandler* handler = handlers_[event.event_class() % max_classes];
-    ensure(handler != nullptr, "an event of a class that no component handles");
-    handler->handle(event);
+    handle(event, at_this_tick, limit_per_tick);
   }
+}
+
+void Engine::run_relaxed(std::uint64_t limit_per_tick) {
+  std::uint64_t at_this_tick = 0;
+  while (!queue_.empty()) {
+    Event event = queue_.pop();
+    turn_ = event.component();
+    turn_end_ = add_ticks(event.time - event.time % quantum_, quantum_);
+    handle(event, at_this_tick, limit_per_tick);
+    while (!ahead_.empty()) {
+      const auto next = std::min_element(ahead_.begin(), ahead_.end());
+      event = *next;
+      *next = ahead_.back();
+      ahead_.pop_back();
+      handle(event, at_this_tick, limit_per_tick);
+    }
+  }
+  turn_end_ = 0;
 }
 
 }  // namespace marti::sim

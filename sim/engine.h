@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "sim/event_queue.h"
 #include "sim/time.h"
@@ -34,6 +35,10 @@ class Engine {
   /// `event` must not lie in the past; that is a fault of the simulator, never of its input.
   void post(const Event& event) {
     ensure(event.time >= now_, "an event was posted in the past");
+    if (event.time < turn_end_ && event.component() == turn_) [[unlikely]] {
+      ahead_.push_back(event);
+      return;
+    }
     queue_.push(event);
   }
 
@@ -41,15 +46,30 @@ class Engine {
   /// at one tick, which only a machine that makes no progress can do.
   void run(std::uint64_t limit_per_tick);
 
+  /// Lets results differ, for speed: simulated time is cut into pieces of `quantum` ticks, and the component
+  /// whose event is next goes on with all that it posts for itself in the piece before any other has its
+  /// turn. Time goes back by less than a quantum then, when another component's turn comes, so handlers must
+  /// bear requests that are late. (The quantum of S. K. Reinhardt et al., "The Wisconsin Wind Tunnel",
+  /// SIGMETRICS 1993, on one thread.) With 0 or 1, the order is the exact one. To be said before run().
+  void relax(Ticks quantum) { quantum_ = quantum; }
+
   [[nodiscard]] Ticks now() const { return now_; }
   [[nodiscard]] std::uint64_t events() const { return events_; }
   void reserve(std::size_t events) { queue_.reserve(events); }
 
  private:
+  // Hands over one event.
+  void handle(const Event& event, std::uint64_t& at_this_tick, std::uint64_t limit_per_tick);
+  void run_relaxed(std::uint64_t limit_per_tick);
+
   EventQueue queue_;
   std::array<EventHandler*, max_classes> handlers_{};
   Ticks now_ = 0;
   std::uint64_t events_ = 0;
+  Ticks quantum_ = 0;
+  Ticks turn_end_ = 0;  // end of the piece of time in which component turn_ runs ahead; 0: nobody does
+  std::uint32_t turn_ = 0;
+  std::vector<Event> ahead_;  // what the component has posted for itself in its turn
 };
 
 }  // namespace marti::sim

@@ -18,6 +18,8 @@
 #include "sim/schema.h"
 #include "sim/units.h"
 #include "studies/compare/compare.h"
+#include "studies/error/error.h"
+#include "studies/error/error_keys.h"
 #include "studies/frames/frames.h"
 #include "studies/image_file.h"
 #include "studies/operations/operations.h"
@@ -33,6 +35,7 @@
 #include "studies/sweep_command.h"
 #include "studies/trace/trace.h"
 #include "studies/version.h"
+#include "studies/within.h"
 
 namespace {
 
@@ -53,10 +56,30 @@ struct RunArguments {
   std::vector<std::string> assignments;
   std::string directory;
   bool json = false;
+  std::string within;
 };
+
+void run_within_command(const RunArguments& arguments, sim::Config& config) {
+  if (!arguments.directory.empty() || arguments.json) {
+    throw sim::UserError(
+        "--within gives estimates of some figures, for people: result.json and what else --output and --json "
+        "give are for exact runs; leave --within out");
+  }
+  double tolerance = 0.0;
+  try {
+    tolerance = studies::parse_tolerance(arguments.within);
+  } catch (const sim::UserError& error) {
+    throw sim::UserError("--within: " + std::string(error.what()));
+  }
+  print(studies::run_within(config, tolerance));
+}
 
 void run_command(const RunArguments& arguments) {
   sim::Config config = sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
+  if (!arguments.within.empty()) {
+    run_within_command(arguments, config);
+    return;
+  }
   if (!arguments.directory.empty()) {
     studies::prepare_output(arguments.directory);
   }
@@ -120,7 +143,9 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
       study->add_subcommand("frames", "The cycle \"build, render\" of each frame of an animated scene");
   CLI::App* schemes =
       study->add_subcommand("schemes", "Parallel schemes on one scene: how they grow, and what limits them");
-  for (CLI::App* command : {operations, paper, frames, schemes}) {
+  CLI::App* error = study->add_subcommand(
+      "error", "Cheaper answers than exact ones: how wrong they are, and how much cheaper");
+  for (CLI::App* command : {operations, paper, frames, schemes, error}) {
     CLI::Option* config = command->add_option("CONFIG", arguments.config, "configuration file (TOML)");
     CLI::Option* directory =
         command->add_option("-o,--output", arguments.directory, "directory for tables, charts and report")
@@ -134,6 +159,7 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
   paper->callback([&] { run_study(arguments, studies::paper_schema(), studies::run_paper); });
   frames->callback([&] { run_study(arguments, studies::run_schema(), studies::run_frames); });
   schemes->callback([&] { run_study(arguments, studies::schemes_schema(), studies::run_schemes); });
+  error->callback([&] { run_study(arguments, studies::error_schema(), studies::run_error); });
 }
 
 void add_sweep_command(CLI::App& app, studies::SweepArguments& arguments) {
@@ -284,6 +310,11 @@ int parse_and_run(int argc, char** argv) {
                   "directory for image.exr, image.png, result.json and what is recorded")
       ->check(no_empty_directory);
   run->add_flag("--json", run_arguments.json, "print the result as JSON instead of the summary");
+  run->add_option("--within", run_arguments.within,
+                  "an estimate is enough whose measured error is at most so much, as \"2 %\"")
+      ->check([](const std::string& text) {
+        return text.empty() ? std::string("must be a percentage, such as \"2 %\"") : std::string();
+      });
   run->callback([&] { run_command(run_arguments); });
 
   StudyArguments study_arguments;
@@ -305,6 +336,7 @@ int parse_and_run(int argc, char** argv) {
     sim::Schema schema = studies::run_schema();
     studies::declare_paper_keys(schema);
     studies::declare_schemes_keys(schema);
+    studies::declare_error_keys(schema);
     studies::declare_sweep_keys(schema);
     print(markdown ? sim::list_keys_as_markdown(schema) : sim::list_keys_as_text(schema));
   });

@@ -81,6 +81,11 @@ sim::Schema run_schema() {
 }
 
 RunResult run(sim::Config& config, const std::filesystem::path& directory) {
+  return run(config, directory, std::nullopt);
+}
+
+RunResult run(sim::Config& config, const std::filesystem::path& directory,
+              std::optional<FunctionalRun> functional) {
   RunResult result;
   result.config_name = config.name();
   result.frame_config = read_frame(config);
@@ -92,7 +97,7 @@ RunResult run(sim::Config& config, const std::filesystem::path& directory) {
   refuse_maps_beyond_memory(config, record, result.frame_config);
   result.values = config.effective_values();
 
-  result.functional = run_functional(result.frame_config);
+  result.functional = functional ? std::move(*functional) : run_functional(result.frame_config);
   const processors::WorkLog& log = *result.functional.frame.log;
   result.timed = watched_replay(record, directory, result);
   if (result.machine.all_nodes() == 1 && result.machine.scheme == processors::Scheme::image) {

@@ -42,6 +42,9 @@ struct RunResult {
 /// UserError for anything wrong with the input, before it has written anything. What is recorded while the
 /// machine runs goes to `directory`, which must exist; without one nothing may be recorded.
 [[nodiscard]] RunResult run(sim::Config& config, const std::filesystem::path& directory = {});
+/// The same with a functional run that has been made: of the frame that `config` describes.
+[[nodiscard]] RunResult run(sim::Config& config, const std::filesystem::path& directory,
+                            std::optional<FunctionalRun> functional);
 
 /// Throws UserError when the simulated machine would take more of the computer's memory than the frame may.
 void refuse_beyond_memory(const sim::Config& config, const FrameConfig& frame,
@@ -51,6 +54,9 @@ void refuse_several_frames(const sim::Config& config, const FrameRange& frames);
 
 /// The schema of `marti run`.
 [[nodiscard]] sim::Schema run_schema();
+
+/// The summary's first part, which needs the frame's configuration and the functional run only.
+[[nodiscard]] std::string scene_summary_of(const RunResult& result);
 
 /// The printed summary.
 [[nodiscard]] std::string summary_of(const RunResult& result);

@@ -245,10 +245,15 @@ void memory_lines(Lines out, const RunResult& r) {
 
 }  // namespace
 
-std::string summary_of(const RunResult& r) {
+std::string scene_summary_of(const RunResult& r) {
   std::string text;
+  scene_lines(std::back_inserter(text), r);
+  return text;
+}
+
+std::string summary_of(const RunResult& r) {
+  std::string text = scene_summary_of(r);
   const Lines out = std::back_inserter(text);
-  scene_lines(out, r);
   voxel_lines(out, r);
   machine_lines(out, r);
   text += loss_lines(r);

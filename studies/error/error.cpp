@@ -1,0 +1,53 @@
+#include "studies/error/error.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "studies/error/error_keys.h"
+#include "studies/error/simulator_tables.h"
+#include "studies/results/provenance.h"
+#include "studies/results/text_table.h"
+
+namespace marti::studies {
+
+namespace {
+
+// Appends one family's part of the study.
+void append(StudyOutput& output, StudyOutput part) {
+  std::move(part.tables.begin(), part.tables.end(), std::back_inserter(output.tables));
+  std::move(part.host_tables.begin(), part.host_tables.end(), std::back_inserter(output.host_tables));
+  std::move(part.images.begin(), part.images.end(), std::back_inserter(output.images));
+  output.report += part.report;
+  output.host_report += part.host_report;
+}
+
+StudyOutput simulator_error(const ErrorConfig& config) {
+  const SimulatorStudy study = study_simulator(config);
+  const std::vector<MethodErrors> errors = errors_of(study);
+  StudyOutput part;
+  part.tables = {method_table(study, errors), figure_table(study, errors), case_table(study),
+                 level_table(study)};
+  part.host_tables = {time_table(study, errors), fastest_table(study, errors), measured_table(study, errors)};
+  part.report = fmt::format("Simulator: {} machines, {} x {} pixels\n\n{}\n{}\n", study.cases.size(),
+                            config.frame.render.width, config.frame.render.height, text_of(part.tables[0]),
+                            text_of(part.tables[3]));
+  part.host_report = fmt::format("Simulator: run time, {} repeats\n\n{}\n{}\n", config.repeats,
+                                 text_of(part.host_tables[0]), text_of(part.host_tables[1]));
+  return part;
+}
+
+}  // namespace
+
+StudyOutput run_error(sim::Config& config) {
+  const ErrorConfig error = read_error(config);
+  StudyOutput output;
+  append(output, simulator_error(error));
+  output.tables.push_back(provenance_table(config.effective_values()));
+  output.host_tables.push_back(host_table());
+  return output;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,12 @@
+// `marti study error`: how wrong cheaper answers are, and how much cheaper they are.
+#pragma once
+
+#include "sim/config.h"
+#include "studies/results/study_files.h"
+
+namespace marti::studies {
+
+/// The simulator's methods against exact replay. Throws UserError for anything wrong with the input.
+[[nodiscard]] StudyOutput run_error(sim::Config& config);
+
+}  // namespace marti::studies

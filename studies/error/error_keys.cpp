@@ -1,0 +1,124 @@
+#include "studies/error/error_keys.h"
+
+#include <algorithm>
+
+#include "memory/cache_config.h"
+#include "sim/units.h"
+#include "studies/error/simulator_methods.h"
+#include "studies/machine_keys.h"
+#include "studies/run_result.h"
+
+namespace marti::studies {
+
+namespace {
+
+template <class T>
+std::vector<T> ascending(std::span<const sim::Value> values) {
+  std::vector<T> numbers;
+  for (const sim::Value& value : values) {
+    numbers.push_back(static_cast<T>(std::get<std::int64_t>(value)));
+  }
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
+
+// Every machine can be built, and every method answers for it.
+void check_machines(const sim::Config& config, const ErrorConfig& error) {
+  for (const std::uint64_t cache : error.caches) {
+    const processors::MachineConfig machine = machine_with(error.machine, error.nodes.back(), cache);
+    try {
+      processors::check(machine);
+    } catch (const sim::UserError& problem) {
+      config.fail("error.cache_sizes",
+                  sim::print_size(static_cast<std::int64_t>(cache)) + ": " + problem.what());
+    }
+    refuse_beyond_memory(config, error.frame, machine);
+    for (const Method& method : simulator_methods()) {
+      try {
+        check_method(method, machine);
+      } catch (const sim::UserError& problem) {
+        throw sim::UserError(config.name() + ": the study measures every method on the machine, and " +
+                             problem.what());
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void declare_error_keys(sim::Schema& schema) {
+  schema.section("error",
+                 "only for `marti study error`: the scenes and machines on which cheaper methods are held "
+                 "against exact replay; image, structure and the rest of the machine are those of this file");
+  schema.texts("error.scenes", {"gears:2", "tetra:6", "teapot:4", "teapot:12", "large"},
+               "scenes, in the place of scene.source");
+  schema.integers("error.nodes", {1, 4, 16, 64, 256}, {1, 65536}, "nodes",
+                  "nodes of a machine, in the place of machine.nodes; 1 must be among them");
+  sim::Key sizes;
+  sizes.name = "error.cache_sizes";
+  sizes.type = sim::ValueType::size;
+  sizes.is_list = true;
+  for (const std::int64_t size : {32, 2048, 16384, 4 * 1024 * 1024}) {
+    sizes.default_value.emplace_back(std::int64_t{size});
+  }
+  sizes.minimum = sim::Value(std::int64_t{1});
+  sizes.maximum = sim::Value(std::int64_t{1} << 32U);
+  sizes.meaning = "sizes of each node's cache, in the place of cache.size";
+  schema.add(std::move(sizes));
+  schema.integer("error.repeats", 3, {1, 1000}, "",
+                 "times that each run time is measured, in interleaved order");
+  schema.integer("error.seed", 1, {0, std::int64_t{1} << 62U}, "", "seed of the samples of packets");
+}
+
+sim::Schema error_schema() {
+  sim::Schema schema;
+  declare_frame_keys(schema);
+  declare_machine_keys(schema);
+  declare_error_keys(schema);
+  return schema;
+}
+
+processors::MachineConfig machine_with(const processors::MachineConfig& machine, std::uint32_t nodes,
+                                       std::uint64_t cache_bytes) {
+  processors::MachineConfig other = machine;
+  other.nodes = nodes;
+  memory::CacheConfig& cache = other.cache.cache;
+  cache.size = cache_bytes;
+  const std::uint64_t lines = cache_bytes / cache.line;
+  if (cache.ways > lines && lines > 0) {
+    cache.ways = static_cast<std::uint32_t>(lines);
+  }
+  return other;
+}
+
+ErrorConfig read_error(sim::Config& config) {
+  ErrorConfig error;
+  error.frame = read_frame(config);
+  if (error.frame.frames.count > 1) {
+    config.fail("frames.count", "the study renders one frame, that of frames.first");
+  }
+  if (config.given("scene.source")) {
+    config.fail("scene.source", "the study takes its scenes from error.scenes");
+  }
+  error.machine = read_machine(config);
+  error.scenes = config.texts("error.scenes");
+  if (error.scenes.empty()) {
+    config.fail("error.scenes", "must name a scene");
+  }
+  error.nodes = ascending<std::uint32_t>(config.values("error.nodes"));
+  if (error.nodes.empty() || error.nodes.front() != 1) {
+    config.fail("error.nodes", "must hold 1, against which speed-up is measured");
+  }
+  error.caches = ascending<std::uint64_t>(config.values("error.cache_sizes"));
+  if (error.caches.empty()) {
+    config.fail("error.cache_sizes", "must name a size");
+  }
+  error.repeats = static_cast<std::uint32_t>(config.integer("error.repeats"));
+  error.seed = static_cast<std::uint64_t>(config.integer("error.seed"));
+  config.refuse_unused();
+  check_machines(config, error);
+  return error;
+}
+
+}  // namespace marti::studies

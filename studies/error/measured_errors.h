@@ -1,0 +1,31 @@
+// What `marti study error` has measured, as part of the program.
+//
+// studies/error/measured_errors.csv is the table "host_error_measured" of a study; docs/error.md says how to
+// make it anew.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "studies/error/simulator_figures.h"
+
+namespace marti::studies {
+
+/// Of one method, on machines of up to so many nodes (node_classes in simulator_errors.h).
+struct MeasuredError {
+  std::size_t method = 0;  ///< index into simulator_methods()
+  std::uint32_t nodes_to = 0;
+  double share = 1.0;  ///< processor time over that of exact replay
+  Figures allowance;   ///< what the method's own half-width is to be widened by, so that 95 % of errors are
+                       ///< covered
+  Figures own;         ///< the method's own half-width, as it was on average
+};
+
+/// The file as it was built into the program.
+[[nodiscard]] std::string_view measured_errors_csv();
+
+/// Throws InternalError for what is no such table, or one of another version of the methods.
+[[nodiscard]] std::vector<MeasuredError> parse_measured_errors(std::string_view csv);
+
+}  // namespace marti::studies

@@ -1,0 +1,160 @@
+#include "studies/error/simulator_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace marti::studies {
+
+namespace {
+
+// A method's answer to one case, as far as one figure goes.
+struct Answer {
+  std::size_t number = 0;  // of the case
+  double error = 0.0;
+  double half_width = 0.0;
+  [[nodiscard]] double excess() const { return std::max(0.0, std::abs(error) - half_width); }
+};
+
+std::vector<Answer> answers_of(const SimulatorStudy& study, std::size_t method, Figure figure) {
+  std::vector<Answer> answers;
+  for (std::size_t number = 0; number < study.cases.size(); ++number) {
+    if (const std::optional<Estimate>& estimate = study.estimates[method][number]) {
+      answers.push_back({number, error_of(figure, estimate->value[figure], study.truth[number].value[figure]),
+                         estimate->half_width[figure]});
+    }
+  }
+  return answers;
+}
+
+// Of the answers of a class, but for those of one scene.
+std::optional<double> allowance_of(const SimulatorStudy& study, const std::vector<Answer>& answers,
+                                   std::size_t node_class, std::optional<std::size_t> without) {
+  std::vector<double> excesses;
+  for (const Answer& answer : answers) {
+    const ErrorCase& one = study.cases[answer.number];
+    if (node_class_of(one.nodes) == node_class && one.scene != without) {
+      excesses.push_back(answer.excess());
+    }
+  }
+  if (excesses.empty()) {
+    return std::nullopt;
+  }
+  return upper_quantile(std::move(excesses), stated_confidence);
+}
+
+std::optional<double> cover_widened(const SimulatorStudy& study, const std::vector<Answer>& answers) {
+  std::size_t asked = 0;
+  std::size_t covered = 0;
+  for (const Answer& answer : answers) {
+    const ErrorCase& one = study.cases[answer.number];
+    const std::optional<std::size_t> node_class = node_class_of(one.nodes);
+    const std::optional<double> allowance =
+        node_class ? allowance_of(study, answers, *node_class, one.scene) : std::nullopt;
+    if (allowance) {
+      ++asked;
+      covered += answer.excess() <= *allowance ? 1 : 0;
+    }
+  }
+  if (asked == 0) {
+    return std::nullopt;
+  }
+  return static_cast<double>(covered) / static_cast<double>(asked);
+}
+
+FigureErrors figure_errors(const SimulatorStudy& study, std::size_t method, Figure figure) {
+  const std::vector<Answer> answers = answers_of(study, method, figure);
+  FigureErrors result;
+  std::vector<double> errors;
+  std::size_t stated = 0;
+  std::size_t covered = 0;
+  for (const Answer& answer : answers) {
+    errors.push_back(answer.error);
+    stated += answer.half_width > 0.0 ? 1 : 0;
+    covered += answer.half_width > 0.0 && answer.excess() == 0.0 ? 1 : 0;
+  }
+  result.summary = summarise(errors);
+  result.summary.worst_case = answers[result.summary.worst_case].number;
+  if (stated > 0) {
+    result.covered = static_cast<double>(covered) / static_cast<double>(stated);
+  }
+  result.covered_widened = cover_widened(study, answers);
+  for (std::size_t i = 0; i < node_classes.size(); ++i) {
+    result.allowance[i] = allowance_of(study, answers, i, std::nullopt);
+    double sum = 0.0;
+    double count = 0.0;
+    for (const Answer& answer : answers) {
+      if (node_class_of(study.cases[answer.number].nodes) == i) {
+        sum += answer.half_width;
+        count += 1.0;
+      }
+    }
+    result.mean_half_width[i] = count > 0.0 ? sum / count : 0.0;
+  }
+  return result;
+}
+
+void add_ranks(const SimulatorStudy& study, std::size_t method, MethodErrors& errors) {
+  const std::size_t scenes = study.cases.back().scene + 1;
+  double taus = 0.0;
+  double ranked = 0.0;
+  errors.least_tau = std::numeric_limits<double>::infinity();
+  for (std::size_t scene = 0; scene < scenes; ++scene) {
+    std::vector<double> truth;
+    std::vector<double> found;
+    std::vector<double> true_power;
+    std::vector<double> found_power;
+    for (std::size_t number = 0; number < study.cases.size(); ++number) {
+      if (study.cases[number].scene != scene) {
+        continue;
+      }
+      const Figures& exact = study.truth[number].value;
+      const std::optional<Estimate>& estimate = study.estimates[method][number];
+      const double end = estimate ? estimate->value[Figure::end] : exact[Figure::end];
+      const auto nodes = static_cast<double>(study.cases[number].nodes);
+      truth.push_back(exact[Figure::end]);
+      found.push_back(end);
+      // Speed-up times efficiency is 1 / (end^2 nodes), but for a factor.
+      true_power.push_back(exact[Figure::end] * exact[Figure::end] * nodes);
+      found_power.push_back(end * end * nodes);
+    }
+    if (const std::optional<double> tau = kendall_tau(truth, found)) {
+      taus += *tau;
+      ranked += 1.0;
+      errors.least_tau = std::min(errors.least_tau, *tau);
+    }
+    errors.regret = std::max(errors.regret, regret(truth, found));
+    errors.power_regret = std::max(errors.power_regret, regret(true_power, found_power));
+  }
+  errors.tau = ranked > 0.0 ? taus / ranked : 1.0;
+  errors.least_tau = ranked > 0.0 ? errors.least_tau : 1.0;
+}
+
+}  // namespace
+
+std::optional<std::size_t> node_class_of(std::uint32_t nodes) {
+  const auto* const found = std::lower_bound(node_classes.begin(), node_classes.end(), nodes);
+  if (found == node_classes.end()) {
+    return std::nullopt;
+  }
+  return static_cast<std::size_t>(found - node_classes.begin());
+}
+
+std::vector<MethodErrors> errors_of(const SimulatorStudy& study) {
+  std::vector<MethodErrors> all(simulator_methods().size());
+  for (std::size_t method = 0; method < all.size(); ++method) {
+    const std::vector<std::optional<Estimate>>& estimates = study.estimates[method];
+    MethodErrors& errors = all[method];
+    errors.any = std::any_of(estimates.begin(), estimates.end(), [](const auto& e) { return e.has_value(); });
+    if (!errors.any) {
+      continue;
+    }
+    for (std::size_t figure = 0; figure < figure_count; ++figure) {
+      errors.figures[figure] = figure_errors(study, method, static_cast<Figure>(figure));
+    }
+    add_ranks(study, method, errors);
+  }
+  return all;
+}
+
+}  // namespace marti::studies

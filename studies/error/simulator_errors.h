@@ -1,0 +1,48 @@
+// What a study found about each method: errors, intervals that hold, and whether choices would be right.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "studies/error/error_metrics.h"
+#include "studies/error/simulator_study.h"
+
+namespace marti::studies {
+
+/// Allowances are measured apart for machines of up to 16 nodes and of up to 256: contention differs.
+inline constexpr std::array<std::uint32_t, 2> node_classes = {16, 256};
+/// The class of a number of nodes; nothing beyond the last.
+[[nodiscard]] std::optional<std::size_t> node_class_of(std::uint32_t nodes);
+
+/// The share of cases that a stated interval is to cover.
+inline constexpr double stated_confidence = 0.95;
+
+/// One figure by one method, over all cases that it has an answer for.
+struct FigureErrors {
+  ErrorSummary summary;           ///< worst_case is an index into SimulatorStudy::cases
+  std::optional<double> covered;  ///< share of cases in the method's own interval; nothing if it states none
+  /// The same of the interval widened by an allowance measured on the other scenes; nothing with one scene.
+  std::optional<double> covered_widened;
+  /// What a half-width must be widened by, for each class, measured on all scenes: the conformal
+  /// stated_confidence quantile of what errors exceed the method's own half-widths by. Nothing without cases.
+  std::array<std::optional<double>, node_classes.size()> allowance;
+  std::array<double, node_classes.size()> mean_half_width{};  ///< the method's own
+};
+
+struct MethodErrors {
+  bool any = false;  ///< there is an answer to a case
+  std::array<FigureErrors, figure_count> figures;
+  double tau = 0.0;           ///< Kendall's, of frame times; mean over scenes
+  double least_tau = 0.0;     ///< of all scenes
+  double regret = 0.0;        ///< of choosing the shortest frame; the worst scene's
+  double power_regret = 0.0;  ///< likewise, of the most speed-up times efficiency
+};
+
+/// One for each of simulator_methods(). A machine that a method has no answer for keeps its exact time where
+/// machines are ranked. Speed-up times efficiency is what D. L. Eager, J. Zahorjan and E. D. Lazowska choose
+/// a number of nodes by ("Speedup versus efficiency in parallel systems", IEEE Trans. Computers 38(3), 1989).
+[[nodiscard]] std::vector<MethodErrors> errors_of(const SimulatorStudy& study);
+
+}  // namespace marti::studies

@@ -1,0 +1,47 @@
+// Every method on every machine of the study, beside exact replay.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studies/error/error_keys.h"
+#include "studies/error/simulator_figures.h"
+#include "studies/error/simulator_methods.h"
+
+namespace marti::studies {
+
+/// A machine on a scene.
+struct ErrorCase {
+  std::size_t scene = 0;  ///< index into ErrorConfig::scenes
+  std::uint32_t nodes = 1;
+  std::uint64_t cache = 0;  ///< bytes
+  std::string name;         ///< "teapot:12, 64 nodes, 16 KiB"
+};
+
+/// Accesses to the nodes of one level of a scene's octree beside what the formula of the paper of 1992
+/// predicts: A(l+1) = 4 A(l) (B + P) / (B + P + L), every branch being entered into four of its children.
+struct LevelAccesses {
+  std::string scene;
+  std::uint32_t level = 1;
+  std::uint64_t accesses = 0;
+  double from_above = 0.0;  ///< from the accesses to the level above
+  double from_root = 0.0;   ///< from those to the root, level by level
+};
+
+struct SimulatorStudy {
+  std::vector<ErrorCase> cases;  ///< scene by scene, cache by cache, by ascending nodes
+  std::vector<Estimate> truth;   ///< of each case, by exact replay
+  /// [method][case], methods as in simulator_methods(); nothing where a method has no answer.
+  std::vector<std::vector<std::optional<Estimate>>> estimates;
+  /// [method][repeat]: processor seconds for an answer to every case, by interpolation too.
+  std::vector<std::vector<double>> cpu_seconds;
+  std::vector<LevelAccesses> levels;  ///< of octrees
+};
+
+/// Traces each scene and runs everything, measurements of run time interleaved. What it finds but for
+/// cpu_seconds is the same for the same configuration. Throws UserError.
+[[nodiscard]] SimulatorStudy study_simulator(const ErrorConfig& config);
+
+}  // namespace marti::studies

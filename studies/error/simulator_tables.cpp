@@ -1,0 +1,288 @@
+#include "studies/error/simulator_tables.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace marti::studies {
+
+namespace {
+
+constexpr auto at(Figure figure) { return static_cast<std::size_t>(figure); }
+
+Cell optional_cell(const std::optional<double>& value) { return value ? Cell(*value) : Cell(); }
+
+// What is counted of the work of all answers.
+struct CountedWork {
+  std::uint64_t events = 0;
+  std::uint64_t words = 0;
+};
+
+CountedWork work_of(const SimulatorStudy& study, std::size_t method) {
+  CountedWork work;
+  for (const std::optional<Estimate>& estimate : study.estimates[method]) {
+    work.events += estimate ? estimate->events : 0;
+    work.words += estimate ? estimate->words : 0;
+  }
+  return work;
+}
+
+double median_of(const SimulatorStudy& study, std::size_t method) {
+  return median_interval(study.cpu_seconds[method]).median;
+}
+
+const Column method_column = {"method", ColumnType::text, "", "way of getting the answer"};
+const Column knob_column = {"knob", ColumnType::text, "", "its setting"};
+
+}  // namespace
+
+Table method_table(const SimulatorStudy& study, std::span<const MethodErrors> errors) {
+  Table table(
+      "error_methods", "Methods: their errors over all machines, against exact replay",
+      {method_column,
+       knob_column,
+       {"cases", ColumnType::integer, "1", "machines that it has an answer for"},
+       {"end_mean", ColumnType::real, "fraction", "error of the frame time, signed mean"},
+       {"end_abs", ColumnType::real, "fraction", "mean of its size"},
+       {"end_worst", ColumnType::real, "fraction", "the largest"},
+       {"worst_case", ColumnType::text, "", "where that is"},
+       {"speed_up_abs", ColumnType::real, "fraction", "error of the speed-up, mean size"},
+       {"misses_abs", ColumnType::real, "fraction", "error of the misses, mean size"},
+       {"use_abs", ColumnType::real, "fraction",
+        "difference of the share of the frame in which the interconnect is busy, mean size"},
+       {"wait_abs", ColumnType::real, "fraction", "error of the mean wait for it, mean size"},
+       {"tau", ColumnType::real, "1", "Kendall's tau of the machines by frame time, the lowest of a scene"},
+       {"regret", ColumnType::real, "fraction",
+        "how much longer a frame the machine chosen has than the best, in the worst scene"},
+       {"power_regret", ColumnType::real, "fraction",
+        "how much less speed-up times efficiency, over that of the machine chosen"},
+       {"covered", ColumnType::real, "fraction", "share of frame times in the method's own interval"},
+       {"covered_widened", ColumnType::real, "fraction",
+        "share in that interval widened by what errors exceed it by on other scenes"}});
+  const std::span<const Method> methods = simulator_methods();
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    if (!errors[m].any) {
+      continue;
+    }
+    const auto& figures = errors[m].figures;
+    const auto size_of = [&](Figure figure) { return figures[at(figure)].summary.mean_abs; };
+    const FigureErrors& end = figures[at(Figure::end)];
+    table.add_row({methods[m].name(), methods[m].knob(), count_cell(end.summary.cases), end.summary.mean,
+                   end.summary.mean_abs, end.summary.worst,
+                   end.summary.worst == 0.0 ? Cell() : Cell(study.cases[end.summary.worst_case].name),
+                   size_of(Figure::speed_up), size_of(Figure::misses), size_of(Figure::use),
+                   size_of(Figure::wait), errors[m].least_tau, errors[m].regret, errors[m].power_regret,
+                   optional_cell(end.covered), optional_cell(end.covered_widened)});
+  }
+  return table;
+}
+
+Table figure_table(const SimulatorStudy& study, std::span<const MethodErrors> errors) {
+  Table table(
+      "error_figures", "Figures by every method: errors and intervals",
+      {method_column,
+       knob_column,
+       {"figure", ColumnType::text, "", "what is estimated; use: difference of shares, others: relative"},
+       {"cases", ColumnType::integer, "1", "machines"},
+       {"mean", ColumnType::real, "fraction", "signed mean of the errors"},
+       {"mean_abs", ColumnType::real, "fraction", "mean of their sizes"},
+       {"worst", ColumnType::real, "fraction", "the largest"},
+       {"worst_case", ColumnType::text, "", "where that is"},
+       {"covered", ColumnType::real, "fraction", "share of cases in the method's own 95 % interval"},
+       {"covered_widened", ColumnType::real, "fraction",
+        "share in it when widened by what errors exceed it by on other scenes"},
+       {"allowance_16", ColumnType::real, "fraction", "by how much it is to be widened, up to 16 nodes"},
+       {"allowance_256", ColumnType::real, "fraction", "likewise, 17 to 256 nodes"}});
+  const std::span<const Method> methods = simulator_methods();
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    for (std::size_t figure = 0; errors[m].any && figure < figure_count; ++figure) {
+      const FigureErrors& found = errors[m].figures[figure];
+      table.add_row({methods[m].name(), methods[m].knob(), std::string(figure_names[figure]),
+                     count_cell(found.summary.cases), found.summary.mean, found.summary.mean_abs,
+                     found.summary.worst,
+                     found.summary.worst == 0.0 ? Cell() : Cell(study.cases[found.summary.worst_case].name),
+                     optional_cell(found.covered), optional_cell(found.covered_widened),
+                     optional_cell(found.allowance[0]), optional_cell(found.allowance[1])});
+    }
+  }
+  return table;
+}
+
+Table case_table(const SimulatorStudy& study) {
+  std::vector<Column> columns = {
+      {"machine", ColumnType::text, "", "scene, nodes and size of the caches"}, method_column, knob_column};
+  for (const std::string_view name : figure_names) {
+    const bool ticks = name == "end" || name == "wait";
+    columns.push_back({std::string(name), ColumnType::real,
+                       ticks           ? "ps"
+                       : name == "use" ? "fraction"
+                                       : "1",
+                       "what the method says"});
+    columns.push_back({std::string(name) + "_error", ColumnType::real, "fraction", "its error"});
+    columns.push_back({std::string(name) + "_half_width", ColumnType::real, "fraction",
+                       "of its own 95 % interval, in the error's terms; 0 where it states none"});
+  }
+  columns.push_back({"miss_ratio_error", ColumnType::real, "fraction",
+                     "misses over references, less the same of exact replay: points, not relative"});
+  Table table("error_cases", "Every machine by every method", std::move(columns));
+  const std::span<const Method> methods = simulator_methods();
+  for (std::size_t number = 0; number < study.cases.size(); ++number) {
+    const Estimate& truth = study.truth[number];
+    const auto miss_ratio = [](const Estimate& e) {
+      return e.references > 0.0 ? e.value[Figure::misses] / e.references : 0.0;
+    };
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      const std::optional<Estimate>& estimate = study.estimates[m][number];
+      if (!estimate) {
+        continue;
+      }
+      std::vector<Cell> row = {study.cases[number].name, methods[m].name(), methods[m].knob()};
+      for (std::size_t i = 0; i < figure_count; ++i) {
+        const auto figure = static_cast<Figure>(i);
+        row.emplace_back(estimate->value[figure]);
+        row.emplace_back(error_of(figure, estimate->value[figure], truth.value[figure]));
+        row.emplace_back(estimate->half_width[figure]);
+      }
+      row.emplace_back(miss_ratio(*estimate) - miss_ratio(truth));
+      table.add_row(std::move(row));
+    }
+  }
+  return table;
+}
+
+Table level_table(const SimulatorStudy& study) {
+  Table table("error_levels", "Accesses to each level of the octree beside the paper's formula",
+              {{"scene", ColumnType::text, "", "scene"},
+               {"level", ColumnType::integer, "", "the root's is 1"},
+               {"accesses", ColumnType::integer, "1", "visits to nodes of the level, counted"},
+               {"from_above", ColumnType::real, "1", "4 A (B + P) / (B + P + L) of the level above"},
+               {"above_error", ColumnType::real, "fraction", "its relative error"},
+               {"from_root", ColumnType::real, "1", "the same from the root's accesses down"},
+               {"root_error", ColumnType::real, "fraction", "its relative error"}});
+  for (const LevelAccesses& level : study.levels) {
+    const auto counted = static_cast<double>(level.accesses);
+    const auto error = [&](double predicted) {
+      return counted > 0.0 ? Cell(predicted / counted - 1.0) : Cell();
+    };
+    table.add_row({level.scene, count_cell(level.level), count_cell(level.accesses), level.from_above,
+                   error(level.from_above), level.from_root, error(level.from_root)});
+  }
+  return table;
+}
+
+Table time_table(const SimulatorStudy& study, std::span<const MethodErrors> errors) {
+  Table table(
+      "host_error_time", "Run time beside error",
+      {method_column,
+       knob_column,
+       {"figure", ColumnType::text, "", "whose error is meant"},
+       {"cpu", ColumnType::real, "s", "processor time for answers to all machines, median of the repeats"},
+       {"cpu_low", ColumnType::real, "s", "the least of the repeats"},
+       {"cpu_high", ColumnType::real, "s", "the largest"},
+       {"confidence", ColumnType::real, "fraction", "that the true median lies between them"},
+       {"share", ColumnType::real, "fraction", "processor time over that of exact replay"},
+       {"events", ColumnType::integer, "1", "events handled"},
+       {"words", ColumnType::integer, "1", "words of the logs walked"},
+       {"mean_abs", ColumnType::real, "fraction", "mean size of the errors"},
+       {"worst", ColumnType::real, "fraction", "size of the largest"},
+       {"front", ColumnType::integer, "", "1 where no method has both less time and a smaller mean error"}});
+  const std::span<const Method> methods = simulator_methods();
+  const double exact = median_of(study, 0);
+  for (std::size_t figure = 0; figure < figure_count; ++figure) {
+    std::vector<CostAndError> points;
+    std::vector<std::size_t> of_point;
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      if (errors[m].any) {
+        points.push_back({median_of(study, m), errors[m].figures[figure].summary.mean_abs});
+        of_point.push_back(m);
+      }
+    }
+    const std::vector<std::size_t> front = pareto_front(points);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const std::size_t m = of_point[p];
+      const MedianInterval time = median_interval(study.cpu_seconds[m]);
+      const CountedWork work = work_of(study, m);
+      const ErrorSummary& summary = errors[m].figures[figure].summary;
+      const bool interpolated = methods[m].kind == MethodKind::interpolated;
+      table.add_row({methods[m].name(), methods[m].knob(), std::string(figure_names[figure]), time.median,
+                     time.low, time.high, time.confidence, exact > 0.0 ? Cell(time.median / exact) : Cell(),
+                     interpolated ? Cell() : count_cell(work.events),
+                     interpolated ? Cell() : count_cell(work.words), summary.mean_abs,
+                     std::abs(summary.worst),
+                     std::int64_t{std::find(front.begin(), front.end(), p) != front.end()}});
+    }
+  }
+  return table;
+}
+
+Table fastest_table(const SimulatorStudy& study, std::span<const MethodErrors> errors) {
+  Table table(
+      "host_error_fastest", "The fastest method for an error",
+      {{"figure", ColumnType::text, "", "whose error is meant"},
+       {"error", ColumnType::real, "fraction", "that is allowed"},
+       {"by_mean", ColumnType::text, "", "the fastest whose mean size of errors is not larger"},
+       {"mean_share", ColumnType::real, "fraction", "its processor time over that of exact replay"},
+       {"by_worst", ColumnType::text, "", "the fastest whose largest error is not larger"},
+       {"worst_share", ColumnType::real, "fraction", "its processor time over that of exact replay"}});
+  const std::span<const Method> methods = simulator_methods();
+  const double exact = median_of(study, 0);
+  for (const Figure figure : {Figure::end, Figure::speed_up, Figure::misses, Figure::use, Figure::wait}) {
+    for (const double limit : {0.1, 0.03, 0.01, 0.003, 0.0}) {
+      const auto fastest = [&](const auto& size_of) {
+        std::size_t best = 0;
+        for (std::size_t m = 0; m < methods.size(); ++m) {
+          if (errors[m].any && size_of(errors[m].figures[at(figure)].summary) <= limit &&
+              median_of(study, m) < median_of(study, best)) {
+            best = m;
+          }
+        }
+        return best;
+      };
+      const std::size_t by_mean = fastest([](const ErrorSummary& s) { return s.mean_abs; });
+      const std::size_t by_worst = fastest([](const ErrorSummary& s) { return std::abs(s.worst); });
+      const auto text = [&](std::size_t m) { return methods[m].name() + " " + methods[m].knob(); };
+      const auto share = [&](std::size_t m) {
+        return exact > 0.0 ? Cell(median_of(study, m) / exact) : Cell();
+      };
+      table.add_row({std::string(figure_names[at(figure)]), limit, text(by_mean), share(by_mean),
+                     text(by_worst), share(by_worst)});
+    }
+  }
+  return table;
+}
+
+Table measured_table(const SimulatorStudy& study, std::span<const MethodErrors> errors) {
+  std::vector<Column> columns = {
+      {"version", ColumnType::integer, "", "of the list of methods"},
+      {"number", ColumnType::integer, "", "of the method in that list"},
+      {"nodes_to", ColumnType::integer, "1", "machines of up to so many nodes, more than the class before"},
+      {"share", ColumnType::real, "fraction", "processor time over that of exact replay"}};
+  for (const std::string_view name : figure_names) {
+    columns.push_back({std::string(name), ColumnType::real, "fraction",
+                       "half-width to add to the method's own, so that 95 % of errors are covered"});
+    columns.push_back({std::string(name) + "_own", ColumnType::real, "fraction",
+                       "the method's own half-width, mean over the machines measured"});
+  }
+  Table table("host_error_measured", "Measured errors that `marti run --within` rests on",
+              std::move(columns));
+  const std::span<const Method> methods = simulator_methods();
+  const double exact = median_of(study, 0);
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    for (std::size_t c = 0; c < node_classes.size(); ++c) {
+      if (!answers_alone(methods[m]) || !errors[m].any || !errors[m].figures[0].allowance[c]) {
+        continue;
+      }
+      std::vector<Cell> row = {std::int64_t{methods_version}, count_cell(m), count_cell(node_classes[c]),
+                               exact > 0.0 ? Cell(median_of(study, m) / exact) : Cell()};
+      for (const FigureErrors& figure : errors[m].figures) {
+        row.push_back(optional_cell(figure.allowance[c]));
+        row.emplace_back(figure.mean_half_width[c]);
+      }
+      table.add_row(std::move(row));
+    }
+  }
+  return table;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,30 @@
+// What the study of the simulator's methods found, as tables.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "studies/error/simulator_errors.h"
+#include "studies/results/table.h"
+
+namespace marti::studies {
+
+/// "error_methods": a row for each method, for people.
+[[nodiscard]] Table method_table(const SimulatorStudy& study, std::span<const MethodErrors> errors);
+/// "error_figures": a row for each method and figure.
+[[nodiscard]] Table figure_table(const SimulatorStudy& study, std::span<const MethodErrors> errors);
+/// "error_cases": a row for each method and machine.
+[[nodiscard]] Table case_table(const SimulatorStudy& study);
+/// "error_levels": accesses to each level of each octree.
+[[nodiscard]] Table level_table(const SimulatorStudy& study);
+
+// Measured on the host.
+
+/// "host_error_time": a row for each method and figure: run time beside error, and the Pareto front.
+[[nodiscard]] Table time_table(const SimulatorStudy& study, std::span<const MethodErrors> errors);
+/// "host_error_fastest": the fastest method for errors of 10, 3, 1, 0.3 and 0 %.
+[[nodiscard]] Table fastest_table(const SimulatorStudy& study, std::span<const MethodErrors> errors);
+/// "host_error_measured": the figures that `marti run --within` rests on (studies/error/measured_errors.h).
+[[nodiscard]] Table measured_table(const SimulatorStudy& study, std::span<const MethodErrors> errors);
+
+}  // namespace marti::studies

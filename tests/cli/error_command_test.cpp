@@ -1,0 +1,118 @@
+// `marti study error` and `marti run --within` as their user meets them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/cli/shell.h"
+#include "tests/support/temporary_directory.h"
+
+namespace marti::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The shipped study with scenes and machines that take no time.
+const std::string small =
+    quoted(fs::path(MARTI_SOURCE) / "configs" / "error.toml") +
+    " --set image.width=24 --set image.height=16 --set 'error.scenes=[\"tetra:2\",\"teapot:2:pot\"]'"
+    " --set error.nodes=[1,2,4] --set 'error.cache_sizes=[\"32 B\",\"1 KiB\",\"64 KiB\"]' --set "
+    "error.repeats=2";
+
+TEST(StudyError, WritesTheSameTablesAgainButForRunTimes) {
+  const TemporaryDirectory directory;
+  const fs::path a = directory.path() / "a";
+  const fs::path b = directory.path() / "b";
+  const Outcome outcome = marti("study error " + small + " -o " + quoted(a));
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  for (const char* text : {"full warming", "quantum of 10 misses", "all nodes walked", "node counts, linear",
+                           "paper's formula", "The fastest method for an error", "results.sqlite"}) {
+    EXPECT_NE(outcome.output.find(text), std::string::npos) << text;
+  }
+  ASSERT_EQ(marti("study error " + small + " -o " + quoted(b)).status, 0);
+  int compared = 0;
+  for (const auto& entry : fs::directory_iterator(a)) {
+    const std::string name = entry.path().filename().string();
+    ASSERT_TRUE(fs::exists(b / name)) << name;
+    if (!name.starts_with("host") && name != "results.sqlite") {
+      ++compared;
+      EXPECT_EQ(read(a / name), read(b / name)) << name;
+    }
+  }
+  EXPECT_GE(compared, 7);
+  for (const char* name : {"host_error_time.csv", "host_error_measured.csv", "host_error_end.vl.json"}) {
+    EXPECT_TRUE(fs::exists(a / name)) << name;
+  }
+  // Exact replay has no error.
+  const std::string methods = read(a / "error_methods.csv");
+  EXPECT_NE(methods.find("\nexact,replay,18,0,0,0,,0,0,0,0,1,0,0,"), std::string::npos) << methods;
+}
+
+TEST(StudyError, WrongInputIsTwo) {
+  const TemporaryDirectory directory;
+  const auto refused = [&](const std::string& options, const std::string& complaint) {
+    const Outcome outcome =
+        marti("study error " + small + " -o " + quoted(directory.path() / "out") + options);
+    EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.output;
+    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
+  };
+  refused(" --set error.nodes=[2,4]", "error.nodes");
+  refused(" --set error.scenes=[]", "error.scenes");
+  refused(" --set error.cache_sizes=[]", "error.cache_sizes");
+  refused(" --set 'error.cache_sizes=[\"48 B\"]'", "error.cache_sizes");
+  refused(" --set error.repeats=0", "error.repeats");
+  refused(" --set scene.source=tetra:2", "error.scenes");
+  refused(" --set cache.replacement=fifo", "LRU");
+  refused(" --set machine.scheme=space", "image");
+  refused(" --set error.scene=x", "error.scenes");
+}
+
+const std::string machine =
+    quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") +
+    " --set scene.source=teapot:2 --set image.width=128 --set image.height=128 --set packets.width=4 "
+    "--set packets.height=4 ";
+
+TEST(RunWithin, GivesAnEstimateWithErrorBarsOrAnExactRun) {
+  const Outcome wide = marti("run " + machine + "--within '60 %'");
+  ASSERT_EQ(wide.status, 0) << wide.output;
+  for (const char* text :
+       {"estimate ", "not exact", "+- ", "frame time", "speed-up", "misses", "mean wait"}) {
+    EXPECT_NE(wide.output.find(text), std::string::npos) << text << "\n" << wide.output;
+  }
+  EXPECT_EQ(wide.output.find("bounds "), std::string::npos);
+  EXPECT_EQ(
+      marti("run " + machine + "--within 0.6").output.find("asked for within 60 %") == std::string::npos,
+      false);
+  const Outcome none = marti("run " + machine + "--within 0%");
+  ASSERT_EQ(none.status, 0) << none.output;
+  EXPECT_NE(none.output.find("exact replay, no error"), std::string::npos);
+  // But for the reason, it is what is said without --within.
+  const std::string plain = marti("run " + machine).output;
+  EXPECT_EQ(none.output.substr(0, plain.size()), plain);
+  const Outcome outside = marti("run " + machine + "--within 5% --set machine.scheme=space");
+  EXPECT_EQ(outside.status, 0) << outside.output;
+  EXPECT_NE(outside.output.find("exact replay, no error: "), std::string::npos) << outside.output;
+}
+
+TEST(RunWithin, WrongInputIsTwo) {
+  const TemporaryDirectory directory;
+  const fs::path out = directory.path() / "out";
+  const auto refused = [&](const std::string& options, const std::string& complaint) {
+    const Outcome outcome = marti("run " + machine + options);
+    EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.output;
+    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
+  };
+  refused("--within ''", "percentage");
+  refused("--within 2", "tolerance");
+  refused("--within 101%", "tolerance");
+  refused("--within -3%", "--within");
+  refused("--within few", "tolerance");
+  refused("--within 2% --json", "--within");
+  refused("--within 2% -o " + quoted(out), "--within");
+  EXPECT_FALSE(fs::exists(out));
+  refused("--within 2% --set machine.nodes=0", "machine.nodes");
+  refused("--within 2% --set record.timeline=true", "record.timeline");
+}
+
+}  // namespace
+}  // namespace marti::test

@@ -1,0 +1,215 @@
+// Replaying some packets only, and with relaxed time: exact at their limits, lawful everywhere.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <numeric>
+#include <vector>
+
+#include "processors/replay.h"
+#include "sim/error.h"
+#include "tests/support/random_machine.h"
+
+namespace marti::processors {
+namespace {
+
+void expect_equal(const MachineResult& a, const MachineResult& b) {
+  ASSERT_EQ(a.end, b.end);
+  ASSERT_EQ(a.events, b.events);
+  ASSERT_EQ(a.nodes.size(), b.nodes.size());
+  for (std::size_t n = 0; n < a.nodes.size(); ++n) {
+    ASSERT_EQ(a.nodes[n].time, b.nodes[n].time) << "node " << n;
+    ASSERT_EQ(a.nodes[n].references.hits, b.nodes[n].references.hits);
+    ASSERT_EQ(a.nodes[n].references.misses, b.nodes[n].references.misses);
+    ASSERT_EQ(a.nodes[n].packets, b.nodes[n].packets);
+  }
+  for (std::size_t c = 0; c < a.clusters.size(); ++c) {
+    ASSERT_EQ(a.clusters[c].interconnect.busy, b.clusters[c].interconnect.busy);
+    ASSERT_EQ(a.clusters[c].interconnect.waits.sum, b.clusters[c].interconnect.waits.sum);
+  }
+}
+
+// A random machine that a sample can be taken of.
+MachineConfig random_sampled(test::Random& random) {
+  MachineConfig machine = test::random_machine(random);
+  machine.host.assignment = Assignment::dynamic;
+  machine.build.sharing = Sharing::given;
+  machine.count = {};
+  machine.contexts = 1;
+  machine.prefetch = {};
+  machine.l2 = {};
+  return machine;
+}
+
+WorkLog small_log(test::Random& random) {
+  return test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 14)),
+                          static_cast<std::uint32_t>(test::pick(random, 1, 14)));
+}
+
+std::vector<std::uint64_t> everything(std::uint64_t packets) {
+  std::vector<std::uint64_t> all(packets);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+RC_GTEST_PROP(Inexact, ASampleOfAllPacketsIsExact, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = small_log(random);
+  const MachineConfig machine = random_sampled(random);
+  const std::uint64_t packets = PacketList(log.width, log.height, machine.packets).size();
+  const MachineResult exact = replay(log, machine);
+  for (const std::uint64_t warm_up : {std::uint64_t{0}, std::uint64_t{1}, PacketSample::all_before}) {
+    const PacketSample sample(everything(packets), packets, warm_up);
+    const MachineResult sampled = replay(log, machine, {.sample = &sample});
+    expect_equal(exact, sampled);
+    RC_ASSERT(!::testing::Test::HasFatalFailure());
+    // The packets' figures are all that the nodes did.
+    PacketFigures sum;
+    for (const PacketFigures& figures : sampled.packet_figures) {
+      sum.time += figures.time;
+      sum.references += figures.references;
+      sum.misses += figures.misses;
+    }
+    const TimeDivision time = sampled.time();
+    sim::Ticks worked = 0;
+    for (const NodeStatistics& node : sampled.nodes) {
+      worked += node.finish;
+    }
+    RC_ASSERT(sum.time == worked - time[static_cast<std::size_t>(Activity::dispatch_wait)]);
+    RC_ASSERT(sum.references == exact.references().references());
+    RC_ASSERT(sum.misses == exact.references().all_misses());
+  }
+}
+
+RC_GTEST_PROP(Inexact, ASampleIsAFrameOfItsPackets, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = small_log(random);
+  const MachineConfig machine = random_sampled(random);
+  const std::uint64_t packets = PacketList(log.width, log.height, machine.packets).size();
+  std::vector<std::uint64_t> chosen;
+  for (std::uint64_t packet = 0; packet < packets; ++packet) {
+    if (test::pick(random, 0, 2) == 0) {
+      chosen.push_back(packet);
+    }
+  }
+  RC_PRE(!chosen.empty());
+  const PacketSample cold(chosen, packets, 0);
+  const PacketSample warm(chosen, packets, PacketSample::all_before);
+  const MachineResult first = replay(log, machine, {.sample = &cold});
+  const MachineResult second = replay(log, machine, {.sample = &warm});
+  RC_ASSERT(first.packets == chosen.size());
+  RC_ASSERT(first.pixels == second.pixels);
+  // What is referred to does not depend on warming.
+  RC_ASSERT(first.references().references() == second.references().references());
+  RC_ASSERT(first.steps().tests == second.steps().tests);
+}
+
+// One node meets the packets in their order: fully warmed, each misses exactly what it misses in the frame.
+RC_GTEST_PROP(Inexact, FullWarmingOfOneNodeGivesEachPacketsOwnMisses, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = small_log(random);
+  MachineConfig machine = random_sampled(random);
+  machine.clusters = 1;
+  machine.nodes = 1;
+  const std::uint64_t packets = PacketList(log.width, log.height, machine.packets).size();
+  const PacketSample all(everything(packets), packets, 0);
+  const MachineResult exact = replay(log, machine, {.sample = &all});
+  std::vector<std::uint64_t> chosen;
+  for (std::uint64_t packet = 0; packet < packets; ++packet) {
+    if (test::pick(random, 0, 1) == 0) {
+      chosen.push_back(packet);
+    }
+  }
+  RC_PRE(!chosen.empty());
+  const PacketSample part(chosen, packets, PacketSample::all_before);
+  const MachineResult sampled = replay(log, machine, {.sample = &part});
+  RC_ASSERT(sampled.packet_figures.size() == chosen.size());
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    RC_ASSERT(sampled.packet_figures[i].misses == exact.packet_figures[chosen[i]].misses);
+    RC_ASSERT(sampled.packet_figures[i].references == exact.packet_figures[chosen[i]].references);
+  }
+}
+
+TEST(Inexact, ANodeWarmsWithThePacketsItWouldHaveHad) {
+  const PacketSample sample({2, 7, 12}, 20, PacketSample::all_before);
+  const auto warmed = [&](std::uint64_t last, std::uint64_t next, std::uint64_t nodes) {
+    std::vector<std::uint64_t> packets;
+    sample.for_each_warmed(last, next, nodes, [&](std::uint64_t packet) { packets.push_back(packet); });
+    return packets;
+  };
+  EXPECT_EQ(warmed(0, 2, 1), (std::vector<std::uint64_t>{0, 1}));
+  EXPECT_EQ(warmed(3, 7, 1), (std::vector<std::uint64_t>{3, 4, 5, 6}));
+  EXPECT_EQ(warmed(0, 12, 5), (std::vector<std::uint64_t>{}));  // 2 and 7 are in the sample
+  EXPECT_EQ(warmed(0, 12, 4), (std::vector<std::uint64_t>{0, 4, 8}));
+  EXPECT_EQ(warmed(5, 12, 4), (std::vector<std::uint64_t>{8}));
+  EXPECT_EQ(warmed(0, 2, 64), (std::vector<std::uint64_t>{}));
+}
+
+// A random machine whose time can be relaxed.
+MachineConfig random_relaxed(test::Random& random) {
+  MachineConfig machine = random_sampled(random);
+  machine.interconnect.arbitration = memory::Arbitration::fifo;
+  return machine;
+}
+
+RC_GTEST_PROP(Inexact, AQuantumOfOneTickIsExact, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = small_log(random);
+  const MachineConfig machine = random_relaxed(random);
+  RC_PRE(machine.placement != Placement::distributed);
+  expect_equal(replay(log, machine), replay(log, machine, {.quantum = 1}));
+  RC_ASSERT(!::testing::Test::HasFatalFailure());
+}
+
+// The replay itself checks the laws of what it finds.
+RC_GTEST_PROP(Inexact, AnyQuantumObeysTheLaws, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = small_log(random);
+  const MachineConfig machine = random_relaxed(random);
+  RC_PRE(machine.placement != Placement::distributed);
+  const sim::Ticks quantum = test::pick(random, 2, 100) * test::pick(random, 1, 1'000'000);
+  const MachineResult relaxed = replay(log, machine, {.quantum = quantum});
+  RC_ASSERT(relaxed.references().references() == replay(log, machine).references().references());
+  expect_equal(relaxed, replay(log, machine, {.start_seed = seed, .quantum = quantum}));
+  RC_ASSERT(!::testing::Test::HasFatalFailure());
+}
+
+// A node alone waits for nobody.
+RC_GTEST_PROP(Inexact, OneNodeIsExactWithAnyQuantum, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = small_log(random);
+  MachineConfig machine = random_relaxed(random);
+  RC_PRE(machine.placement != Placement::distributed);
+  machine.clusters = 1;
+  machine.nodes = 1;
+  expect_equal(replay(log, machine),
+               replay(log, machine, {.quantum = test::pick(random, 2, 1'000'000'000'000)}));
+  RC_ASSERT(!::testing::Test::HasFatalFailure());
+}
+
+TEST(Inexact, MachinesThatCannotBeSampledAreRefused) {
+  test::Random random(1);
+  const WorkLog log = small_log(random);
+  const MachineConfig machine = random_relaxed(random);
+  const std::uint64_t packets = PacketList(log.width, log.height, machine.packets).size();
+  const PacketSample sample({0}, packets, 0);
+  const auto refused = [&](auto change) {
+    MachineConfig other = machine;
+    change(other);
+    EXPECT_THROW((void)replay(log, other, {.sample = &sample}), sim::UserError);
+    EXPECT_THROW((void)replay(log, other, {.quantum = 5}), sim::UserError);
+  };
+  refused([](MachineConfig& m) { m.host.assignment = Assignment::blocks; });
+  refused([](MachineConfig& m) { m.contexts = 2; });
+  refused([](MachineConfig& m) { m.count.sharing = true; });
+  MachineConfig prioritised = machine;
+  prioritised.placement = Placement::shared;
+  prioritised.interconnect.kind = memory::InterconnectKind::bus;
+  prioritised.interconnect.arbitration = memory::Arbitration::round_robin;
+  EXPECT_THROW((void)replay(log, prioritised, {.quantum = 5}), sim::UserError);
+  EXPECT_THROW((void)PacketSample({}, 3, 0), sim::InternalError);
+  EXPECT_THROW((void)PacketSample({1, 1}, 3, 0), sim::InternalError);
+  EXPECT_THROW((void)PacketSample({3}, 3, 0), sim::InternalError);
+}
+
+}  // namespace
+}  // namespace marti::processors
