@@ -69,30 +69,10 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
   return timed;
 }
 
-}  // namespace
-
-sim::Schema run_schema() {
-  sim::Schema schema;
-  declare_frame_keys(schema);
-  declare_machine_keys(schema);
-  declare_record_keys(schema);
-  declare_sweep_sections(schema);
-  return schema;
-}
-
-RunResult run(sim::Config& config, const std::filesystem::path& directory) {
-  RunResult result;
-  result.config_name = config.name();
-  result.frame_config = read_frame(config);
-  refuse_several_frames(config, result.frame_config.frames);
-  result.machine = read_machine(config);
-  const RecordConfig record = read_record(config, !directory.empty());
-  config.refuse_unused();
-  refuse_beyond_memory(config, result.frame_config, result.machine);
-  refuse_maps_beyond_memory(config, record, result.frame_config);
-  result.values = config.effective_values();
-
+// Everything that follows from the frame's and the machine's configuration.
+void render_and_time(const RecordConfig& record, const std::filesystem::path& directory, RunResult& result) {
   result.functional = run_functional(result.frame_config);
+  result.plan = result.functional.plan;
   const processors::WorkLog& log = *result.functional.frame.log;
   result.timed = watched_replay(record, directory, result);
   if (result.machine.all_nodes() == 1 && result.machine.scheme == processors::Scheme::image) {
@@ -105,6 +85,43 @@ RunResult run(sim::Config& config, const std::filesystem::path& directory) {
   result.finding = find_limit(result.machine, result.timed);
   result.bounds = processors::frame_bounds(result.machine, result.timed);
   result.prediction = processors::predict(result.machine, result.timed);
+}
+
+}  // namespace
+
+sim::Schema run_schema() {
+  sim::Schema schema;
+  declare_frame_keys(schema);
+  declare_machine_keys(schema);
+  declare_record_keys(schema);
+  declare_sweep_sections(schema);
+  return schema;
+}
+
+RunResult run(sim::Config& config, const std::filesystem::path& directory, const KeptItems& keep) {
+  RunResult result;
+  result.config_name = config.name();
+  result.frame_config = read_frame(config);
+  result.frame_config.keep = keep;
+  refuse_several_frames(config, result.frame_config.frames);
+  result.machine = read_machine(config);
+  const RecordConfig record = read_record(config, !directory.empty());
+  config.refuse_unused();
+  refuse_beyond_memory(config, result.frame_config, result.machine);
+  refuse_maps_beyond_memory(config, record, result.frame_config);
+  result.values = config.effective_values();
+  render_and_time(record, directory, result);
+  return result;
+}
+
+RunResult run_again(const RunResult& first, const KeptItems& keep) {
+  RunResult result;
+  result.config_name = first.config_name;
+  result.frame_config = first.frame_config;
+  result.frame_config.keep = keep;
+  result.machine = first.machine;
+  result.values = first.values;
+  render_and_time({}, {}, result);
   return result;
 }
 

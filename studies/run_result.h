@@ -24,6 +24,7 @@ struct RunResult {
   std::string config_name;
   std::vector<sim::EffectiveValue> values;
   FrameConfig frame_config;
+  Plan plan;  ///< what was left out of the frame and of the machine
   processors::MachineConfig machine;
   FunctionalRun functional;
   processors::MachineResult timed;
@@ -41,7 +42,11 @@ struct RunResult {
 /// Runs a configuration: one functional run, the machine and the same machine with one node. Throws
 /// UserError for anything wrong with the input, before it has written anything. What is recorded while the
 /// machine runs goes to `directory`, which must exist; without one nothing may be recorded.
-[[nodiscard]] RunResult run(sim::Config& config, const std::filesystem::path& directory = {});
+[[nodiscard]] RunResult run(sim::Config& config, const std::filesystem::path& directory = {},
+                            const KeptItems& keep = {});
+
+/// The same frame on the same machine with these items of the plan kept. Nothing is recorded.
+[[nodiscard]] RunResult run_again(const RunResult& first, const KeptItems& keep);
 
 /// Throws UserError when the simulated machine would take more of the computer's memory than the frame may.
 void refuse_beyond_memory(const sim::Config& config, const FrameConfig& frame,
