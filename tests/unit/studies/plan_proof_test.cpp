@@ -153,6 +153,9 @@ class PlanOfShippedScenes : public ::testing::TestWithParam<std::string> {};
 TEST_P(PlanOfShippedScenes, ChangesNothing) {
   FrameConfig frame = testing::small_frame("octree", 16);
   frame.structure_options.octree.max_objects = 8;
+  frame.structure_options.octree.max_level = 6;
+  frame.structure_options.bsp.max_objects = 8;
+  frame.structure_options.bsp.max_level = 6;
   scenes::OpenOptions open;
   const scenes::Scene scene = scenes::open_scene(GetParam(), open, decode_image);
   Tally tally;
