@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,19 @@ struct MotionFacts {
   std::uint64_t morph_targets = 0;         ///< of the meshes of the scene
 };
 
+/// How much of one kind of a file's parts a scene uses.
+struct PartUse {
+  std::string_view name;  ///< in the plural: "nodes"
+  std::uint64_t all = 0;
+  std::uint64_t used = 0;
+};
+
+/// How much of its file a scene uses.
+struct FileUse {
+  std::vector<PartUse> parts;      ///< empty for a scene that comes from no file
+  std::uint64_t unread_bytes = 0;  ///< of the accessors and images that nothing of the scene uses
+};
+
 /// Where poses come from. Any number of threads may ask at once.
 class PoseSource {
  public:
@@ -39,6 +53,7 @@ class PoseSource {
   /// Seconds to the last key frame; 0 when there is one pose only.
   [[nodiscard]] virtual double duration() const = 0;
   [[nodiscard]] virtual MotionFacts facts() const = 0;
+  [[nodiscard]] virtual FileUse file_use() const { return {}; }
 };
 
 /// A scene over time. Copies share their data.
@@ -72,6 +87,8 @@ class AnimatedScene {
 
   /// Throws UserError when an animation of the file is broken, chosen or not.
   [[nodiscard]] MotionFacts facts() const { return source_->facts(); }
+
+  [[nodiscard]] FileUse file_use() const { return source_->file_use(); }
 
  private:
   std::shared_ptr<const PoseSource> source_;

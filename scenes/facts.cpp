@@ -75,7 +75,7 @@ SceneFacts facts_of(const Scene& scene) {
   facts.bounds = bounds_of(scene);
   facts.degenerate_triangles = count_degenerate(scene);
   for (const Texture& texture : scene.textures) {
-    facts.texels += texture.texels.size();
+    facts.texels += texture.size();
   }
   const std::vector<std::uint32_t> ranks = position_ranks(scene);
   std::vector<std::uint32_t> used;

@@ -16,6 +16,7 @@
 #include "scenes/gltf_model.h"
 #include "scenes/gltf_nodes.h"
 #include "scenes/gltf_skin.h"
+#include "scenes/gltf_use.h"
 #include "scenes/gltf_vertices.h"
 #include "scenes/gltf_view.h"
 #include "scenes/open.h"
@@ -171,6 +172,8 @@ class GltfPoses : public PoseSource {
     return facts;
   }
 
+  [[nodiscard]] FileUse file_use() const override { return use_; }
+
  private:
   template <typename Work>
   void guarded(const Work& work) const {
@@ -218,6 +221,11 @@ class GltfPoses : public PoseSource {
       pose = pose_at(0.0);
     }
     look(pose);
+    use_ = gltf::use_of(model_, nodes_, materials,
+                        {skins_->size(), animation_ ? 1U : 0U, has_camera_ ? 1U : 0U});
+    if (model_.options().read_unused) {
+      gltf::read_unused(model_, materials);
+    }
     note_left_out(model_, left_out, meshes.bad_triangles(), still_);
     if (animation_) {
       still_.notes.push_back("Animation '" + animation_->name() + "' plays for " +
@@ -306,6 +314,7 @@ class GltfPoses : public PoseSource {
   std::vector<gltf::VertexInstance> instances_;
   std::vector<gltf::TriangleRange> ranges_;
   std::uint64_t morph_targets_ = 0;
+  FileUse use_;
   bool has_camera_ = false;
   bool has_lights_ = false;
 };

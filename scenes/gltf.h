@@ -46,6 +46,11 @@ struct GltfOptions {
   /// pose, unless an animation has that name.
   std::string animation;
   double time = 0.0;  ///< seconds from the animation's beginning, of the one pose that load_gltf gives
+  /// Where there is one, images are not decoded: textures have their size and their file, and no texels (see
+  /// decode_texels).
+  ImageSizer size_only;
+  /// Also reads and checks what no part of the scene uses: all images, and all accessors of numbers.
+  bool read_unused = false;
   std::uint64_t max_triangles = std::uint64_t{1} << 25;  ///< more than this is refused; vertices likewise
   std::uint64_t max_file_bytes = (std::uint64_t{1} << 32) - 1;  ///< of each file read
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <memory>
 
 #include <glm/common.hpp>
 
@@ -191,7 +192,9 @@ std::uint32_t Materials::texture_index(int texture, const std::string& user) {
   if (known != textures_.end()) {
     return known->second;
   }
-  Texture decoded = decode_image(source.source, name);
+  images_.insert(source.source);
+  Texture decoded =
+      model_.options().size_only ? size_image(source.source, name) : decode_image(source.source, name);
   decoded.srgb = true;
   decoded.repeat_u = sampler.wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
   decoded.repeat_v = sampler.wrapT != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
@@ -206,31 +209,52 @@ std::uint32_t Materials::texture_index(int texture, const std::string& user) {
   return index;
 }
 
-Texture Materials::decode_image(int image, const std::string& user) const {
+Materials::Image Materials::find_image(int image, const std::string& user) const {
   const tinygltf::Image& source = model_.at(model_.data().images, image, "image", user);
-  const std::string name = !source.name.empty()  ? source.name
-                           : !source.uri.empty() ? source.uri
-                                                 : "image " + std::to_string(image);
-  std::span<const std::byte> bytes = std::as_bytes(std::span(source.image));
+  Image found;
+  found.name = !source.name.empty()  ? source.name
+               : !source.uri.empty() ? source.uri
+                                     : "image " + std::to_string(image);
+  found.bytes = std::as_bytes(std::span(source.image));
   if (source.bufferView >= 0) {
-    bytes = model_.view_bytes(source.bufferView, "image " + std::to_string(image));
+    found.bytes = model_.view_bytes(source.bufferView, "image " + std::to_string(image));
   }
-  if (bytes.empty()) {
-    model_.fail("image '" + name + "' is missing, empty or cannot be read");
+  if (found.bytes.empty()) {
+    model_.fail("image '" + found.name + "' is missing, empty or cannot be read");
   }
   if (!decode_) {
-    model_.fail("it needs the texture '" + name + "', and no image decoder is at hand");
+    model_.fail("it needs the texture '" + found.name + "', and no image decoder is at hand");
   }
-  Texture texture;
+  return found;
+}
+
+template <class Decode>
+auto Materials::read_image(const Image& image, const Decode& decode) const {
   try {
-    texture = decode_(bytes, name);
+    return decode(image.bytes, image.name);
   } catch (const sim::UserError& error) {
-    model_.fail("image '" + name + "': " + error.what());
+    model_.fail("image '" + image.name + "': " + error.what());
   }
-  sim::ensure(texture.width > 0 && texture.height > 0 &&
-                  texture.texels.size() == std::uint64_t{texture.width} * texture.height,
+}
+
+Texture Materials::decode_image(int image, const std::string& user) const {
+  const Image found = find_image(image, user);
+  Texture texture = read_image(found, decode_);
+  sim::ensure(texture.width > 0 && texture.height > 0 && texture.texels.size() == texture.size(),
               "an image decoder returned a texture whose size does not match its texels");
-  texture.name = name;
+  texture.name = found.name;
+  return texture;
+}
+
+Texture Materials::size_image(int image, const std::string& user) const {
+  const Image found = find_image(image, user);
+  const ImageSize size = read_image(found, model_.options().size_only);
+  sim::ensure(size.width > 0 && size.height > 0, "an image sizer returned an image of no size");
+  Texture texture;
+  texture.name = found.name;
+  texture.width = size.width;
+  texture.height = size.height;
+  texture.file = std::make_shared<const std::vector<std::byte>>(found.bytes.begin(), found.bytes.end());
   return texture;
 }
 

@@ -3,6 +3,8 @@
 
 #include <map>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -42,16 +44,33 @@ class Materials {
   /// The material of a primitive; -1 is glTF's default material.
   Use use(int index);
 
+  /// Materials of the file in use.
+  [[nodiscard]] std::uint64_t used() const { return used_.size() - (used_.contains(-1) ? 1U : 0U); }
+  /// Images of the file in use, by index.
+  [[nodiscard]] const std::set<int>& used_images() const { return images_; }
+  /// Decodes an image that nothing uses, to check it.
+  void check_image(int image) const { static_cast<void>(decode_image(image, "the file")); }
+
  private:
   Material convert(int index, int& texture_coordinates);
   std::uint32_t texture_index(int texture, const std::string& user);
+  struct Image {
+    std::string name;
+    std::span<const std::byte> bytes;
+  };
+  [[nodiscard]] Image find_image(int image, const std::string& user) const;
+  /// Throws UserError for what `decode` finds wrong with the image.
+  template <class Decode>
+  auto read_image(const Image& image, const Decode& decode) const;
   [[nodiscard]] Texture decode_image(int image, const std::string& user) const;
+  [[nodiscard]] Texture size_image(int image, const std::string& user) const;
 
   const Model& model_;
   const ImageDecoder& decode_;
   Scene& scene_;
   LeftOut& left_out_;
   std::map<int, Use> used_;
+  std::set<int> images_;
   std::map<std::tuple<int, int, int>, std::uint32_t> textures_;  // by image and wrap modes
 };
 

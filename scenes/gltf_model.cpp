@@ -243,6 +243,7 @@ void Model::parse() {
   if (!parsed || !faults.empty()) {
     fail("it is no valid glTF 2.0: " + (error.empty() ? "unknown fault" : one_line(parsed ? faults : error)));
   }
+  read_ = std::vector<std::atomic<bool>>(data_.accessors.size());
 }
 
 void Model::fail(const std::string& what) const { throw sim::UserError(path_.string() + ": " + what); }
@@ -286,6 +287,7 @@ Model::Elements Model::elements(int view, std::uint64_t offset, std::uint64_t co
 
 std::vector<double> Model::read_values(int accessor, int components, const std::string& user) const {
   const tinygltf::Accessor& a = at(data_.accessors, accessor, "accessor", user);
+  read_[static_cast<std::size_t>(accessor)] = true;
   const std::string name = user + " (accessor " + std::to_string(accessor) + ")";
   if (tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type)) != components ||
       a.type >= TINYGLTF_TYPE_MAT2) {
@@ -359,6 +361,7 @@ void Model::apply_sparse(const tinygltf::Accessor& accessor, int components, std
 
 std::vector<double> Model::read_matrices(int accessor, std::size_t count, const std::string& user) const {
   const tinygltf::Accessor& a = at(data_.accessors, accessor, "accessor", user);
+  read_[static_cast<std::size_t>(accessor)] = true;
   const std::string name = user + " (accessor " + std::to_string(accessor) + ")";
   if (a.type != TINYGLTF_TYPE_MAT4 || a.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
     fail(name + " has the wrong type: 4 x 4 matrices of floats are needed");
@@ -382,6 +385,7 @@ std::vector<double> Model::read_matrices(int accessor, std::size_t count, const 
 
 std::vector<std::uint32_t> Model::read_indices(int accessor, const std::string& user) const {
   const tinygltf::Accessor& a = at(data_.accessors, accessor, "accessor", user);
+  read_[static_cast<std::size_t>(accessor)] = true;
   const std::string name = user + " (accessor " + std::to_string(accessor) + ")";
   const int type = a.componentType;
   if (a.type != TINYGLTF_TYPE_SCALAR ||

@@ -3,6 +3,7 @@
 // without going through these.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -53,6 +54,9 @@ class Model {
   /// An accessor of unsigned scalars, for vertex indices.
   [[nodiscard]] std::vector<std::uint32_t> read_indices(int accessor, const std::string& user) const;
 
+  /// Whether the accessor has been asked for so far. It must be one of the file's.
+  [[nodiscard]] bool was_read(std::size_t accessor) const { return read_[accessor]; }
+
  private:
   struct Elements {
     std::span<const std::byte> bytes;
@@ -71,6 +75,7 @@ class Model {
   std::filesystem::path path_;
   GltfOptions options_;
   tinygltf::Model data_;
+  mutable std::vector<std::atomic<bool>> read_;  // for each accessor; animations are read by many threads
 };
 
 /// `value` as a finite number in `lowest`..`highest`, else UserError naming `what`.

@@ -43,10 +43,15 @@ AnimatedScene open_animated(std::string_view spec, const OpenOptions& options, c
   return AnimatedScene(open_procedural(spec, options.gltf));
 }
 
-Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode) {
+Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode,
+                 FileUse* use) {
   const std::string name =
       names_a_file(spec) ? path_of(spec, options).string() : "scene '" + std::string(spec) + "'";
-  return open_animated(spec, options, decode).asked_for(options.gltf.time, name);
+  const AnimatedScene scene = open_animated(spec, options, decode);
+  if (use != nullptr) {
+    *use = scene.file_use();
+  }
+  return scene.asked_for(options.gltf.time, name);
 }
 
 }  // namespace marti::scenes

@@ -28,8 +28,10 @@ struct OpenOptions {
 /// Whether `spec` is a file's name, by its ending, and not a procedural scene's.
 [[nodiscard]] bool names_a_file(std::string_view spec);
 
-/// The pose at `options.gltf.time`. A time other than 0 is an error where nothing moves.
-[[nodiscard]] Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode);
+/// The pose at `options.gltf.time`. A time other than 0 is an error where nothing moves. `use` may be null;
+/// else it says how much of its file the scene uses.
+[[nodiscard]] Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode,
+                               FileUse* use = nullptr);
 
 /// The counts that describe a scene.
 struct SceneFacts {

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -50,7 +52,12 @@ struct Texture {
   bool srgb = true;
   bool repeat_u = true;
   bool repeat_v = true;
+  /// width * height of them, or none where they are not decoded: then every sample is white, and `file` may
+  /// hold the image that they would come from.
   std::vector<std::array<std::uint8_t, 4>> texels;
+  std::shared_ptr<const std::vector<std::byte>> file;
+
+  [[nodiscard]] std::uint64_t size() const { return std::uint64_t{width} * height; }
 };
 
 enum class LightKind : std::uint8_t { point, directional, spot };

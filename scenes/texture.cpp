@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "sim/error.h"
 
@@ -62,6 +63,22 @@ Texture texture_from_samples(std::string_view name, std::uint32_t width, std::ui
   return texture;
 }
 
+void decode_texels(Texture& texture, const ImageDecoder& decode) {
+  sim::ensure(texture.texels.empty() && texture.file != nullptr,
+              "a texture without a file cannot be decoded");
+  Texture decoded = decode(*texture.file, texture.name);
+  if (decoded.width != texture.width || decoded.height != texture.height) {
+    throw sim::UserError("texture '" + texture.name + "': its image says that it has " +
+                         std::to_string(texture.width) + " x " + std::to_string(texture.height) +
+                         " texels, but it has " + std::to_string(decoded.width) + " x " +
+                         std::to_string(decoded.height));
+  }
+  sim::ensure(decoded.texels.size() == decoded.size(),
+              "an image decoder returned a texture whose size does not match its texels");
+  texture.texels = std::move(decoded.texels);
+  texture.file.reset();
+}
+
 double srgb_to_linear(std::uint8_t encoded) {
   static const std::array<double, 256> table = make_srgb_table();
   return table[encoded];
@@ -72,6 +89,10 @@ TextureSample sample_nearest(const Texture& texture, const glm::dvec2& uv) {
   const std::uint32_t row = texel_coordinate(uv.y, texture.height, texture.repeat_v);
   TextureSample sample;
   sample.texel = row * texture.width + column;
+  if (texture.texels.empty()) {
+    sample.color = glm::dvec3(1.0);
+    return sample;
+  }
   const std::array<std::uint8_t, 4>& texel = texture.texels[sample.texel];
   for (int channel = 0; channel < 3; ++channel) {
     const std::uint8_t value = texel[static_cast<std::size_t>(channel)];

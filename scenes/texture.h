@@ -20,6 +20,19 @@ namespace marti::scenes {
 /// when it cannot; only the size and the texels of what it returns are used.
 using ImageDecoder = std::function<Texture(std::span<const std::byte> file, std::string_view name)>;
 
+/// The size in texels of an image file that is not decoded.
+struct ImageSize {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+};
+
+/// Finds it out, from the file's head alone. Throws UserError when it cannot.
+using ImageSizer = std::function<ImageSize(std::span<const std::byte> file, std::string_view name)>;
+
+/// Decodes the texels of a texture that has a file and no texels, and lets the file go. Throws UserError when
+/// the decoder cannot or when the image has another size than the texture.
+void decode_texels(Texture& texture, const ImageDecoder& decode);
+
 /// Encodes a texture as a PNG file in memory, without loss.
 using ImageEncoder = std::function<std::vector<std::byte>(const Texture& texture)>;
 
@@ -36,7 +49,8 @@ struct TextureSample {
 
 /// The texel nearest to `uv`. (0, 0) is the upper left corner of the image, u to the right, v downwards;
 /// outside 0..1 the texture repeats or its edge goes on, as it says. A uv that is not finite reads as 0.
-/// The texture must have texels. One sample reads one texel, so that the log of a ray holds one reference.
+/// The texture must have a size; without texels the sample is white. One sample reads one texel, so that the
+/// log of a ray holds one reference.
 [[nodiscard]] TextureSample sample_nearest(const Texture& texture, const glm::dvec2& uv);
 
 /// The linear value of an sRGB-encoded byte (IEC 61966-2-1).

@@ -10,6 +10,7 @@
 #include "scenes/open.h"
 #include "sim/config.h"
 #include "sim/schema.h"
+#include "studies/plan/plan.h"
 
 namespace marti::studies {
 
@@ -35,6 +36,7 @@ struct FrameConfig {
   processors::RenderOptions render;
   bool exact_too = false;         ///< with the voxel cut: render the exact image beside it
   std::int64_t memory_limit = 0;  ///< host bytes that image and work log may take
+  KeptItems keep;                 ///< of the plan; not a key of the configuration: it decides no result
 };
 
 void declare_frame_keys(sim::Schema& schema);

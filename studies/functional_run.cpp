@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <string_view>
 #include <utility>
 
 #include "accel/structure.h"
 #include "sim/error.h"
 #include "sim/units.h"
 #include "studies/image_file.h"
+#include "studies/plan/make_plan.h"
 
 namespace marti::studies {
 
@@ -74,20 +76,33 @@ void note_cut_tree(const FrameConfig& config, const accel::Structure& structure,
   }
 }
 
-}  // namespace
-
-FunctionalRun run_functional(const FrameConfig& config) {
-  return run_functional(config, scenes::open_scene(config.scene, config.open, decode_image));
+// The structures that nobody asks for, where the user wants them kept.
+std::vector<std::unique_ptr<accel::Structure>> kept_structures(
+    const FrameConfig& config, const std::shared_ptr<const accel::TriangleSet>& triangles) {
+  std::vector<std::unique_ptr<accel::Structure>> kept;
+  for (const std::string_view kind : accel::structure_kinds()) {
+    if (config.keep.has(PlanItem::structures) && kind != config.structure) {
+      kept.push_back(accel::make_structure(kind, triangles, config.structure_options));
+    }
+  }
+  return kept;
 }
 
-FunctionalRun run_functional(const FrameConfig& config, const scenes::Scene& scene) {
+// A frame of an open scene and, where there are facts, by the run's plan.
+FunctionalRun render_and_record(const FrameConfig& config, scenes::SceneFacts scene_facts,
+                                const scenes::Scene& scene, const PlanFacts* facts, FunctionalRun run) {
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
   const std::unique_ptr<accel::Structure> structure =
       accel::make_structure(config.structure, triangles, config.structure_options);
-  refuse_beyond_memory(config, scene, *triangles, *structure);
+  const std::vector<std::unique_ptr<accel::Structure>> others = kept_structures(config, triangles);
+  FrameConfig planned = config;
+  if (facts != nullptr) {
+    plan_structure(run.plan, *facts, *structure);
+    planned.render = planned_options(run.plan, *facts);
+  }
+  refuse_beyond_memory(planned, scene, *triangles, *structure);
 
-  FunctionalRun run;
-  run.scene = scenes::facts_of(scene);
+  run.scene = std::move(scene_facts);
   run.notes = scene.notes;
   if (const auto* octree = dynamic_cast<const accel::StructureOf<accel::Octree>*>(structure.get())) {
     run.levels = octree->concrete().levels();
@@ -95,11 +110,14 @@ FunctionalRun run_functional(const FrameConfig& config, const scenes::Scene& sce
     run.structure_notes.push_back(accel::describe_resolution(grid->concrete()));
   }
   note_cut_tree(config, *structure, run.structure_notes);
-  processors::RenderOptions options = config.render;
+  processors::RenderOptions options = planned.render;
   options.record = true;
   run.frame = processors::render(scene, *triangles, *structure, options);
   run.totals = processors::totals_of(*run.frame.log);
   run.image_hash = image_hash(run.frame.image);
+  if (facts != nullptr) {
+    count_saved(run.plan, facts->needs, scene, run.frame);
+  }
   if (options.voxel_cut > 0.0) {
     VoxelReport& report = run.voxel_cut.emplace();
     report.use = database_use(*run.frame.log);
@@ -112,6 +130,33 @@ FunctionalRun run_functional(const FrameConfig& config, const scenes::Scene& sce
     }
   }
   return run;
+}
+
+}  // namespace
+
+FunctionalRun run_functional(const FrameConfig& config) {
+  scenes::OpenOptions open = config.open;
+  if (!config.keep.has(PlanItem::textures)) {
+    open.gltf.size_only = size_of_image;
+  }
+  open.gltf.read_unused = config.keep.has(PlanItem::unreachable);
+  scenes::FileUse file;
+  scenes::Scene scene = scenes::open_scene(config.scene, open, decode_image, &file);
+  return run_planned(config, std::move(scene), std::move(file));
+}
+
+FunctionalRun run_planned(const FrameConfig& config, scenes::Scene scene, scenes::FileUse file) {
+  PlanFacts facts = facts_of_frame(scene, config.render, config.structure, config.keep);
+  facts.file = std::move(file);
+  FunctionalRun run;
+  run.plan = make_plan(facts);
+  scenes::SceneFacts scene_facts = scenes::facts_of(scene);
+  drop_parts(run.plan, facts.needs, decode_image, scene);
+  return render_and_record(config, std::move(scene_facts), scene, &facts, std::move(run));
+}
+
+FunctionalRun run_functional(const FrameConfig& config, const scenes::Scene& scene) {
+  return render_and_record(config, scenes::facts_of(scene), scene, nullptr, {});
 }
 
 }  // namespace marti::studies

@@ -10,6 +10,7 @@
 #include "processors/program/render.h"
 #include "scenes/open.h"
 #include "studies/frame_keys.h"
+#include "studies/plan/plan.h"
 #include "studies/voxel_report.h"
 
 namespace marti::studies {
@@ -23,6 +24,7 @@ struct FunctionalRun {
   processors::LogTotals totals;
   std::optional<VoxelReport> voxel_cut;  ///< with the voxel cut
   std::uint64_t image_hash = 0;          ///< of the pixels' bits
+  Plan plan;                             ///< what was left out; empty where the scene was open already
 };
 
 /// FNV-1a (Fowler, Noll, Vo) over the bits of all pixels.
@@ -33,10 +35,14 @@ struct FunctionalRun {
 void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
                           const accel::TriangleSet& triangles, const accel::Structure& structure);
 
-/// Opens the scene, builds the structure, renders and records. Throws UserError when the scene cannot be
+/// Opens the scene, plans what the frame does not need, builds the structure, renders and records. Throws
+/// UserError when the scene cannot be
 /// used or the frame would take more than the memory limit, which it estimates from a small rendering.
 [[nodiscard]] FunctionalRun run_functional(const FrameConfig& config);
-/// The same of a scene that is open already: the one that `config` names.
+/// The same of a scene that is open already, whose textures may still be files.
+[[nodiscard]] FunctionalRun run_planned(const FrameConfig& config, scenes::Scene scene,
+                                        scenes::FileUse file = {});
+/// The same of a scene that is open already: the one that `config` names. Nothing of it is left out.
 [[nodiscard]] FunctionalRun run_functional(const FrameConfig& config, const scenes::Scene& scene);
 
 }  // namespace marti::studies

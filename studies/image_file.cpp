@@ -87,30 +87,49 @@ void write_png(const processors::Image& image, const std::filesystem::path& file
   write(file, spec, OIIO::TypeDesc::UINT8, bytes.data());
 }
 
+namespace {
+
+// An image file in memory, opened; its head is read and can be a texture's.
+struct OpenImage {
+  OpenImage(std::span<const std::byte> file, std::string_view name)
+      : memory(file.data(), file.size()), label(name) {
+    in = OIIO::ImageInput::open(codec_name(file), nullptr, &memory);
+    if (!in) {
+      throw sim::UserError(label + ": not an image that can be read: " + OIIO::geterror());
+    }
+    const OIIO::ImageSpec& spec = in->spec();
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.nchannels > 16 ||
+        spec.width > most_pixels_a_side || spec.height > most_pixels_a_side ||
+        std::int64_t{spec.width} * spec.height > most_pixels) {
+      throw sim::UserError(label + ": an image of " + std::to_string(spec.width) + " x " +
+                           std::to_string(spec.height) + " pixels and " + std::to_string(spec.nchannels) +
+                           " channels cannot be a texture");
+    }
+    size = {static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height)};
+  }
+
+  OIIO::Filesystem::IOMemReader memory;
+  std::string label;
+  std::unique_ptr<OIIO::ImageInput> in;
+  scenes::ImageSize size;
+};
+
+}  // namespace
+
 scenes::Texture decode_image(std::span<const std::byte> file, std::string_view name) {
-  OIIO::Filesystem::IOMemReader memory(file.data(), file.size());
-  const std::string label(name);
-  const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::open(codec_name(file), nullptr, &memory);
-  if (!in) {
-    throw sim::UserError(label + ": not an image that can be read: " + OIIO::geterror());
+  const OpenImage image(file, name);
+  const int channels = image.in->spec().nchannels;
+  std::vector<std::uint8_t> samples(std::size_t{image.size.width} * image.size.height *
+                                    static_cast<std::size_t>(channels));
+  if (!image.in->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, samples.data())) {
+    throw sim::UserError(image.label + ": cannot be decoded: " + image.in->geterror());
   }
-  const OIIO::ImageSpec& spec = in->spec();
-  if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.nchannels > 16 ||
-      spec.width > most_pixels_a_side || spec.height > most_pixels_a_side ||
-      std::int64_t{spec.width} * spec.height > most_pixels) {
-    throw sim::UserError(label + ": an image of " + std::to_string(spec.width) + " x " +
-                         std::to_string(spec.height) + " pixels and " + std::to_string(spec.nchannels) +
-                         " channels cannot be a texture");
-  }
-  std::vector<std::uint8_t> samples(static_cast<std::size_t>(spec.width) *
-                                    static_cast<std::size_t>(spec.height) *
-                                    static_cast<std::size_t>(spec.nchannels));
-  if (!in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, samples.data())) {
-    throw sim::UserError(label + ": cannot be decoded: " + in->geterror());
-  }
-  return scenes::texture_from_samples(name, static_cast<std::uint32_t>(spec.width),
-                                      static_cast<std::uint32_t>(spec.height),
-                                      static_cast<std::uint32_t>(spec.nchannels), samples);
+  return scenes::texture_from_samples(name, image.size.width, image.size.height,
+                                      static_cast<std::uint32_t>(channels), samples);
+}
+
+scenes::ImageSize size_of_image(std::span<const std::byte> file, std::string_view name) {
+  return OpenImage(file, name).size;
 }
 
 std::vector<std::byte> encode_png(const scenes::Texture& texture) {

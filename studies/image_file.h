@@ -11,6 +11,7 @@
 
 #include "processors/program/image.h"
 #include "scenes/scene.h"
+#include "scenes/texture.h"
 
 namespace marti::studies {
 
@@ -27,6 +28,9 @@ void write_png(const processors::Image& image, const std::filesystem::path& file
 
 /// A scenes::ImageDecoder. Reads PNG and JPEG; refuses more than 65,536 pixels a side or 2^28 in all.
 [[nodiscard]] scenes::Texture decode_image(std::span<const std::byte> file, std::string_view name);
+
+/// A scenes::ImageSizer, with the same limits: reads the file's head and no pixel.
+[[nodiscard]] scenes::ImageSize size_of_image(std::span<const std::byte> file, std::string_view name);
 
 /// A scenes::ImageEncoder: PNG.
 [[nodiscard]] std::vector<std::byte> encode_png(const scenes::Texture& texture);

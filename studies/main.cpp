@@ -26,6 +26,7 @@
 #include "studies/output.h"
 #include "studies/paper/paper.h"
 #include "studies/paper/paper_keys.h"
+#include "studies/plan/verify_plan.h"
 #include "studies/ranks/ranks.h"
 #include "studies/run_result.h"
 #include "studies/schemes/schemes.h"
@@ -57,9 +58,14 @@ struct RunArguments {
   std::string directory;
   bool json = false;
   std::string within;
+  std::vector<std::string> keep;
+  bool verify_plan = false;
 };
 
 void run_within_command(const RunArguments& arguments, sim::Config& config) {
+  if (!arguments.keep.empty() || arguments.verify_plan) {
+    throw sim::UserError("--keep and --verify-plan are for exact runs; leave --within out");
+  }
   if (!arguments.directory.empty() || arguments.json) {
     throw sim::UserError(
         "--within gives estimates of some figures, for people: result.json and what else --output and --json "
@@ -83,7 +89,13 @@ void run_command(const RunArguments& arguments) {
   if (!arguments.directory.empty()) {
     studies::prepare_output(arguments.directory);
   }
-  const studies::RunResult result = studies::run(config, arguments.directory);
+  const studies::RunResult result =
+      studies::run(config, arguments.directory, studies::KeptItems(arguments.keep));
+  const studies::PlanVerdict verdict =
+      arguments.verify_plan ? studies::verify_plan(result) : studies::PlanVerdict();
+  if (!verdict.holds) {
+    throw sim::InternalError("the plan is wrong\n" + verdict.text);
+  }
   std::vector<std::filesystem::path> files;
   if (!arguments.directory.empty()) {
     files = studies::write_output(result, arguments.directory);
@@ -92,7 +104,7 @@ void run_command(const RunArguments& arguments) {
     print(studies::json_of(result));
     return;
   }
-  std::string text = studies::summary_of(result);
+  std::string text = studies::summary_of(result) + verdict.text;
   for (const std::filesystem::path& file : files) {
     text += "wrote         " + file.string() + "\n";
   }
@@ -315,6 +327,11 @@ int parse_and_run(int argc, char** argv) {
       ->check([](const std::string& text) {
         return text.empty() ? std::string("must be a percentage, such as \"2 %\"") : std::string();
       });
+  run->add_option("--keep", run_arguments.keep,
+                  "does not leave this item of the plan out, or \"all\"; may be repeated")
+      ->allow_extra_args(false);
+  run->add_flag("--verify-plan", run_arguments.verify_plan,
+                "runs once more for each item that is left out, and proves that nothing else differs");
   run->callback([&] { run_command(run_arguments); });
 
   StudyArguments study_arguments;

@@ -9,6 +9,7 @@
 #include "studies/count_output.h"
 #include "studies/flow_output.h"
 #include "studies/json_parts.h"
+#include "studies/plan/plan_output.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
 #include "studies/version.h"
@@ -255,6 +256,7 @@ std::string json_of(const RunResult& r) {
                        {"image", image_json(r)},
                        {"work_log", log_json(r.functional.totals)},
                        {"voxel_cut", voxel_json(r)},
+                       {"plan", plan_json(r.plan)},
                        {"machine", machine}};
   // Text that is not UTF-8 can only come from names in files; it is replaced, not refused.
   return result.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

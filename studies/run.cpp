@@ -3,6 +3,7 @@
 
 #include "sim/units.h"
 #include "studies/machine_keys.h"
+#include "studies/plan/machine_plan.h"
 #include "studies/record/observers.h"
 #include "studies/record_keys.h"
 #include "studies/run_result.h"
@@ -61,12 +62,48 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
   }
   processors::ReplayOptions options;
   options.observer = observers.empty() ? nullptr : &observers;
-  processors::MachineResult timed = processors::replay(*result.functional.frame.log, result.machine, options);
+  const KeptItems& kept = result.frame_config.keep;
+  keep(kept, options);
+  const processors::WorkLog& log = *result.functional.frame.log;
+  std::vector<PlanEntry> entries = machine_plan(kept, result.machine, log, options.observer != nullptr);
+  processors::MachineResult timed = processors::replay(log, result.machine, options);
+  count_machine_plan(timed, entries);
+  add_entries(result.plan, std::move(entries));
   if (result.machine.count.working_set) {
     result.working_set = processors::working_set(handed_out);
     processors::check_working_set(*result.working_set, result.machine, timed);
   }
   return timed;
+}
+
+// Times the frame on the machine, and on one node; everything that follows from that.
+void time_frame(const RecordConfig& record, const std::filesystem::path& directory, RunResult& result) {
+  result.plan = result.functional.plan;
+  const processors::WorkLog& log = *result.functional.frame.log;
+  result.timed = watched_replay(record, directory, result);
+  if (result.machine.all_nodes() == 1 && result.machine.scheme == processors::Scheme::image) {
+    result.one_node = result.timed;
+  } else {
+    processors::ReplayOptions options;
+    keep(result.frame_config.keep, options);
+    result.one_node = processors::replay(log, processors::one_node_of(result.machine), options);
+  }
+  result.scaling = scaling_of(result.one_node.end, result.timed.end, result.machine.all_nodes());
+  result.loss = loss_of(result.one_node, result.timed);
+  result.finding = find_limit(result.machine, result.timed);
+  result.bounds = processors::frame_bounds(result.machine, result.timed);
+  result.prediction = processors::predict(result.machine, result.timed);
+}
+
+// The same configuration, of which nothing has been run.
+RunResult described_by(const RunResult& first, const KeptItems& keep) {
+  RunResult result;
+  result.config_name = first.config_name;
+  result.frame_config = first.frame_config;
+  result.frame_config.keep = keep;
+  result.machine = first.machine;
+  result.values = first.values;
+  return result;
 }
 
 }  // namespace
@@ -80,15 +117,12 @@ sim::Schema run_schema() {
   return schema;
 }
 
-RunResult run(sim::Config& config, const std::filesystem::path& directory) {
-  return run(config, directory, std::nullopt);
-}
-
-RunResult run(sim::Config& config, const std::filesystem::path& directory,
+RunResult run(sim::Config& config, const std::filesystem::path& directory, const KeptItems& keep,
               std::optional<FunctionalRun> functional) {
   RunResult result;
   result.config_name = config.name();
   result.frame_config = read_frame(config);
+  result.frame_config.keep = keep;
   refuse_several_frames(config, result.frame_config.frames);
   result.machine = read_machine(config);
   const RecordConfig record = read_record(config, !directory.empty());
@@ -96,20 +130,22 @@ RunResult run(sim::Config& config, const std::filesystem::path& directory,
   refuse_beyond_memory(config, result.frame_config, result.machine);
   refuse_maps_beyond_memory(config, record, result.frame_config);
   result.values = config.effective_values();
-
   result.functional = functional ? std::move(*functional) : run_functional(result.frame_config);
-  const processors::WorkLog& log = *result.functional.frame.log;
-  result.timed = watched_replay(record, directory, result);
-  if (result.machine.all_nodes() == 1 && result.machine.scheme == processors::Scheme::image) {
-    result.one_node = result.timed;
-  } else {
-    result.one_node = processors::replay(log, processors::one_node_of(result.machine));
-  }
-  result.scaling = scaling_of(result.one_node.end, result.timed.end, result.machine.all_nodes());
-  result.loss = loss_of(result.one_node, result.timed);
-  result.finding = find_limit(result.machine, result.timed);
-  result.bounds = processors::frame_bounds(result.machine, result.timed);
-  result.prediction = processors::predict(result.machine, result.timed);
+  time_frame(record, directory, result);
+  return result;
+}
+
+RunResult run_again(const RunResult& first, const KeptItems& keep) {
+  RunResult result = described_by(first, keep);
+  result.functional = run_functional(result.frame_config);
+  time_frame({}, {}, result);
+  return result;
+}
+
+RunResult time_again(const RunResult& first, const KeptItems& keep) {
+  RunResult result = described_by(first, keep);
+  result.functional = first.functional;
+  time_frame({}, {}, result);
   return result;
 }
 

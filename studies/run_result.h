@@ -24,6 +24,7 @@ struct RunResult {
   std::string config_name;
   std::vector<sim::EffectiveValue> values;
   FrameConfig frame_config;
+  Plan plan;  ///< what was left out of the frame and of the machine
   processors::MachineConfig machine;
   FunctionalRun functional;
   processors::MachineResult timed;
@@ -41,10 +42,14 @@ struct RunResult {
 /// Runs a configuration: one functional run, the machine and the same machine with one node. Throws
 /// UserError for anything wrong with the input, before it has written anything. What is recorded while the
 /// machine runs goes to `directory`, which must exist; without one nothing may be recorded.
-[[nodiscard]] RunResult run(sim::Config& config, const std::filesystem::path& directory = {});
-/// The same with a functional run that has been made: of the frame that `config` describes.
-[[nodiscard]] RunResult run(sim::Config& config, const std::filesystem::path& directory,
-                            std::optional<FunctionalRun> functional);
+/// `functional`, where it is given, is what the functional run of the frame that `config` describes has made.
+[[nodiscard]] RunResult run(sim::Config& config, const std::filesystem::path& directory = {},
+                            const KeptItems& keep = {}, std::optional<FunctionalRun> functional = {});
+
+/// The same frame on the same machine with these items of the plan kept. Nothing is recorded.
+[[nodiscard]] RunResult run_again(const RunResult& first, const KeptItems& keep);
+/// The same, but the frame is not rendered again.
+[[nodiscard]] RunResult time_again(const RunResult& first, const KeptItems& keep);
 
 /// Throws UserError when the simulated machine would take more of the computer's memory than the frame may.
 void refuse_beyond_memory(const sim::Config& config, const FrameConfig& frame,

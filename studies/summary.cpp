@@ -11,6 +11,7 @@
 #include "studies/context_output.h"
 #include "studies/count_output.h"
 #include "studies/flow_output.h"
+#include "studies/plan/plan_output.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
 #include "studies/text_units.h"
@@ -255,6 +256,7 @@ std::string summary_of(const RunResult& r) {
   std::string text = scene_summary_of(r);
   const Lines out = std::back_inserter(text);
   voxel_lines(out, r);
+  text += plan_lines(r.plan);
   machine_lines(out, r);
   text += loss_lines(r);
   time_lines(out, r);

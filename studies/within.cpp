@@ -201,7 +201,7 @@ std::string run_within(sim::Config& config, double tolerance) {
       estimate_within(*result.functional.frame.log, machine, tolerance);
   if (!estimated) {
     return exact_text(
-        run(config, {}, std::move(result.functional)),
+        run(config, {}, {}, std::move(result.functional)),
         fmt::format("no cheaper method has been measured to be within {:g} % here", 100.0 * tolerance));
   }
   return scene_summary_of(result) + text_of(*estimated, tolerance, machine.nodes);

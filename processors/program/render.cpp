@@ -77,7 +77,7 @@ WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure,
   log.lights = static_cast<std::uint32_t>(scene.lights.size());
   log.texture_begin.push_back(0);
   for (const scenes::Texture& texture : scene.textures) {
-    log.texture_begin.push_back(log.texture_begin.back() + texture.texels.size());
+    log.texture_begin.push_back(log.texture_begin.back() + texture.size());
   }
   log.rows.resize(options.height);
   return log;
@@ -197,9 +197,10 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
     const auto run = [&]<typename Recorder>(Recorder /*which*/) {
       render_rows<Concrete, Recorder>(scene, concrete, options, threads, log.rows, frame);
     };
-    if (options.mailboxes && options.record) {
+    const bool mailboxes = options.mailboxes && options.keep_mailboxes;
+    if (mailboxes && options.record) {
       run(accel::Mailboxed<RowRecorder>());
-    } else if (options.mailboxes) {
+    } else if (mailboxes) {
       run(accel::Mailboxed<NullRecorder>());
     } else if (options.record) {
       run(RowRecorder());

@@ -30,8 +30,14 @@ struct RenderOptions {
   /// The voxel cut (accel/octree_cut.h), for an octree only: cells that cover less than this many pixels on
   /// the screen are shaded as one. 0: off, the image is exact. At least 0 and finite.
   double voxel_cut = 0.0;
+  /// Also send shadow rays from points that lights add nothing to whatever they meet: the same image. With
+  /// the voxel cut they are always sent.
+  bool unlit_shadows = false;
   bool mailboxes = false;  ///< no ray tests a primitive twice; the same image
-  bool record = false;     ///< also make the work log
+  /// False: with mailboxes nothing is looked up on this computer, though the log says that it is. Only right
+  /// where no ray comes upon a primitive twice; the image and the log are the same then.
+  bool keep_mailboxes = true;
+  bool record = false;  ///< also make the work log
 };
 
 /// Rays of each kind, in the order of RayKind.

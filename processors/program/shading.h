@@ -37,6 +37,35 @@ constexpr double gamma_bound(int n) {
   return ne / (1.0 - ne);
 }
 
+/// Whether the program asks for the lights at points of a material.
+inline bool asks_lights(const scenes::Material& material) {
+  return material.diffuse > 0.0 || material.highlight > 0.0;
+}
+
+/// Whether a light can add anything at a point of the material. Not so on a black one: what it adds, lit(),
+/// is then a product with zeros. A bit of the material's record, as it were.
+inline bool shows_light(const scenes::Material& material) {
+  const auto black = [](const glm::dvec3& color) {
+    return color.x == 0.0 && color.y == 0.0 && color.z == 0.0;
+  };
+  return (material.diffuse > 0.0 && !black(material.color)) ||
+         (material.highlight > 0.0 && !black(material.specular_color));
+}
+
+/// Whether the normal of a corner, the file's, says no more than the triangle's own: it is that one or its
+/// opposite, bit for bit, or zero, which means "not given".
+inline bool is_own_normal(const glm::dvec3& normal, const glm::dvec3& own) {
+  return normal == glm::dvec3(0.0) || normal == own || normal == -own;
+}
+
+/// The same of all three corners; `own` is the triangle's unit normal as surface_at() computes it. Such a
+/// triangle is flat: it is shaded as if it had no normals.
+inline bool is_flat(const scenes::Scene& scene, const scenes::Triangle& triangle, const glm::dvec3& own) {
+  return is_own_normal(scene.normals[triangle.vertex[0]], own) &&
+         is_own_normal(scene.normals[triangle.vertex[1]], own) &&
+         is_own_normal(scene.normals[triangle.vertex[2]], own);
+}
+
 /// The point with barycentric weights b and the normals of the triangle there, seen along `direction`.
 template <typename Real>
 Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, const Real (&b)[3],
@@ -64,7 +93,9 @@ Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, con
     surface.geometric = -surface.geometric;
   }
   surface.normal = surface.geometric;
-  if (!scene.normals.empty()) {
+  const glm::dvec3 face(static_cast<double>(surface.geometric.x), static_cast<double>(surface.geometric.y),
+                        static_cast<double>(surface.geometric.z));
+  if (!scene.normals.empty() && !is_flat(scene, t, face)) {
     const auto corner = [&](int k) {
       const glm::dvec3& n = scene.normals[t.vertex[static_cast<std::size_t>(k)]];
       const bool none = n.x == 0.0 && n.y == 0.0 && n.z == 0.0;
@@ -147,8 +178,8 @@ LightSample<Real> light_at(const scenes::Light& light, const Vec3<Real>& point) 
   }
   const Vec3<Real> to_light = Vec3<Real>(light.position) - point;
   const Real squared = dot(to_light, to_light);
-  if (!(squared > Real(0.0))) {
-    return sample;  // in the light itself
+  if (!(squared > Real(0x1p-600))) {
+    return sample;  // in the light itself, or so near that its radiance might not be finite
   }
   sample.direction = to_light * (Real(1.0) / sqrt(squared));
   Real strength(1.0);

@@ -193,7 +193,8 @@ class Tracer {
   void light_up(const Pending& pending, const scenes::Material& material, const Surface<Real>& surface) {
     const Vec ambient = surface.color * Vec(scene_.ambient) * Real(material.diffuse);
     add(pending.weight, Vec(material.emission) + ambient);
-    if (material.diffuse > 0.0 || material.highlight > 0.0) {
+    // Averaged materials are not told apart by whether they are black.
+    if (CutsVoxels<Structure> || options_.unlit_shadows ? asks_lights(material) : shows_light(material)) {
       illuminate(pending, material, surface);
     }
     spawn(pending, material, surface);

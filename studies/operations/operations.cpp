@@ -22,13 +22,13 @@ constexpr std::uint32_t deepest = 8;
 constexpr std::uint32_t unit_length_rays = 4000;
 
 /// A structure to be counted.
-struct Plan {
+struct CountedWalk {
   const char* name;
   const char* kind;
   accel::BspWalk walk = accel::BspWalk::recursive;
   accel::GridMatch match = accel::GridMatch::density;
 };
-constexpr std::array<Plan, 7> plans{{
+constexpr std::array<CountedWalk, 7> plans{{
     {"octree", "octree"},
     {"bsp, recursive", "bsp"},
     {"bsp, push-point", "bsp", accel::BspWalk::push_point},
@@ -60,7 +60,7 @@ OperationsStudy count_operations(sim::Config& config) {
   study.max_depth = frame.render.max_depth;
   study.max_objects = frame.structure_options.octree.max_objects;
   study.max_level = frame.structure_options.octree.max_level;
-  for (const Plan& plan : plans) {
+  for (const CountedWalk& plan : plans) {
     accel::StructureOptions options = frame.structure_options;
     options.bsp.walk = plan.walk;
     options.grid_match = plan.match;

@@ -1,6 +1,8 @@
 #include "studies/plan/plan.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "sim/error.h"
 #include "sim/nearest.h"
@@ -23,10 +25,10 @@ KeptItems::KeptItems(std::span<const std::string> names) {
     if (at == plan_item_names.end()) {
       std::vector<std::string> known(plan_item_names.begin(), plan_item_names.end());
       known.emplace_back(everything);
-      std::string message = "--keep: there is no item \"" + name + "\" of the plan";
-      const std::string_view near = sim::nearest_name(name, known);
-      if (!near.empty()) {
-        message += "; did you mean \"" + std::string(near) + "\"?";
+      std::string message = "--keep: the plan has no item \"" + name + "\"" + sim::did_you_mean(name, known);
+      message += "; it has ";
+      for (std::size_t i = 0; i < known.size(); ++i) {
+        message += (i == 0 ? "" : i + 1 == known.size() ? " and " : ", ") + known[i];
       }
       throw sim::UserError(message);
     }
@@ -38,6 +40,19 @@ KeptItems KeptItems::all() {
   KeptItems kept;
   kept.bits_.set();
   return kept;
+}
+
+void add_entries(Plan& plan, std::vector<PlanEntry> entries) {
+  plan.entries.insert(plan.entries.end(), std::make_move_iterator(entries.begin()),
+                      std::make_move_iterator(entries.end()));
+  std::stable_sort(plan.entries.begin(), plan.entries.end(),
+                   [](const PlanEntry& a, const PlanEntry& b) { return a.item < b.item; });
+}
+
+PlanEntry* find_entry(Plan& plan, PlanItem item) {
+  const auto at = std::find_if(plan.entries.begin(), plan.entries.end(),
+                               [&](const PlanEntry& entry) { return entry.item == item; });
+  return at == plan.entries.end() ? nullptr : &*at;
 }
 
 }  // namespace marti::studies

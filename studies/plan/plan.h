@@ -45,12 +45,17 @@ enum class PlanClass : std::uint8_t {
   on_demand,  ///< during the run, which does what it turns out to need and nothing else
 };
 
+inline constexpr std::array<std::string_view, 2> plan_class_names = {"proved", "on demand"};
+
 enum class PlanDecision : std::uint8_t {
   left_out,
   needed,    ///< could not be left out
   kept,      ///< could be left out, but the user wants it kept
   no_matter  ///< there is nothing of it in this scene or machine
 };
+
+inline constexpr std::array<std::string_view, 4> plan_decision_names = {"left out", "needed", "kept",
+                                                                        "no matter"};
 
 /// What an item costs.
 struct PlanCost {
@@ -87,5 +92,15 @@ class KeptItems {
 struct Plan {
   std::vector<PlanEntry> entries;  ///< at most one for each item, in the order of PlanItem
 };
+
+/// Puts entries of items that the plan does not have yet where they belong.
+void add_entries(Plan& plan, std::vector<PlanEntry> entries);
+
+/// The entry of an item, or null.
+[[nodiscard]] PlanEntry* find_entry(Plan& plan, PlanItem item);
+
+[[nodiscard]] inline std::string_view name_of(PlanItem item) {
+  return plan_item_names[static_cast<std::size_t>(item)];
+}
 
 }  // namespace marti::studies

@@ -1,0 +1,47 @@
+// What of a scene the rays of one frame may need.
+//
+// A camera's rays meet only what lies in the view. Shadow rays ask whether they meet anything and shade
+// nothing. So as long as no material in view sends a reflected or a refracted ray, only the materials in view
+// are shaded; as soon as one does, any may be.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "processors/program/render.h"
+#include "scenes/scene.h"
+
+namespace marti::studies {
+
+/// Sizes say "of how many", whether needed or not.
+struct SceneNeeds {
+  std::uint64_t primitives = 0;
+  std::uint64_t in_view = 0;    ///< that a camera ray may meet
+  std::vector<bool> materials;  ///< that may be shaded, by index
+  std::vector<bool> textures;   ///< whose texels may count in the image, by index
+  std::uint64_t lights = 0;
+  std::uint64_t shining_lights = 0;  ///< of any intensity
+  bool shadow_rays = false;          ///< one may be sent that matters
+  bool reflection_rays = false;
+  bool refraction_rays = false;
+  bool coordinates = false;  ///< texture coordinates decide a texel, of which the work log keeps the number
+  bool normals = false;      ///< normals of vertices decide something
+
+  // Of the materials that may be shaded:
+  std::uint64_t shaded = 0;
+  std::uint64_t reflecting = 0;
+  std::uint64_t transmitting = 0;
+  std::uint64_t textured = 0;             ///< with texture coordinates to go with the texture
+  std::uint64_t unlit = 0;                ///< ask for lights, though none adds anything
+  std::uint64_t reflecting_beside = 0;    ///< of those that may not be shaded
+  std::uint64_t transmitting_beside = 0;  ///< likewise
+  std::uint64_t smooth = 0;               ///< triangles that may be shaded with the normals of their vertices
+  std::uint64_t flat = 0;  ///< triangles that may be shaded and whose vertices' normals are their own
+
+  [[nodiscard]] bool secondary_rays() const { return reflection_rays || refraction_rays; }
+};
+
+/// With the voxel cut everything is needed: its averages are made of all materials and normals.
+[[nodiscard]] SceneNeeds needs_of(const scenes::Scene& scene, const processors::RenderOptions& options);
+
+}  // namespace marti::studies

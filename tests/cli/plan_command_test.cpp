@@ -1,0 +1,82 @@
+// What a run leaves out, as its user sees it: the summary, --keep, --verify-plan.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/cli/shell.h"
+#include "tests/support/temporary_directory.h"
+
+namespace marti::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PlanCommand : public ::testing::Test {
+ protected:
+  PlanCommand() { write(config_, "[machine]\nnodes = 2\n[image]\nwidth = 24\nheight = 16\n"); }
+
+  [[nodiscard]] Outcome run(const std::string& arguments) const {
+    return marti("run " + quoted(config_) + " " + arguments);
+  }
+  [[nodiscard]] nlohmann::json json(const std::string& arguments) const {
+    const Outcome outcome = run("--json " + arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return nlohmann::json::parse(outcome.output);
+  }
+
+  TemporaryDirectory directory_;
+  fs::path config_ = directory_.path() / "run.toml";
+};
+
+TEST_F(PlanCommand, WrongItemsAreRefusedBeforeAnythingIsWritten) {
+  const fs::path out = directory_.path() / "out";
+  const Outcome wrong = run("--keep shadows -o " + quoted(out));
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.output.find("--keep: the plan has no item \"shadows\""), std::string::npos) << wrong.output;
+  EXPECT_NE(wrong.output.find("mailboxes, contention, cache and all"), std::string::npos) << wrong.output;
+  EXPECT_FALSE(fs::exists(out));
+  EXPECT_EQ(run("--keep").status, 2);
+}
+
+TEST_F(PlanCommand, SaysWhatIsLeftOutAndWhatIsKept) {
+  const std::string scene = "--set scene.source=shells:1 --set image.max_depth=3 ";
+  const Outcome plain = run(scene);
+  EXPECT_EQ(plain.status, 0);
+  EXPECT_NE(plain.output.find("\nplan          left out: "), std::string::npos) << plain.output;
+  EXPECT_NE(plain.output.find("needed: "), std::string::npos) << plain.output;
+  const nlohmann::json planned = json(scene);
+  EXPECT_EQ(planned["plan"]["structures"]["decision"], "left out");
+  EXPECT_EQ(planned["plan"]["structures"]["class"], "proved");
+  EXPECT_EQ(planned["plan"]["structures"]["counted"], planned["plan"]["structures"]["estimated"]);
+  EXPECT_EQ(planned["plan"]["rebuild"]["decision"], "no matter");
+  EXPECT_TRUE(planned["plan"]["rebuild"]["counted"].is_null());
+  const nlohmann::json one = json(scene + "--keep structures");
+  EXPECT_EQ(one["plan"]["structures"]["decision"], "kept");
+  EXPECT_EQ(one["plan"]["structures"]["estimated"]["operations"], 0);
+  const nlohmann::json all = json(scene + "--keep all");
+  for (const auto& [name, entry] : all["plan"].items()) {
+    EXPECT_NE(entry["decision"], "left out") << name;
+  }
+  for (const char* same : {"image", "work_log", "machine", "structure", "scene", "config"}) {
+    EXPECT_EQ(one[same], planned[same]) << same;
+    EXPECT_EQ(all[same], planned[same]) << same;
+  }
+}
+
+TEST_F(PlanCommand, ProvesItself) {
+  const Outcome outcome = run("--verify-plan --set scene.source=teapot:2 --set structure.max_level=5");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("\nverified      "), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("all kept: same image, same hits, same work log"), std::string::npos)
+      << outcome.output;
+  EXPECT_EQ(outcome.output.find("DIFFERS"), std::string::npos);
+  // Of an animated file too.
+  const Outcome swing =
+      run("--verify-plan --set scene.source=" + quoted(fs::path(MARTI_SOURCE) / "configs/scenes/swing.glb"));
+  EXPECT_EQ(swing.status, 0) << swing.output;
+}
+
+}  // namespace
+}  // namespace marti::test

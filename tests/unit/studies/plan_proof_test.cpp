@@ -1,0 +1,270 @@
+// The proof of the plan: with and without each item the same image, the same hits, the same work log; and
+// nothing of what is left out is ever read.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "processors/program/shading.h"
+#include "scenes/procedural.h"
+#include "studies/image_file.h"
+#include "studies/plan/make_plan.h"
+#include "studies/plan/verify_plan.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/support/user_error.h"
+#include "tests/unit/scenes/gltf_file.h"
+#include "tests/unit/studies/plan_scenes.h"
+
+namespace marti::studies {
+namespace {
+
+using testing::Random;
+
+// The log must be that of the planned frame once the shadow rays are gone that no light could show.
+void expect_same(const FunctionalRun& planned, const FunctionalRun& kept, const scenes::Scene& scene,
+                 const std::string& what) {
+  ASSERT_EQ(planned.image_hash, kept.image_hash) << what;
+  ASSERT_GE(kept.frame.rays.all(), planned.frame.rays.all()) << what;
+  if (kept.frame.rays.all() == planned.frame.rays.all()) {
+    ASSERT_EQ(planned.frame.hit_hash, kept.frame.hit_hash) << what;
+    ASSERT_EQ(difference_of(*planned.frame.log, *kept.frame.log), "") << what;
+  } else {
+    const processors::WorkLog without = without_shadows_at(unlit_materials(scene), *kept.frame.log);
+    ASSERT_EQ(difference_of(*planned.frame.log, without), "") << what;
+  }
+}
+
+std::vector<PlanItem> left_out_by(const Plan& plan) {
+  std::vector<PlanItem> items;
+  for (const PlanEntry& entry : plan.entries) {
+    if (entry.decision == PlanDecision::left_out) {
+      items.push_back(entry.item);
+    }
+  }
+  return items;
+}
+
+FunctionalRun run_keeping(FrameConfig frame, const KeptItems& keep, const scenes::Scene& scene) {
+  frame.keep = keep;
+  return run_planned(frame, scene);
+}
+
+// What the plan leaves out, filled with what would be seen if anyone looked.
+scenes::Scene poisoned(const scenes::Scene& scene, const Plan& plan, const SceneNeeds& needs) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  scenes::Scene poison = scene;
+  for (std::size_t i = 0; i < poison.textures.size(); ++i) {
+    if (!needs.textures[i]) {
+      for (auto& texel : poison.textures[i].texels) {
+        texel = {static_cast<std::uint8_t>(texel[0] ^ 0xa5U), 7, 99, 0};
+      }
+    }
+  }
+  if (is_left_out(plan, PlanItem::texture_coordinates)) {
+    std::fill(poison.uvs.begin(), poison.uvs.end(), glm::dvec2(nan));
+  }
+  if (is_left_out(plan, PlanItem::normals)) {
+    std::fill(poison.normals.begin(), poison.normals.end(), glm::dvec3(nan));
+  }
+  for (std::size_t i = 0; i < poison.materials.size(); ++i) {
+    if (!needs.materials[i]) {
+      poison.materials[i].color = poison.materials[i].emission = glm::dvec3(nan);
+    }
+  }
+  return poison;
+}
+
+// What a log touches lies within what the plan keeps.
+void expect_sound(const FunctionalRun& kept, const SceneNeeds& needs, const scenes::Scene& scene,
+                  const std::string& what) {
+  const processors::WorkLog& log = *kept.frame.log;
+  for (const processors::LogRow& row : log.rows) {
+    for (std::size_t at = 0; at < row.words.size(); at += processors::step_words(&row.words[at])) {
+      const std::uint32_t operand = processors::operand_of(row.words[at]);
+      const processors::Step step = processors::step_of(row.words[at]);
+      if (step == processors::Step::shade) {
+        ASSERT_TRUE(needs.materials[operand]) << what;
+      } else if (step == processors::Step::texel) {
+        ASSERT_TRUE(needs.coordinates) << what;
+      }
+    }
+  }
+  ASSERT_TRUE(needs.reflection_rays || kept.frame.rays.traced[2] == 0) << what;
+  ASSERT_TRUE(needs.refraction_rays || kept.frame.rays.traced[3] == 0) << what;
+  const bool any = std::any_of(scene.materials.begin(), scene.materials.end(), processors::asks_lights);
+  ASSERT_TRUE(any || kept.frame.rays.traced[1] == 0) << what;
+}
+
+struct Tally {
+  std::array<std::uint64_t, plan_items> left_out{};
+};
+
+void prove(const FrameConfig& frame, const scenes::Scene& scene, bool each, const std::string& what,
+           Tally& tally) {
+  const SceneNeeds needs = needs_of(scene, frame.render);
+  const FunctionalRun planned = run_keeping(frame, {}, scene);
+  const FunctionalRun all = run_keeping(frame, KeptItems::all(), scene);
+  ASSERT_NO_FATAL_FAILURE(expect_same(planned, all, scene, what + ", all kept"));
+  ASSERT_NO_FATAL_FAILURE(expect_sound(all, needs, scene, what));
+  for (const PlanItem item : left_out_by(planned.plan)) {
+    ++tally.left_out[static_cast<std::size_t>(item)];
+    if (each) {
+      KeptItems one;
+      one.keep(item);
+      ASSERT_NO_FATAL_FAILURE(expect_same(planned, run_keeping(frame, one, scene), scene,
+                                          what + ", kept " + std::string(name_of(item))));
+    }
+  }
+  const FunctionalRun poison = run_keeping(frame, KeptItems::all(), poisoned(scene, planned.plan, needs));
+  ASSERT_EQ(poison.image_hash, all.image_hash) << what << ", poisoned";
+  ASSERT_EQ(poison.frame.hit_hash, all.frame.hit_hash) << what << ", poisoned";
+  ASSERT_EQ(difference_of(*poison.frame.log, *all.frame.log), "") << what << ", poisoned";
+}
+
+class PlanOfRandomScenes : public ::testing::TestWithParam<const char*> {};
+
+// 4 x 300 scenes.
+TEST_P(PlanOfRandomScenes, ChangesNothing) {
+  Tally tally;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const std::string structure = GetParam();
+    Random random(1000 * structure.size() + seed);
+    const scenes::Scene scene = testing::random_scene(random);
+    const FrameConfig frame = testing::random_frame(random, structure);
+    ASSERT_NO_FATAL_FAILURE(
+        prove(frame, scene, seed % 3 == 0, structure + " " + std::to_string(seed), tally));
+  }
+  // The scenes try what they are there to try.
+  for (const PlanItem item :
+       {PlanItem::shadow_rays, PlanItem::reflection_rays, PlanItem::refraction_rays, PlanItem::textures,
+        PlanItem::texture_coordinates, PlanItem::normals, PlanItem::structures}) {
+    EXPECT_GT(tally.left_out[static_cast<std::size_t>(item)], 15U) << name_of(item);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Structures, PlanOfRandomScenes, ::testing::Values("octree", "bsp", "grid", "none"));
+
+class PlanOfShippedScenes : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(PlanOfShippedScenes, ChangesNothing) {
+  FrameConfig frame = testing::small_frame("octree", 16);
+  frame.structure_options.octree.max_objects = 8;
+  frame.structure_options.octree.max_level = 6;
+  frame.structure_options.bsp.max_objects = 8;
+  frame.structure_options.bsp.max_level = 6;
+  scenes::OpenOptions open;
+  const scenes::Scene scene = scenes::open_scene(GetParam(), open, decode_image);
+  Tally tally;
+  prove(frame, scene, true, GetParam(), tally);
+}
+
+std::vector<std::string> shipped_scenes() {
+  std::vector<std::string> names;
+  for (const scenes::ProceduralScene& scene : scenes::procedural_scenes()) {
+    const std::string name = std::string(scene.name) + ":" + std::to_string(scene.minimum_size);
+    names.push_back(name);
+    for (const scenes::ProceduralVariant& variant : scene.variants) {
+      names.push_back(name + ":" + std::string(variant.name));
+    }
+  }
+  names.emplace_back(MARTI_SOURCE "/configs/scenes/swing.glb");
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PlanOfShippedScenes, ::testing::ValuesIn(shipped_scenes()),
+                         [](const ::testing::TestParamInfo<std::string>& info) {
+                           std::string name = info.param.substr(info.param.find_last_of('/') + 1);
+                           std::replace_if(
+                               name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; },
+                               '_');
+                           return name;
+                         });
+
+// A file with two textured squares, one before and one behind the camera, the latter with an image whose
+// pixels are broken.
+TEST(PlanOfFiles, DecodesWhatIsSeen) {
+  using scenes::testing::GltfFile;
+  scenes::Texture picture;
+  picture.width = 16;
+  picture.height = 16;
+  picture.texels.assign(256, {200, 100, 50, 255});
+  for (std::size_t i = 0; i < 256; i += 3) {
+    picture.texels[i] = {static_cast<std::uint8_t>(i), 7, 9, 255};
+  }
+  const std::vector<std::byte> whole = encode_png(picture);
+  std::vector<std::byte> broken(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(whole.size() / 2));
+  GltfFile file = GltfFile::square();
+  const int uvs = file.add_accessor<float>({0, 0, 1, 0, 1, 1, 0, 1}, 5126, "VEC2", 2);
+  file.json["images"] = {{{"bufferView", file.add_view(whole)}, {"mimeType", "image/png"}},
+                         {{"bufferView", file.add_view(broken)}, {"mimeType", "image/png"}}};
+  file.json["textures"] = {{{"source", 0}}, {{"source", 1}}};
+  for (int i = 0; i < 2; ++i) {
+    file.json["materials"].push_back({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}});
+  }
+  file.primitive()["material"] = 0;
+  file.primitive()["attributes"]["TEXCOORD_0"] = uvs;
+  nlohmann::json behind = file.json["meshes"][0];
+  behind["primitives"][0]["material"] = 1;
+  file.json["meshes"].push_back(behind);
+  file.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}}};
+  file.json["nodes"] = {{{"mesh", 0}, {"translation", {-0.5, -0.5, -2.0}}},
+                        {{"mesh", 1}, {"translation", {-0.5, -0.5, 2.0}}},
+                        {{"camera", 0}}};
+  file.json["scenes"] = {{{"nodes", {0, 1, 2}}}};
+  const test::TemporaryDirectory directory;
+  FrameConfig frame = testing::small_frame("octree", 16);
+  frame.scene = file.write_glb(directory.path(), "two.glb").string();
+
+  const FunctionalRun run = run_functional(frame);
+  Plan plan = run.plan;
+  const PlanEntry& textures = *find_entry(plan, PlanItem::textures);
+  EXPECT_EQ(textures.decision, PlanDecision::left_out);
+  EXPECT_EQ(textures.fact, "1 of 2 textures may colour a point that a ray meets");
+  EXPECT_EQ(textures.saved.bytes, 4 * 256);
+  EXPECT_GT(run.totals.texels, 0U);
+  // The simulated database has room for both.
+  EXPECT_EQ(run.frame.log->texture_begin, (std::vector<std::uint64_t>{0, 256, 512}));
+  // Kept, the image is decoded, and found to be broken.
+  frame.keep.keep(PlanItem::textures);
+  EXPECT_NE(test::user_error_of([&] { static_cast<void>(run_functional(frame)); }).find("cannot be decoded"),
+            std::string::npos);
+  // With a whole image there, nothing else differs.
+  file.json["images"][1] = file.json["images"][0];
+  frame.scene = file.write_glb(directory.path(), "two.glb").string();
+  const FunctionalRun kept = run_functional(frame);
+  EXPECT_EQ(kept.image_hash, run.image_hash);
+  EXPECT_EQ(difference_of(*run.frame.log, *kept.frame.log), "");
+}
+
+// The proof can fail: it sees one word, one texel, one pixel.
+TEST(PlanProof, SeesWhatDiffers) {
+  Random random(5);
+  scenes::Scene scene = testing::looking_ahead();
+  testing::add_wall(scene, -3.0, testing::add_material(scene));
+  testing::add_light(scene, {0.0, 1.0, 0.0});
+  const FunctionalRun run = run_planned(testing::small_frame(), scene);
+  processors::WorkLog other = *run.frame.log;
+  EXPECT_EQ(difference_of(*run.frame.log, other), "");
+  other.rows[3].words.back() ^= 1U;
+  EXPECT_EQ(difference_of(*run.frame.log, other), "the work logs differ in row 3");
+  other = *run.frame.log;
+  other.texture_begin.push_back(1);
+  EXPECT_EQ(difference_of(*run.frame.log, other), "the work logs are of other databases");
+  other = *run.frame.log;
+  other.topology.entries.push_back(0);
+  EXPECT_EQ(difference_of(*run.frame.log, other), "the work logs are of other trees");
+  // Without its shadow rays the log is that of a frame without shadows, but for the lights.
+  FrameConfig bare = testing::small_frame();
+  scenes::Scene dark = scene;
+  dark.lights[0].color = glm::dvec3(0.0);
+  EXPECT_EQ(difference_of(*run_planned(bare, dark).frame.log, without_shadows_at({true}, *run.frame.log)),
+            "");
+  EXPECT_EQ(difference_of(*run.frame.log, without_shadows_at({false}, *run.frame.log)), "");
+}
+
+}  // namespace
+}  // namespace marti::studies
