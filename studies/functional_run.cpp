@@ -4,6 +4,7 @@
 #include <bit>
 #include <utility>
 
+#include "accel/precision.h"
 #include "accel/structure.h"
 #include "sim/error.h"
 #include "sim/units.h"
@@ -95,6 +96,9 @@ FunctionalRun run_functional(const FrameConfig& config, const scenes::Scene& sce
     run.structure_notes.push_back(accel::describe_resolution(grid->concrete()));
   }
   note_cut_tree(config, *structure, run.structure_notes);
+  if (std::string need = accel::describe_need(accel::precision_need(*triangles)); !need.empty()) {
+    run.notes.push_back(std::move(need));
+  }
   processors::RenderOptions options = config.render;
   options.record = true;
   run.frame = processors::render(scene, *triangles, *structure, options);
