@@ -37,6 +37,9 @@ struct FrameConfig {
   std::int64_t memory_limit = 0;  ///< host bytes that image and work log may take
 };
 
+/// The options with the image made so small that its longer side has at most `side` pixels.
+[[nodiscard]] processors::RenderOptions made_small(processors::RenderOptions options, double side);
+
 void declare_frame_keys(sim::Schema& schema);
 
 /// Throws UserError naming file, line and key.
