@@ -2,6 +2,7 @@
 // times such logs.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -184,6 +185,36 @@ TEST(Samples, TheWeightCutIsOfASampleAndNotOfItsShareOfThePixel) {
   EXPECT_EQ(built.render(options).rays.traced[2], 9U * 8U);
   options.min_weight = 0.51;
   EXPECT_EQ(built.render(options).rays.traced[2], 0U);
+}
+
+TEST(Floats, DifferFromDoublesByRoundingInMostPixels) {
+  for (const char* scene : {"balls:1", "gears:1"}) {
+    const Built built(scenes::make_procedural(scene), "octree");
+    RenderOptions options{.width = 40, .height = 40, .max_depth = 2, .record = true};
+    const Frame doubles = built.render(options);
+    options.floats = true;
+    const Frame floats = built.render(options);
+    validate(*floats.log);
+    std::size_t equal = 0;
+    std::size_t far = 0;
+    for (std::size_t i = 0; i < floats.image.pixels.size(); ++i) {
+      const glm::vec3 difference = floats.image.pixels[i] - doubles.image.pixels[i];
+      const float largest =
+          std::max({std::abs(difference.x), std::abs(difference.y), std::abs(difference.z)});
+      equal += largest == 0.0F ? 1U : 0U;
+      far += largest > 1e-3F ? 1U : 0U;
+    }
+    EXPECT_LT(equal, floats.image.pixels.size()) << scene;
+    EXPECT_LT(far, floats.image.pixels.size() / 50) << scene << ": edges that flip";
+    // Every structure gives the same floats, at any number of threads.
+    for (const std::string_view kind : accel::structure_kinds()) {
+      const Frame other = Built(built.scene, kind).render(options, 3);
+      EXPECT_TRUE(same_bytes(floats.image, other.image)) << kind;
+      EXPECT_EQ(floats.hit_hash, other.hit_hash) << kind;
+    }
+    options.voxel_cut = 1.0;
+    EXPECT_THROW((void)built.render(options), sim::UserError);
+  }
 }
 
 TEST(Samples, AreRefusedOutOfRange) {
