@@ -25,7 +25,8 @@ class BruteForce {
   [[nodiscard]] const TriangleSet& triangles() const { return *triangles_; }
   [[nodiscard]] const scenes::Bounds& bounds() const { return triangles_->bounds(); }
 
-  /// The nearest hit. Real is the scalar the arithmetic is done in (double, or Counted to count it).
+  /// The nearest hit. Real is the scalar the arithmetic is done in (double, Counted to count it, or
+  /// float to compare with).
   template <class Real = double, class Visitor>
   [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
     const RaySetup<Real> setup(ray);

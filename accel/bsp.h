@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <memory>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "accel/bsp_push.h"
@@ -69,7 +70,8 @@ class Bsp {
   /// levels()[i] is level i + 1 of this tree; as many as it has.
   [[nodiscard]] const std::vector<LevelStatistics>& levels() const { return levels_; }
 
-  /// The nearest hit. Real is the scalar the arithmetic is done in (double, or Counted to count it).
+  /// The nearest hit. Real is the scalar the arithmetic is done in (double, Counted to count it, or
+  /// float to compare with).
   template <class Real = double, class Visitor>
   [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
     const RaySetup<Real> setup(ray);
@@ -190,8 +192,8 @@ bool Bsp::query(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, V
   begin_query(visitor);
   const WalkStart<Real> start = start_walk(frame_, ray, setup);
   if (start.far) [[unlikely]] {
-    return !frame_.box.empty() &&
-           walk_far<Any>(FarRay(frame_, ray), 0U, frame_.box.lo, frame_.box.hi, setup, best, visitor);
+    return !frame_.box.empty() && walk_far<Any>(FarRay(frame_, ray, std::is_same_v<Real, float>), 0U,
+                                                frame_.box.lo, frame_.box.hi, setup, best, visitor);
   }
   if (!start.hits_root) {
     return false;

@@ -14,6 +14,7 @@
 
 #include "accel/frame.h"
 #include "accel/ray.h"
+#include "accel/real.h"
 
 namespace marti::accel {
 
@@ -31,7 +32,9 @@ struct FarRay {
   double margin;  ///< by how much boxes are enlarged: kernel, slab and cell errors together
   double slack;   ///< the same as a parameter
 
-  FarRay(const RootFrame& frame, const Ray& ray)
+  /// `float_kernel`: primitives are intersected in floats. Then the hit may be off by what watertight.h
+  /// says, coordinates and origin are rounded, and cells' own margins are nothing against that.
+  FarRay(const RootFrame& frame, const Ray& ray, bool float_kernel = false)
       : origin{ray.origin.x, ray.origin.y, ray.origin.z},
         direction{ray.direction.x, ray.direction.y, ray.direction.z},
         t_min(ray.t_min) {
@@ -43,6 +46,15 @@ struct FarRay {
       speed = std::max(speed, std::abs(direction[a]));
     }
     margin = 4.0 * frame.delta + 32.0 * 0x1p-53 * reach;
+    if (float_kernel) {
+      double largest = 0.0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const auto axis = static_cast<glm::length_t>(a);
+        largest = std::max(
+            {largest, std::abs(frame.box.lo[axis]), std::abs(frame.box.hi[axis]), std::abs(origin[a])});
+      }
+      margin += 32.0 * RealFormat<float>::spacing * (reach + largest);
+    }
     slack = 4.0 * margin / speed;
   }
 

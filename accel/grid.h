@@ -27,6 +27,7 @@
 #include <cstdint>
 #include <memory>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "accel/far_ray.h"
@@ -80,7 +81,8 @@ class Grid {
   /// Plane `i` of an axis, from 0 to the resolution.
   [[nodiscard]] double plane(unsigned axis, std::uint32_t i) const { return planes_[axis][i]; }
 
-  /// The nearest hit. Real is the scalar the arithmetic is done in (double, or Counted to count it).
+  /// The nearest hit. Real is the scalar the arithmetic is done in (double, Counted to count it, or
+  /// float to compare with).
   template <class Real = double, class Visitor>
   [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
     const RaySetup<Real> setup(ray);
@@ -212,7 +214,7 @@ bool Grid::walk_far(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& bes
   if (frame_.box.empty()) {
     return false;
   }
-  const FarRay far(frame_, ray);
+  const FarRay far(frame_, ray, std::is_same_v<Real, float>);
   glm::dvec3 lo = frame_.box.lo;
   glm::dvec3 hi = frame_.box.hi;
   const auto met = [&] {

@@ -70,7 +70,8 @@ class Octree {
   /// levels()[i] is level i + 1; as many as the tree has.
   [[nodiscard]] const std::vector<LevelStatistics>& levels() const { return levels_; }
 
-  /// The nearest hit. Real is the scalar the arithmetic is done in (double, or Counted to count it).
+  /// The nearest hit. Real is the scalar the arithmetic is done in (double, Counted to count it, or
+  /// float to compare with).
   template <class Real = double, class Visitor>
   [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
     return octree_closest<Real>(view(), ray, visitor);

@@ -228,7 +228,7 @@ class CutOctree {
     if (start.far) [[unlikely]] {
       const scenes::Bounds& box = view.frame->box;
       if (!box.empty()) {
-        const FarRay far(*view.frame, ray);
+        const FarRay far(*view.frame, ray, std::is_same_v<Real, float>);
         const FarSpan span = far.span(box.lo, box.hi);
         if (span.in <= span.out && span.out >= far.t_min - far.slack &&
             span.in <= plain(best.t) + far.slack) {

@@ -1,10 +1,12 @@
 // The octree's slow, conservative walk, for rays that start so far away (or run so fast or so slowly) that
 // the rounding of their parameters is no longer small against the cells' margin. Every child's box is
-// enlarged by the ray's own error and tested against the ray; those met are visited in order of entry.
+// enlarged by the ray's own error and tested against the ray; those met are visited in order of entry. All
+// rays whose hits are computed in floats take it: against their error the cells' margins are too thin.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include "accel/far_ray.h"
@@ -69,7 +71,7 @@ bool walk_octree_far(const View& view, const Ray& ray, const RaySetup<Real>& set
   if (box.empty()) {
     return false;
   }
-  const FarRay far(*view.frame, ray);
+  const FarRay far(*view.frame, ray, std::is_same_v<Real, float>);
   const FarSpan span = far.span(box.lo, box.hi);
   if (!(span.in <= span.out) || span.out < far.t_min - far.slack || span.in > plain(best.t) + far.slack) {
     return false;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "accel/counted.h"
 #include "accel/octree_nodes.h"
@@ -41,6 +42,10 @@ template <class Real>
   using std::max;
   using std::min;
   WalkStart<Real> start;
+  if constexpr (std::is_same_v<Real, float>) {
+    start.far = true;  // against the error of floats the cells' margins are too thin
+    return start;
+  }
   const std::array<Real, 3> o{Real(ray.origin.x), Real(ray.origin.y), Real(ray.origin.z)};
   const std::array<Real, 3> d{Real(ray.direction.x), Real(ray.direction.y), Real(ray.direction.z)};
   const std::array<double, 3> lo{frame.box.lo.x, frame.box.lo.y, frame.box.lo.z};

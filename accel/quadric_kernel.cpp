@@ -46,9 +46,10 @@ struct Approach {
     squared = ray.shear_x * ray.shear_x + ray.shear_y * ray.shear_y + Real(1.0);
     nearest = (center.x * ray.shear_x + center.y * ray.shear_y + center.z) / squared;
     offset = at(nearest);
-    const Real away = Real(0x1p-52) * (abs(center.x) + abs(center.y) + abs(center.z));
-    rounding = Real(0x1p-49 * shape.reach) + away;
-    tolerance = Real(0x1p-46 * shape.reach) + (away + away);
+    constexpr double spacing = RealFormat<Real>::spacing;
+    const Real away = Real(spacing) * (abs(center.x) + abs(center.y) + abs(center.z));
+    rounding = Real(8.0 * spacing * shape.reach) + away;
+    tolerance = Real(64.0 * spacing * shape.reach) + (away + away);
   }
 
   /// The point at s, from the primitive's centre.
@@ -169,13 +170,13 @@ bool intersect_sphere(const RaySetup<Real>& ray, const QuadricShape& shape, std:
   using std::abs;
   using std::sqrt;
   const Approach<Real> approach(ray, shape);
-  const Real radius_squared(shape.radius * shape.radius);
+  const Real radius_squared = Real(shape.radius * shape.radius);
   const Real inside = radius_squared - dot(approach.offset, approach.offset);
   if (!(inside >= Real(0.0))) {
     return false;
   }
   const Real half = sqrt(inside / approach.squared);
-  const Real radius(shape.radius);
+  const Real radius = Real(shape.radius);
   const SphereSurface<Real> surface{approach, radius_squared, approach.rounding * radius,
                                     approach.tolerance * radius};
   return choose(ray, approach.nearest - half, approach.nearest + half, surface, id, best);
@@ -191,8 +192,8 @@ bool intersect_cone(const RaySetup<Real>& ray, const QuadricShape& shape, std::u
     return false;
   }
   const Vector<Real> axis{Real(shape.axis[ray.kx]), Real(shape.axis[ray.ky]), Real(shape.axis[ray.kz])};
-  const Real radius(shape.radius);
-  const Real slope(shape.slope);
+  const Real radius = Real(shape.radius);
+  const Real slope = Real(shape.slope);
   // The components along the axis and across it.
   const Real climb = dot(approach.direction, axis);
   const Vector<Real> across = along(approach.direction, axis, -climb);
@@ -237,6 +238,7 @@ bool intersect_quadric(const RaySetup<Real>& ray, const QuadricShape& shape, std
                                              : intersect_cone(ray, shape, id, best);
 }
 
+template bool intersect_quadric(const RaySetup<float>&, const QuadricShape&, std::uint32_t, Best<float>&);
 template bool intersect_quadric(const RaySetup<double>&, const QuadricShape&, std::uint32_t, Best<double>&);
 template bool intersect_quadric(const RaySetup<Counted>&, const QuadricShape&, std::uint32_t, Best<Counted>&);
 

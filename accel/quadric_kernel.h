@@ -24,6 +24,8 @@
 // checked at the foot of the perpendicular on the cone, so a steep one is hit no farther beyond its ends.
 // No NaN passes the comparisons: what overflows is a miss.
 //
+// With floats u is 2^-24 and 2^-49 and 2^-46 are 2^-20 and 2^-17; coordinates are rounded to floats first.
+//
 // Which root is the hit depends on the ray and the primitive only, never on what was hit before.
 #pragma once
 
@@ -41,6 +43,8 @@ template <class Real>
 bool intersect_quadric(const RaySetup<Real>& ray, const QuadricShape& shape, std::uint32_t id,
                        Best<Real>& best);
 
+extern template bool intersect_quadric(const RaySetup<float>&, const QuadricShape&, std::uint32_t,
+                                       Best<float>&);
 extern template bool intersect_quadric(const RaySetup<double>&, const QuadricShape&, std::uint32_t,
                                        Best<double>&);
 extern template bool intersect_quadric(const RaySetup<Counted>&, const QuadricShape&, std::uint32_t,

@@ -28,6 +28,8 @@ EdgeFunctions<Real> accurate_edges(const Sheared<Real>& a, const Sheared<Real>& 
           difference_of_products(b.x, a.y, b.y, a.x)};
 }
 
+template EdgeFunctions<float> accurate_edges(const Sheared<float>&, const Sheared<float>&,
+                                             const Sheared<float>&);
 template EdgeFunctions<double> accurate_edges(const Sheared<double>&, const Sheared<double>&,
                                               const Sheared<double>&);
 template EdgeFunctions<Counted> accurate_edges(const Sheared<Counted>&, const Sheared<Counted>&,

@@ -13,7 +13,8 @@
 // computed again by Kahan's difference of products, whose error is at most 1.5 ulp (Jeannerod, Louvet,
 // Muller, "Further analysis of Kahan's algorithm", Math. Comp. 82, 2013). Either way the point of the ray at
 // t lies within 2^-42 of the triangle's size plus 8 * 2^-53 of its distance of the triangle. The structures'
-// margins (octree.h) are sized for that.
+// margins (octree.h) are sized for that. With floats it is 2^-13 of the size and 2^-21 of the distance and of
+// the coordinates, which are rounded to floats first.
 #pragma once
 
 #include <array>
@@ -23,12 +24,13 @@
 
 #include "accel/counted.h"
 #include "accel/ray.h"
+#include "accel/real.h"
 #include "accel/triangles.h"
 
 namespace marti::accel {
 
 /// Throws InternalError when a ray's origin or direction is not finite, or the largest component of its
-/// direction is below the smallest normal number.
+/// direction is below the scalar's smallest normal number or beyond its largest.
 [[noreturn]] void reject_ray();
 
 /// Constants of one ray: kz is the axis of the largest direction component, kx and ky the next ones in
@@ -69,9 +71,7 @@ struct Best {
   Real det{1.0};
 
   explicit Best(const RaySetup<Real>& setup)
-      : t(plain(setup.t_max) < std::numeric_limits<double>::max()
-              ? setup.t_max
-              : Real(std::numeric_limits<double>::max())) {}
+      : t(plain(setup.t_max) < RealFormat<Real>::largest ? setup.t_max : Real(RealFormat<Real>::largest)) {}
   [[nodiscard]] bool found() const { return primitive != no_primitive; }
   /// The hit with its barycentrics.
   [[nodiscard]] Hit hit() const {
@@ -93,6 +93,8 @@ struct Sheared {
 template <class Real>
 [[nodiscard]] EdgeFunctions<Real> accurate_edges(const Sheared<Real>& a, const Sheared<Real>& b,
                                                  const Sheared<Real>& c);
+extern template EdgeFunctions<float> accurate_edges(const Sheared<float>&, const Sheared<float>&,
+                                                    const Sheared<float>&);
 extern template EdgeFunctions<double> accurate_edges(const Sheared<double>&, const Sheared<double>&,
                                                      const Sheared<double>&);
 extern template EdgeFunctions<Counted> accurate_edges(const Sheared<Counted>&, const Sheared<Counted>&,
@@ -100,9 +102,6 @@ extern template EdgeFunctions<Counted> accurate_edges(const Sheared<Counted>&, c
 
 /// |det| below this share of the products' magnitudes takes the accurate path.
 inline constexpr double sliver_share = 0x1p-8;
-
-/// Slopes below this are taken as zero.
-inline constexpr double least_shear = 0x1p-200;
 
 template <class Real>
 RaySetup<Real>::RaySetup(const Ray& ray) {
@@ -116,7 +115,8 @@ RaySetup<Real>::RaySetup(const Ray& ray) {
   // A NaN or an infinity among the six numbers makes this a NaN. A check of ours, so it is not counted.
   const double finite = 0.0 * ray.direction.x + 0.0 * ray.direction.y + 0.0 * ray.direction.z +
                         0.0 * ray.origin.x + 0.0 * ray.origin.y + 0.0 * ray.origin.z;
-  if (!(plain(size[kz]) + finite >= std::numeric_limits<double>::min())) [[unlikely]] {
+  if (!(plain(size[kz]) + finite >= RealFormat<Real>::least && plain(size[kz]) <= RealFormat<Real>::largest))
+      [[unlikely]] {
     reject_ray();
   }
   origin_x = o[kx];
@@ -125,12 +125,10 @@ RaySetup<Real>::RaySetup(const Ray& ray) {
   scale = Real(1.0) / d[kz];
   shear_x = d[kx] / d[kz];
   shear_y = d[ky] / d[kz];
-  // So little slope moves the ray by nothing that matters, but its products would underflow and lose their
-  // signs.
-  if (abs(shear_x) < Real(least_shear)) {
+  if (abs(shear_x) < Real(least_shear<Real>)) {
     shear_x = Real(0.0);
   }
-  if (abs(shear_y) < Real(least_shear)) {
+  if (abs(shear_y) < Real(least_shear<Real>)) {
     shear_y = Real(0.0);
   }
   t_min = Real(ray.t_min);

@@ -11,14 +11,14 @@ namespace marti::processors {
 
 namespace {
 
-std::int64_t pixels_with_rays(const WorkLog& log) {
+std::int64_t samples_with_rays(const WorkLog& log) {
   std::int64_t pixels = 0;
   for (const LogRow& row : log.rows) {
     for (std::size_t x = 1; x < row.begin.size(); ++x) {
       pixels += row.begin[x] != row.begin[x - 1] ? 1 : 0;
     }
   }
-  return pixels;
+  return pixels * log.samples;
 }
 
 void check_steps(const LogTotals& totals, const StepCounts& steps) {
@@ -62,7 +62,7 @@ void check_flow_conservation(const WorkLog& log, const MachineConfig& config, co
     bytes += network.bytes;
   }
   const std::int64_t sent = result.host.requests;
-  require_equal(sent, pixels_with_rays(log), "every camera ray is sent once");
+  require_equal(sent, samples_with_rays(log), "every camera ray is sent once");
   require_equal(flow.rays, static_cast<std::int64_t>(totals.all_rays()),
                 "the rays made are those of the log");
   require_equal(flow.rays, sent + sum.made, "rays come from the host or are made by nodes");

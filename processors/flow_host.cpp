@@ -1,5 +1,6 @@
 #include "processors/flow_host.h"
 
+#include "processors/program/ray_tree.h"
 #include "sim/error.h"
 
 namespace marti::processors {
@@ -39,16 +40,21 @@ bool FlowHost::has_ray(std::uint32_t cluster) {
   }
 }
 
-SentPixel FlowHost::send(std::uint32_t cluster, sim::Ticks now) {
+SentSample FlowHost::send(std::uint32_t cluster, sim::Ticks now) {
   Way& way = ways_[cluster];
   sim::ensure(has_ray(cluster) && way.in_flight > 0 && way.ready_at <= now,
               "the host sends a camera ray too early");
-  const SentPixel pixel = {log_.pixel(way.x, way.y), {way.x, way.y}};
-  ++way.x;
+  const std::span<const std::uint32_t> words = log_.pixel(way.x, way.y);
+  const SentSample sample = {first_sample(log_, words.subspan(way.word)), {way.x, way.y}};
+  way.word += sample.words.size();
+  if (way.word == words.size()) {
+    ++way.x;
+    way.word = 0;
+  }
   way.ready_at = sim::add_ticks(now, occupancy_);
   ++statistics_.requests;
   statistics_.busy = sim::add_ticks(statistics_.busy, occupancy_);
-  return pixel;
+  return sample;
 }
 
 }  // namespace marti::processors

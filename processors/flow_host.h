@@ -2,9 +2,10 @@
 // contribute to the pixels.
 //
 // There is one host a frame, with a way of its own into each cluster's network (port `nodes`). A cluster's
-// camera rays come pixel by pixel, row by row, from its current packet; when that is used up, the cluster
-// draws the next packet of the frame. The first ray may be sent after `latency_cycles`, and each keeps that
-// cluster's way busy for `occupancy_cycles`. Rays enter while fewer than a limit are in flight.
+// camera rays come pixel by pixel, row by row, and of each pixel sample by sample, from its current packet;
+// when that is used up, the cluster draws the next packet of the frame. The first ray may be sent after
+// `latency_cycles`, and each keeps that cluster's way busy for `occupancy_cycles`. Rays enter while fewer
+// than a limit are in flight.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +21,8 @@
 
 namespace marti::processors {
 
-/// A pixel whose camera ray has been sent, and its words in the log.
-struct SentPixel {
+/// A sample of a pixel whose camera ray has been sent, and its words in the log.
+struct SentSample {
   std::span<const std::uint32_t> words;
   PixelPlace place;
 };
@@ -36,9 +37,9 @@ class FlowHost {
   [[nodiscard]] bool has_ray(std::uint32_t cluster);
   /// Not before this may the cluster's next camera ray be sent.
   [[nodiscard]] sim::Ticks ready_at(std::uint32_t cluster) const { return ways_[cluster].ready_at; }
-  /// The next camera ray's pixel; the ray is sent at `now`, at least ready_at(). There must be one, and it
+  /// The next camera ray's sample; the ray is sent at `now`, at least ready_at(). There must be one, and it
   /// must have entered.
-  SentPixel send(std::uint32_t cluster, sim::Ticks now);
+  SentSample send(std::uint32_t cluster, sim::Ticks now);
 
   /// Whether one more ray may enter the cluster.
   [[nodiscard]] bool has_credit(std::uint32_t cluster) const { return ways_[cluster].in_flight < limit_; }
@@ -76,6 +77,7 @@ class FlowHost {
     Packet packet;
     std::uint32_t x = 0;
     std::uint32_t y = 0;
+    std::size_t word = 0;  // of the pixel: the words before it belong to samples that were sent
   };
 
   const WorkLog& log_;

@@ -4,16 +4,16 @@
 
 namespace marti::processors {
 
-std::uint32_t PixelTrees::open(const SentPixel& pixel) {
+std::uint32_t PixelTrees::open(const SentSample& sample) {
   if (free_.empty()) {
     free_.push_back(static_cast<std::uint32_t>(trees_.size()));
     trees_.emplace_back();
   }
   const std::uint32_t tree = free_.back();
   free_.pop_back();
-  rays_of_pixel(pixel.words, trees_[tree].rays);
-  sim::ensure(!trees_[tree].rays.empty(), "a pixel's words belong to no ray");
-  trees_[tree].place = pixel.place;
+  rays_of_sample(sample.words, trees_[tree].rays);
+  sim::ensure(!trees_[tree].rays.empty(), "a sample's words belong to no ray");
+  trees_[tree].place = sample.place;
   trees_[tree].alive = 1;
   return tree;
 }

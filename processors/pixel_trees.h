@@ -1,5 +1,5 @@
-// The trees of rays of the pixels that are being traced: a pool, because a frame's trees would be larger than
-// its log.
+// The trees of rays of the samples that are being traced: a pool, because a frame's trees would be larger
+// than its log.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ namespace marti::processors {
 
 class PixelTrees {
  public:
-  /// The tree of a pixel with at least one ray; its camera ray is ray 0 and is alive.
-  std::uint32_t open(const SentPixel& pixel);
+  /// The tree of a sample with at least one ray; its camera ray is ray 0 and is alive.
+  std::uint32_t open(const SentSample& sample);
 
   [[nodiscard]] const LoggedRay& ray(std::uint32_t tree, std::uint32_t number) const {
     return trees_[tree].rays[number];

@@ -1,5 +1,7 @@
 #include "processors/region_work.h"
 
+#include <span>
+
 #include "processors/program/ray_tree.h"
 
 namespace marti::processors {
@@ -70,20 +72,27 @@ RegionWork sample_work(const WorkLog& log, const RegionMap& regions, const StepT
   std::vector<std::uint32_t> ended_in;
   for (std::uint64_t y = 0; y < log.height; y += step) {
     for (std::uint64_t x = 0; x < log.width; x += step) {
-      rays_of_pixel(log.pixel(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)), rays);
-      ended_in.clear();
-      for (const LoggedRay& ray : rays) {
-        std::uint32_t at = ray.parent == LoggedRay::none ? first_region(regions, ray) : ended_in[ray.parent];
-        for (const std::uint32_t* word = ray.begin; word != ray.end; word += step_words(word)) {
-          const std::uint32_t entered = region_of_step(regions, *word);
-          at = entered == RegionMap::top ? at : entered;
-          const sim::Ticks time = compute_time(log, ticks, word);
-          work.total = sim::add_ticks(work.total, time);
-          if (at != RegionMap::top) {
-            work.of[at] += static_cast<std::uint64_t>(time);
+      std::span<const std::uint32_t> left =
+          log.pixel(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+      while (!left.empty()) {
+        const std::span<const std::uint32_t> sample = first_sample(log, left);
+        left = left.subspan(sample.size());
+        rays_of_sample(sample, rays);
+        ended_in.clear();
+        for (const LoggedRay& ray : rays) {
+          std::uint32_t at =
+              ray.parent == LoggedRay::none ? first_region(regions, ray) : ended_in[ray.parent];
+          for (const std::uint32_t* word = ray.begin; word != ray.end; word += step_words(word)) {
+            const std::uint32_t entered = region_of_step(regions, *word);
+            at = entered == RegionMap::top ? at : entered;
+            const sim::Ticks time = compute_time(log, ticks, word);
+            work.total = sim::add_ticks(work.total, time);
+            if (at != RegionMap::top) {
+              work.of[at] += static_cast<std::uint64_t>(time);
+            }
           }
+          ended_in.push_back(at);
         }
-        ended_in.push_back(at);
       }
     }
   }

@@ -1,5 +1,6 @@
 #include "studies/frame_keys.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <string_view>
@@ -45,6 +46,13 @@ void read_structure(sim::Config& config, FrameConfig& frame) {
 
 }  // namespace
 
+processors::RenderOptions made_small(processors::RenderOptions options, double side) {
+  const double factor = std::min(1.0, side / std::max(options.width, options.height));
+  options.width = std::max(1U, static_cast<std::uint32_t>(options.width * factor));
+  options.height = std::max(1U, static_cast<std::uint32_t>(options.height * factor));
+  return options;
+}
+
 void declare_frame_keys(sim::Schema& schema) {
   schema.section("scene", "what is rendered");
   schema.text("scene.source", "teapot:12",
@@ -70,7 +78,12 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.integer("image.max_depth", 5, {1, processors::max_ray_depth}, "rays",
                  "longest chain of rays, the eye ray being 1; shadow rays do not count");
   schema.real("image.min_weight", 0.0, {0.0, 1.0}, "",
-              "a ray that contributes less than this share of its pixel is not traced");
+              "a ray that contributes less than this share of its sample is not traced");
+  schema.integer(
+      "image.samples", 1, {1, processors::max_samples}, "rays",
+      "camera rays of a pixel: one through its centre, or several through jittered points of a grid");
+  schema.integer("image.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
+                 "seed of the points of several samples");
   schema.boolean("image.shadows", true, "trace shadow rays");
   schema.real("image.voxel_cut", 0.0, {0.0, 1'000'000.0}, "pixels",
               "octree: a cell that covers less than this many pixels on the screen is shaded as one voxel "
@@ -126,6 +139,11 @@ FrameConfig read_frame(sim::Config& config) {
   frame.render.height = static_cast<std::uint32_t>(config.integer("image.height"));
   frame.render.max_depth = static_cast<std::uint32_t>(config.integer("image.max_depth"));
   frame.render.min_weight = config.real("image.min_weight");
+  frame.render.samples = static_cast<std::uint32_t>(config.integer("image.samples"));
+  if (frame.render.samples > 1) {
+    frame.render.seed = static_cast<std::uint64_t>(config.integer("image.seed"));
+  }
+  config.mark_unused_reason("image.seed", "one sample lies in the pixel's centre", "image.samples");
   frame.render.shadows = config.boolean("image.shadows");
   frame.render.voxel_cut = config.real("image.voxel_cut");
   if (frame.render.voxel_cut > 0.0) {

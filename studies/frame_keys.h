@@ -39,6 +39,9 @@ struct FrameConfig {
   KeptItems keep;                 ///< of the plan; not a key of the configuration: it decides no result
 };
 
+/// The options with the image made so small that its longer side has at most `side` pixels.
+[[nodiscard]] processors::RenderOptions made_small(processors::RenderOptions options, double side);
+
 void declare_frame_keys(sim::Schema& schema);
 
 /// Throws UserError naming file, line and key.

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "accel/precision.h"
 #include "accel/structure.h"
 #include "sim/error.h"
 #include "sim/units.h"
@@ -17,6 +18,8 @@ namespace {
 
 // A rendering of at most this many pixels a side is made without asking what it takes.
 constexpr std::uint32_t sample_side = 64;
+// And with as many samples of each.
+constexpr std::uint32_t sample_rays = 4;
 
 }  // namespace
 
@@ -37,24 +40,29 @@ void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
                           const accel::TriangleSet& triangles, const accel::Structure& structure) {
   processors::RenderOptions sample = config.render;
   const std::uint32_t longer = std::max(sample.width, sample.height);
-  if (longer <= sample_side) {
+  if (longer <= sample_side && sample.samples <= sample_rays) {
     return;
   }
-  sample.width = std::max(1U, sample.width * sample_side / longer);
-  sample.height = std::max(1U, sample.height * sample_side / longer);
+  if (longer > sample_side) {
+    sample.width = std::max(1U, sample.width * sample_side / longer);
+    sample.height = std::max(1U, sample.height * sample_side / longer);
+  }
+  sample.samples = std::min(sample.samples, sample_rays);
   sample.record = true;
   sample.voxel_cut = 0.0;  // a coarse sample would cut more than the frame
   const processors::Frame frame = processors::render(scene, triangles, structure, sample);
   const double pixels = static_cast<double>(config.render.width) * config.render.height;
   const double frames = config.exact_too ? 2.0 : 1.0;
   const double bytes = frames * static_cast<double>(processors::totals_of(*frame.log).bytes) /
-                           (static_cast<double>(sample.width) * sample.height) * pixels * 2.0 +
+                           (static_cast<double>(sample.width) * sample.height * sample.samples) * pixels *
+                           config.render.samples * 2.0 +
                        frames * pixels * sizeof(glm::vec3);
   if (bytes > static_cast<double>(config.memory_limit)) {
-    throw sim::UserError("the image and its work log may take " +
-                         sim::print_size(static_cast<std::int64_t>(std::min(bytes, 9e18)) >> 20U << 20U) +
-                         ", more than host_machine.memory_limit = " + sim::print_size(config.memory_limit) +
-                         ": raise the limit, or lower image.width, image.height or image.max_depth");
+    throw sim::UserError(
+        "the image and its work log may take " +
+        sim::print_size(static_cast<std::int64_t>(std::min(bytes, 9e18)) >> 20U << 20U) +
+        ", more than host_machine.memory_limit = " + sim::print_size(config.memory_limit) +
+        ": raise the limit, or lower image.width, image.height, image.samples or image.max_depth");
   }
 }
 
@@ -110,6 +118,9 @@ FunctionalRun render_and_record(const FrameConfig& config, scenes::SceneFacts sc
     run.structure_notes.push_back(accel::describe_resolution(grid->concrete()));
   }
   note_cut_tree(config, *structure, run.structure_notes);
+  if (std::string need = accel::describe_need(accel::precision_need(*triangles)); !need.empty()) {
+    run.notes.push_back(std::move(need));
+  }
   processors::RenderOptions options = planned.render;
   options.record = true;
   run.frame = processors::render(scene, *triangles, *structure, options);

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "accel/precision.h"
+#include "accel/triangles.h"
 #include "scenes/gltf_export.h"
 #include "scenes/open.h"
 #include "scenes/procedural.h"
@@ -273,7 +275,9 @@ scenes::Scene open(const SceneArguments& arguments) {
 std::string scene_info(const SceneArguments& arguments) {
   const scenes::AnimatedScene scene =
       scenes::open_animated(arguments.source, {{}, arguments.gltf}, studies::decode_image);
-  return scenes::describe(scene.asked_for(arguments.gltf.time, arguments.source)) +
+  const scenes::Scene pose = scene.asked_for(arguments.gltf.time, arguments.source);
+  const std::string need = accel::describe_need(accel::precision_need(accel::TriangleSet(pose)));
+  return scenes::describe(pose) + (need.empty() ? "" : "note: " + need + "\n") +
          scenes::describe(scene.facts());
 }
 

@@ -75,9 +75,11 @@ void scene_lines(Lines out, const RunResult& r) {
   const processors::LogTotals& totals = r.functional.totals;
   const double rays = static_cast<double>(totals.all_rays());
   fmt::format_to(out,
-                 "\nimage         {} x {}, {} rays (camera {}, shadow {}, reflection {}, refraction {})\n",
-                 log.width, log.height, grouped(totals.all_rays()), grouped(totals.rays[0]),
-                 grouped(totals.rays[1]), grouped(totals.rays[2]), grouped(totals.rays[3]));
+                 "\nimage         {} x {}, {}{} rays (camera {}, shadow {}, reflection {}, refraction {})\n",
+                 log.width, log.height,
+                 log.samples == 1 ? std::string() : fmt::format("{} samples a pixel, ", log.samples),
+                 grouped(totals.all_rays()), grouped(totals.rays[0]), grouped(totals.rays[1]),
+                 grouped(totals.rays[2]), grouped(totals.rays[3]));
   fmt::format_to(out, "work log      {}, {:.1f} bytes and {:.1f} steps a ray\n",
                  bytes(static_cast<double>(totals.bytes)), static_cast<double>(totals.bytes) / rays,
                  static_cast<double>(totals.all_steps()) / rays);

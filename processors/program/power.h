@@ -23,14 +23,14 @@ Real power(const Real& base, const Real& exponent) {
   // Splitting off the binary exponent is integer work on a register.
   const auto bits = std::bit_cast<std::uint64_t>(static_cast<double>(base));
   auto binary = static_cast<std::int64_t>(bits >> 52U) - 1023;
-  Real mantissa(std::bit_cast<double>((bits & 0x000fffffffffffffU) | 0x3ff0000000000000U));
+  auto mantissa = static_cast<Real>(std::bit_cast<double>((bits & 0x000fffffffffffffU) | 0x3ff0000000000000U));
   if (mantissa > Real(1.4142135623730951)) {
     mantissa = mantissa * Real(0.5);
     ++binary;
   }
   const Real s = (mantissa - Real(1.0)) / (mantissa + Real(1.0));
   const Real s2 = s * s;
-  Real series(1.0 / 19.0);
+  auto series = static_cast<Real>(1.0 / 19.0);
   for (int k = 17; k >= 1; k -= 2) {
     series = series * s2 + Real(1.0 / k);
   }

@@ -10,9 +10,9 @@ namespace marti::processors {
 /// surface, along the normal: what is left of its error are the roundings of that, in each coordinate.
 ///
 /// The kernel accepts no hit that is farther than 2^-46 of the shape's reach from the surface, and some 20
-/// roundings (quadric_kernel.h). A ray that leaves outwards from a margin of 2^-45 stays outside of that, and
-/// one that leaves inwards meets it only at the other side. The outer side is the one away from the centre or
-/// axis.
+/// roundings (quadric_kernel.h; in floats 2^-17). A ray that leaves outwards from a margin of 2^-45 (2^-16)
+/// stays outside of that, and one that leaves inwards meets it only at the other side. The outer side is the
+/// one away from the centre or axis.
 template <typename Real>
 Surface<Real> quadric_surface(const accel::QuadricShape& shape, const Vec3<Real>& hit,
                               const Vec3<Real>& direction) {
@@ -37,9 +37,9 @@ Surface<Real> quadric_surface(const accel::QuadricShape& shape, const Vec3<Real>
   }
   const Vec3<Real> offset = on_axis + radial;
   surface.point = center + offset;
-  surface.error = absolute(surface.point) * Real(gamma_bound(1)) +
-                  (absolute(on_axis) + absolute(radial)) * Real(gamma_bound(8));
-  surface.margin = Real(0x1p-45 * shape.reach);
+  surface.error = absolute(surface.point) * Real(gamma_bound<Real>(1)) +
+                  (absolute(on_axis) + absolute(radial)) * Real(gamma_bound<Real>(8));
+  surface.margin = Real(256.0 * rounding<Real> * shape.reach);
   surface.outside = dot(surface.geometric, direction) < Real(0.0);
   if (!surface.outside) {
     surface.geometric = -surface.geometric;

@@ -16,7 +16,19 @@ std::uint32_t parent_of(const std::vector<LoggedRay>& rays, std::uint32_t child)
 
 }  // namespace
 
-void rays_of_pixel(std::span<const std::uint32_t> words, std::vector<LoggedRay>& rays) {
+std::span<const std::uint32_t> first_sample(const WorkLog& log, std::span<const std::uint32_t> words) {
+  if (log.samples == 1 || words.empty()) {
+    return words;
+  }
+  const std::uint32_t* const end = words.data() + words.size();
+  const std::uint32_t* word = words.data() + step_words(words.data());
+  while (word != end && *word != camera_ray) {
+    word += step_words(word);
+  }
+  return words.first(static_cast<std::size_t>(word - words.data()));
+}
+
+void rays_of_sample(std::span<const std::uint32_t> words, std::vector<LoggedRay>& rays) {
   rays.clear();
   const std::uint32_t* const end = words.data() + words.size();
   for (const std::uint32_t* word = words.data(); word != end; word += step_words(word)) {

@@ -1,4 +1,5 @@
-// The rays of one pixel as a tree: which ray made which, and which words of the log are whose.
+// The rays of one pixel as a tree, or of one of its samples: which ray made which, and which words of the log
+// are whose.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +24,14 @@ struct LoggedRay {
   RayKind kind = RayKind::camera;
 };
 
-/// Fills `rays` with the rays of a pixel in the order of the log, which is depth first: a ray's number is
+/// Of the words of a pixel, or of what is left of them, those of the first camera ray and of all rays that it
+/// led to: all of them in a log with one sample a pixel.
+[[nodiscard]] std::span<const std::uint32_t> first_sample(const WorkLog& log,
+                                                          std::span<const std::uint32_t> words);
+
+/// Fills `rays` with the rays of a sample in the order of the log, which is depth first: a ray's number is
 /// greater than its parent's. The parent of a ray is the last ray before it, other than a shadow ray, of
 /// fewer bounces; words before the first `ray` step belong to that ray. `rays` keeps its capacity.
-void rays_of_pixel(std::span<const std::uint32_t> words, std::vector<LoggedRay>& rays);
+void rays_of_sample(std::span<const std::uint32_t> words, std::vector<LoggedRay>& rays);
 
 }  // namespace marti::processors

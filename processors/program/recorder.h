@@ -99,7 +99,8 @@ class RowRecorder {
     const std::size_t capacity = std::max<std::size_t>(std::size_t{1} << 16U, 2 * used);
     if (capacity > std::numeric_limits<std::uint32_t>::max()) {
       throw sim::UserError(
-          "the work log of one image row exceeds 2^31 steps; lower image.max_depth or the image's width");
+          "the work log of one image row exceeds 2^31 steps; lower image.max_depth, image.samples or the "
+          "image's width");
     }
     // realloc and not a vector: the new words need no clearing.
     auto* words = static_cast<std::uint32_t*>(std::realloc(buffer_.get(), capacity * sizeof(std::uint32_t)));

@@ -7,17 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
-#include "accel/mailbox.h"
-#include "accel/structure.h"
-#include "processors/program/recorder.h"
-#include "processors/program/tracer.h"
+#include "processors/program/render_rows.h"
 #include "processors/program/voxel_average.h"
 #include "sim/error.h"
 
@@ -37,6 +27,7 @@ void check_options(const RenderOptions& options) {
   in_range("width", options.width, 1, max_size);
   in_range("height", options.height, 1, max_size);
   in_range("max_depth", options.max_depth, 1, max_ray_depth);
+  in_range("samples", options.samples, 1, max_samples);
   if (!(options.min_weight >= 0.0 && options.min_weight <= 1.0)) {
     throw sim::UserError("the render's min_weight is " + std::to_string(options.min_weight) +
                          "; it must be from 0 to 1");
@@ -44,6 +35,9 @@ void check_options(const RenderOptions& options) {
   if (!(options.voxel_cut >= 0.0 && std::isfinite(options.voxel_cut))) {
     throw sim::UserError("the render's voxel_cut is " + std::to_string(options.voxel_cut) +
                          "; it must be finite and not below 0");
+  }
+  if (options.floats && options.voxel_cut > 0.0) {
+    throw sim::UserError("the voxel cut averages in doubles; it cannot be rendered in floats");
   }
 }
 
@@ -67,6 +61,7 @@ WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure,
   log.mailboxes = options.mailboxes;
   log.width = options.width;
   log.height = options.height;
+  log.samples = options.samples;
   log.topology = structure.topology();
   const accel::TriangleSet& primitives = structure.triangles();
   log.primitives = primitives.size();
@@ -81,67 +76,6 @@ WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure,
   }
   log.rows.resize(options.height);
   return log;
-}
-
-/// What one host thread keeps from row to row.
-template <typename Recorder>
-struct Worker {
-  Recorder recorder;
-  RayCounts rays;
-  std::uint64_t hit_hash = 0;
-};
-
-/// Renders all rows; `rows` is where a RowRecorder's rows go, with mailboxes or without.
-template <typename Structure, typename Recorder>
-void render_rows(const scenes::Scene& scene, const Structure& structure, const RenderOptions& options,
-                 unsigned threads, std::vector<LogRow>& rows, Frame& frame) {
-  const scenes::ImagePlane plane = scene.camera.image_plane(options.width, options.height);
-  tbb::enumerable_thread_specific<Worker<Recorder>> workers;
-
-  const auto render_row = [&](std::uint32_t y) {
-    Worker<Recorder>& worker = workers.local();
-    Tracer<double, Structure, Recorder> tracer(scene, structure, plane, options, worker.recorder);
-    constexpr bool recording = std::is_base_of_v<RowRecorder, Recorder>;
-    if constexpr (accel::has_mailboxes<Recorder>) {
-      worker.recorder.prepare(structure.triangles().size());
-    }
-    if constexpr (recording) {
-      worker.recorder.begin_row(options.width);
-    }
-    glm::vec3* pixels = frame.image.pixels.data() + std::size_t{y} * options.width;
-    for (std::uint32_t x = 0; x < options.width; ++x) {
-      const Vec3<double> color = tracer.trace(x, y);
-      pixels[x] = {static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)};
-    }
-    if constexpr (recording) {
-      worker.recorder.end_row(rows[y]);
-    }
-    worker.rays += tracer.rays();
-    worker.hit_hash += tracer.hit_hash();
-  };
-
-  // More threads than cores are asked for by tests of determinism; TBB grants them only on request.
-  std::optional<tbb::global_control> more_threads;
-  if (threads > static_cast<unsigned>(tbb::info::default_concurrency())) {
-    more_threads.emplace(tbb::global_control::max_allowed_parallelism, threads);
-  }
-  tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
-  arena.execute([&] {
-    // Rows differ in cost by orders of magnitude: the smallest grain, handed out as threads fall idle.
-    tbb::parallel_for(
-        tbb::blocked_range<std::uint32_t>(0, options.height, 1),
-        [&](const tbb::blocked_range<std::uint32_t>& range) {
-          for (std::uint32_t y = range.begin(); y < range.end(); ++y) {
-            render_row(y);
-          }
-        },
-        tbb::simple_partitioner());
-  });
-  // Integer sums: the order of the threads does not matter.
-  for (const Worker<Recorder>& worker : workers) {
-    frame.rays += worker.rays;
-    frame.hit_hash += worker.hit_hash;
-  }
 }
 
 }  // namespace
@@ -192,31 +126,22 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
     log.voxels = frame.voxels;
     log.materials += log.voxels;
   }
-  const auto render_with = [&](const auto& concrete) {
-    using Concrete = std::remove_cvref_t<decltype(concrete)>;
-    const auto run = [&]<typename Recorder>(Recorder /*which*/) {
-      render_rows<Concrete, Recorder>(scene, concrete, options, threads, log.rows, frame);
-    };
-    const bool mailboxes = options.mailboxes && options.keep_mailboxes;
-    if (mailboxes && options.record) {
-      run(accel::Mailboxed<RowRecorder>());
-    } else if (mailboxes) {
-      run(accel::Mailboxed<NullRecorder>());
-    } else if (options.record) {
-      run(RowRecorder());
-    } else {
-      run(NullRecorder());
-    }
+  const auto in_doubles = [&](const auto& concrete) {
+    render_with<double>(scene, concrete, options, threads, log.rows, frame);
   };
-  accel::visit_structure(structure, [&](const auto& concrete) {
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(concrete)>, accel::Octree>) {
-      if (voxels) {
-        render_with(CutStructure(concrete, *voxels, options.voxel_cut));
-        return;
+  if (options.floats) {
+    render_in_floats(scene, structure, options, threads, log.rows, frame);
+  } else {
+    accel::visit_structure(structure, [&](const auto& concrete) {
+      if constexpr (std::is_same_v<std::remove_cvref_t<decltype(concrete)>, accel::Octree>) {
+        if (voxels) {
+          in_doubles(CutStructure(concrete, *voxels, options.voxel_cut));
+          return;
+        }
       }
-    }
-    render_with(concrete);
-  });
+      in_doubles(concrete);
+    });
+  }
   if (options.record) {
     frame.log = std::make_shared<const WorkLog>(std::move(log));
   }

@@ -20,19 +20,29 @@ namespace marti::processors {
 /// The largest RenderOptions::max_depth.
 inline constexpr std::uint32_t max_ray_depth = 64;
 
+/// The largest RenderOptions::samples.
+inline constexpr std::uint32_t max_samples = 1024;
+
 struct RenderOptions {
   std::uint32_t width = 512;   ///< pixels, 1 to 32768
   std::uint32_t height = 512;  ///< pixels, 1 to 32768
   std::uint32_t max_depth =
       5;                    ///< rays in a row, the eye ray being 1; 1 to max_ray_depth. Shadow rays are free.
-  double min_weight = 0.0;  ///< 0 to 1: a ray whose largest weight is below this is not traced
-  bool shadows = true;      ///< without: every light a surface faces reaches it
+  double min_weight = 0.0;  ///< 0 to 1: a ray whose largest weight in its sample is below this is not traced
+  /// Camera rays of a pixel, 1 to max_samples, of the same weight. One goes through the pixel's centre,
+  /// several through points drawn for them (sample_points.h), whose generator begins with `seed`.
+  std::uint32_t samples = 1;
+  std::uint64_t seed = 1;
+  bool shadows = true;  ///< without: every light a surface faces reaches it
   /// The voxel cut (accel/octree_cut.h), for an octree only: cells that cover less than this many pixels on
   /// the screen are shaded as one. 0: off, the image is exact. At least 0 and finite.
   double voxel_cut = 0.0;
   /// Also send shadow rays from points that lights add nothing to whatever they meet: the same image. With
   /// the voxel cut they are always sent.
   bool unlit_shadows = false;
+  /// All arithmetic of rays, primitives and colours in floats, to see what that does to the image; the walks
+  /// through a structure stay in doubles, with margins as wide as the floats' error. Not with the voxel cut.
+  bool floats = false;
   bool mailboxes = false;  ///< no ray tests a primitive twice; the same image
   /// False: with mailboxes nothing is looked up on this computer, though the log says that it is. Only right
   /// where no ray comes upon a primitive twice; the image and the log are the same then.
@@ -62,8 +72,9 @@ struct Frame {
 };
 
 /// Renders `scene`, whose primitives are `triangles` indexed by `structure`, on `threads` host threads (0:
-/// all of them). Throws UserError for options out of range, for a voxel cut without an octree, and when
-/// recording a scene whose nodes, materials, lights or textures do not fit the log's 28-bit operands.
+/// all of them). Throws UserError for options out of range, for a voxel cut without an octree or in floats,
+/// and when recording a scene whose nodes, materials, lights or textures do not fit the log's 28-bit
+/// operands.
 [[nodiscard]] Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
                            const accel::Structure& structure, const RenderOptions& options,
                            unsigned threads = 0);

@@ -9,7 +9,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
+#include "accel/real.h"
 #include "processors/program/power.h"
 #include "processors/program/vector.h"
 #include "scenes/scene.h"
@@ -30,10 +32,15 @@ struct Surface {
                          ///< or outside of the sphere, cylinder or cone
 };
 
-/// Bound of the relative error of n roundings in double: n eps / (1 - n eps), Higham, "Accuracy and
-/// Stability of Numerical Algorithms", 2nd ed., lemma 3.1.
+/// The largest relative error of one rounding: 2^-53, for floats 2^-24.
+template <typename Real>
+inline constexpr double rounding = accel::RealFormat<Real>::spacing * 0.5;
+
+/// Bound of the relative error of n roundings: n eps / (1 - n eps), Higham, "Accuracy and Stability of
+/// Numerical Algorithms", 2nd ed., lemma 3.1.
+template <typename Real>
 constexpr double gamma_bound(int n) {
-  const double ne = n * (std::numeric_limits<double>::epsilon() * 0.5);
+  const double ne = n * rounding<Real>;
   return ne / (1.0 - ne);
 }
 
@@ -81,11 +88,11 @@ Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, con
   const Vec3<Real> t2 = p2 * b[2];
   surface.point = t0 + t1 + t2;
   // Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 6.8.5.
-  surface.error = (absolute(t0) + absolute(t1) + absolute(t2)) * Real(gamma_bound(7));
+  surface.error = (absolute(t0) + absolute(t1) + absolute(t2)) * Real(gamma_bound<Real>(7));
   // The kernel's t has an error of some 8 roundings of the triangle's own extent, however small the
   // coordinates are: a triangle in the plane z = 0 has no error in z, yet an oblique ray that starts exactly
-  // there would hit it by rounding. 2^-48 leaves a factor of two.
-  surface.margin = largest(absolute(p1 - p0) + absolute(p2 - p0)) * Real(0x1p-48);
+  // there would hit it by rounding. 2^-48 (of doubles) leaves a factor of two.
+  surface.margin = largest(absolute(p1 - p0) + absolute(p2 - p0)) * Real(32.0 * rounding<Real>);
 
   surface.geometric = normalized(cross(p1 - p0, p2 - p0));
   surface.outside = dot(surface.geometric, direction) < Real(0.0);
@@ -125,17 +132,24 @@ glm::dvec2 uv_at(const scenes::Scene& scene, std::uint32_t triangle, const Real 
   return {mix([](const glm::dvec2& uv) { return uv.x; }), mix([](const glm::dvec2& uv) { return uv.y; })};
 }
 
-/// The next double away from zero's side given by `toward`: up when toward > 0, down when toward < 0.
-inline double next_toward(double value, double toward) {
-  if (toward == 0.0 || !std::isfinite(value)) {
+/// The next number away from zero's side given by `toward`: up when toward > 0, down when toward < 0. Format:
+/// double or float.
+template <typename Format>
+Format next_toward(Format value, Format toward) {
+  using Bits = std::conditional_t<std::is_same_v<Format, float>, std::uint32_t, std::uint64_t>;
+  if (toward == Format(0) || !std::isfinite(value)) {
     return value;
   }
-  if (value == 0.0) {
-    return std::copysign(std::numeric_limits<double>::denorm_min(), toward);
+  if (value == Format(0)) {
+    return std::copysign(std::numeric_limits<Format>::denorm_min(), toward);
   }
-  const auto bits = std::bit_cast<std::uint64_t>(value);
-  return std::bit_cast<double>((value > 0.0) == (toward > 0.0) ? bits + 1 : bits - 1);
+  const auto bits = std::bit_cast<Bits>(value);
+  return std::bit_cast<Format>((value > Format(0)) == (toward > Format(0)) ? bits + 1 : bits - 1);
 }
+
+/// The numbers that a scalar of the templates holds: floats, or doubles.
+template <typename Real>
+using Held = std::conditional_t<std::is_same_v<Real, float>, float, double>;
 
 /// Where a ray that leaves the surface into `direction` begins: the point moved along the triangle's
 /// normal out of its error box and the kernel's margin, each coordinate rounded outwards (Physically Based
@@ -150,7 +164,7 @@ Vec3<Real> leave(const Surface<Real>& surface, const Vec3<Real>& direction) {
   const Vec3<Real> moved = surface.point + offset;
   // The last step is integer work on a register.
   const auto outward = [](const Real& value, const Real& toward) {
-    return Real(next_toward(static_cast<double>(value), static_cast<double>(toward)));
+    return Real(next_toward(static_cast<Held<Real>>(value), static_cast<Held<Real>>(toward)));
   };
   return {outward(moved.x, offset.x), outward(moved.y, offset.y), outward(moved.z, offset.z)};
 }

@@ -2,9 +2,10 @@
 // on a small stack with the weight their colour has in the pixel, and every contribution is added to the
 // pixel when it is found. The order of additions is fixed, so the image has the same bits always.
 //
-// Order of execution, and of the log: a ray and its visits; then, where it hit, the shading of the point,
-// its texel, and per light the shadow ray with its visits and the light's contribution; then everything
-// the reflected ray leads to, then everything the refracted ray leads to.
+// Order of execution, and of the log: of each sample of the pixel, one after the other, a ray and its visits;
+// then, where it hit, the shading of the point, its texel, and per light the shadow ray with its visits and
+// the light's contribution; then everything the reflected ray leads to, then everything the refracted ray
+// leads to.
 //
 // Where it differs from Whitted's program: shadows are opaque (whatever lies before the light blocks it,
 // glass too); reflection and transmission weights are the material's, no Fresnel term; a refracting body is
@@ -23,6 +24,7 @@
 #include "processors/program/quadric_surface.h"
 #include "processors/program/recorder.h"
 #include "processors/program/render.h"
+#include "processors/program/sample_points.h"
 #include "processors/program/shading.h"
 #include "scenes/camera.h"
 #include "scenes/scene.h"
@@ -37,7 +39,8 @@ concept CutsVoxels = requires(const Structure& structure) {
 };
 
 /// Structure: a concrete structure of accel with closest<Real>(ray, visitor), occluded<Real>(ray, visitor)
-/// and triangles(). Recorder: see recorder.h. Real: double, or accel::Counted to count the operations.
+/// and triangles(). Recorder: see recorder.h. Real: double, float to compare with, or accel::Counted to
+/// count the operations.
 /// A tracer belongs to one host thread.
 template <typename Real, typename Structure, typename Recorder>
 class Tracer {
@@ -47,24 +50,25 @@ class Tracer {
   /// Keeps references to all but the plane; they must outlive the tracer.
   Tracer(const scenes::Scene& scene, const Structure& structure, const scenes::ImagePlane& plane,
          const RenderOptions& options, Recorder& recorder)
-      : scene_(scene), structure_(structure), plane_(plane), options_(options), recorder_(recorder) {}
+      : scene_(scene),
+        structure_(structure),
+        plane_(plane),
+        options_(options),
+        recorder_(recorder),
+        share_(1.0 / options.samples),
+        points_(options.samples, options.seed) {}
 
-  /// The colour of pixel (x, y), through its centre.
+  /// The colour of pixel (x, y): that through its centre, or the mean of its samples.
   Vec trace(std::uint32_t x, std::uint32_t y) {
     recorder_.begin_pixel();
-    recorder_.phase(Phase::ray, RayKind::camera);
     color_ = Vec();
     pixel_hash_ = 0;
     depth_of_stack_ = 0;
     if constexpr (CutsVoxels<Structure>) {
-      path_ = 0.0;
       pixel_ = structure_.threshold() * solid_angle(x, y);
     }
-    push(Vec(plane_.origin), camera_direction(x, y), Vec(Real(1.0), Real(1.0), Real(1.0)), RayKind::camera,
-         0);
-    while (depth_of_stack_ > 0) {
-      const Pending ray = stack_[--depth_of_stack_];
-      follow(ray);
+    for (std::uint32_t sample = 0; sample < options_.samples; ++sample) {
+      trace(points_.at(x, y, sample));
     }
     hit_hash_ += mix(pixel_hash_ ^ (std::uint64_t{y} << 32U | x));
     recorder_.phase(Phase::pixel, RayKind::camera);
@@ -86,9 +90,24 @@ class Tracer {
     [[no_unique_address]] std::conditional_t<CutsVoxels<Structure>, double, NoPath> path{};  ///< from the eye
   };
 
-  Vec camera_direction(std::uint32_t x, std::uint32_t y) const {
-    const Real column(x + 0.5);
-    const Real row(y + 0.5);
+  /// One camera ray and everything it leads to, with the share of the pixel that a sample has.
+  void trace(const SamplePoint& point) {
+    recorder_.phase(Phase::ray, RayKind::camera);
+    if constexpr (CutsVoxels<Structure>) {
+      path_ = 0.0;
+    }
+    const auto share = static_cast<Real>(share_);
+    const Vec weight(share, share, share);
+    push(Vec(plane_.origin), camera_direction(point), weight, RayKind::camera, 0);
+    while (depth_of_stack_ > 0) {
+      const Pending ray = stack_[--depth_of_stack_];
+      follow(ray);
+    }
+  }
+
+  Vec camera_direction(const SamplePoint& point) const {
+    const auto column = static_cast<Real>(point.column);
+    const auto row = static_cast<Real>(point.row);
     return normalized(Vec(plane_.corner) + Vec(plane_.step_x) * column + Vec(plane_.step_y) * row);
   }
 
@@ -113,7 +132,7 @@ class Tracer {
   /// nothing: a triangle in a coordinate plane has points without any error.
   static accel::Ray leaving_ray(const Vec& origin, const Vec& direction) {
     accel::Ray ray = make_ray(origin, direction);
-    ray.t_min = std::numeric_limits<double>::denorm_min();
+    ray.t_min = static_cast<double>(std::numeric_limits<Held<Real>>::denorm_min());
     return ray;
   }
   static accel::Ray make_ray(const Vec& origin, const Vec& direction) {
@@ -246,7 +265,7 @@ class Tracer {
     Vec mirror_weight = Vec(material.specular_color) * Real(material.reflection);
     if (material.transmission > 0.0) {
       recorder_.phase(Phase::ray, RayKind::refraction);
-      const Real ratio(surface.outside ? 1.0 / material.ior : material.ior);
+      const auto ratio = static_cast<Real>(surface.outside ? 1.0 / material.ior : material.ior);
       Vec direction;
       const Vec weight(Real(material.transmission), Real(material.transmission), Real(material.transmission));
       if (refracted(surface, pending.direction, ratio, direction)) {
@@ -265,7 +284,7 @@ class Tracer {
             RayKind kind) {
     const Vec weight = pending.weight * factor;
     const Real size = largest(weight);
-    if (!(size > Real(0.0)) || size < Real(options_.min_weight)) {
+    if (!(size > Real(0.0)) || size < Real(options_.min_weight * share_)) {
       return;
     }
     // Rounding would let the length drift over many bounces.
@@ -290,6 +309,8 @@ class Tracer {
   scenes::ImagePlane plane_;
   RenderOptions options_;
   Recorder& recorder_;
+  double share_;  ///< weight of a sample in its pixel
+  SamplePoints points_;
 
   Vec color_;
   RayCounts rays_;

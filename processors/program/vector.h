@@ -16,7 +16,7 @@ struct Vec3 {
 
   Vec3() = default;
   Vec3(Real x_, Real y_, Real z_) : x(x_), y(y_), z(z_) {}
-  explicit Vec3(const glm::dvec3& v) : x(v.x), y(v.y), z(v.z) {}
+  explicit Vec3(const glm::dvec3& v) : x(Real(v.x)), y(Real(v.y)), z(Real(v.z)) {}
 };
 
 template <typename Real>

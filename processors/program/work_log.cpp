@@ -33,6 +33,12 @@ class RowChecker {
 
  private:
   void check_pixel(std::size_t at, std::size_t end) {
+    if (log_.samples != 1 && at != end) {
+      ensure(row_.words[at] == camera_ray,
+             "work log: a pixel of several samples begins without a camera ray");
+    }
+    std::uint32_t samples = 0;
+    const bool empty = at == end;
     auto before = Step::ray;
     while (at < end) {
       const std::size_t visits_end = check_whole_visits(at, end);
@@ -51,6 +57,7 @@ class RowChecker {
       ensure(before != Step::pass || step == Step::branch || step == Step::leaf ||
                  step == Step::partial_leaf || step == Step::mailed_leaf,
              "work log: a pass without its node");
+      samples += *word == camera_ray ? 1 : 0;
       before = step;
       const std::size_t words = step_words(word);
       check_step(step, operand, words > 1 ? word[1] : 0);
@@ -60,6 +67,8 @@ class RowChecker {
       at += words;
     }
     ensure(before != Step::cut && before != Step::pass, "work log: a pixel ends in the middle of a voxel");
+    ensure(log_.samples == 1 || empty || samples == log_.samples,
+           "work log: a pixel has fewer or more camera rays than samples");
   }
 
   // Nearly all steps, and in no order that a processor could predict: no decision before the last of them.
@@ -246,6 +255,7 @@ LogTotals totals_of(const WorkLog& log) {
 }
 
 void validate(const WorkLog& log) {
+  ensure(log.samples >= 1, "work log: pixels without a sample");
   ensure(log.voxels <= log.materials, "work log: more averaged materials than materials");
   ensure(log.rows.size() == log.height, "work log: the number of rows is not the image's height");
   check_topology(log);

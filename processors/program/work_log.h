@@ -59,6 +59,8 @@ inline constexpr std::uint32_t max_operand = (1U << operand_bits) - 1U;
 [[nodiscard]] constexpr std::uint32_t mask_words(std::uint32_t entries) {
   return entries / 32 + (entries % 32 != 0 ? 1 : 0);
 }
+/// The step that sets up a camera ray.
+inline constexpr std::uint32_t camera_ray = make_word(Step::ray, 0);
 /// Whether a step is the visit to a branch or to a whole leaf, as nearly all are: one word, and the two
 /// lowest steps, so that one comparison tells.
 [[nodiscard]] constexpr bool whole_visit(std::uint32_t word) {
@@ -131,6 +133,7 @@ struct WorkLog {
   bool mailboxes = false;  ///< every entry of a leaf's list was looked up before it was tested or not
   std::uint32_t width = 0;
   std::uint32_t height = 0;
+  std::uint32_t samples = 1;  ///< camera rays of a pixel: with several, each that is logged has them all
   accel::Topology topology;
   std::uint32_t primitives = 0;  ///< number of primitive records in the database
   /// Kinds of the primitives behind the triangles: those with the ids from primitives - quadrics.size() on.

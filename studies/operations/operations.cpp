@@ -38,14 +38,6 @@ constexpr std::array<CountedWalk, 7> plans{{
     {"none", "none"},
 }};
 
-processors::RenderOptions shrink(processors::RenderOptions options, double side) {
-  const std::uint32_t longer = std::max(options.width, options.height);
-  const double factor = std::min(1.0, side / longer);
-  options.width = std::max(1U, static_cast<std::uint32_t>(options.width * factor));
-  options.height = std::max(1U, static_cast<std::uint32_t>(options.height * factor));
-  return options;
-}
-
 }  // namespace
 
 OperationsStudy count_operations(sim::Config& config) {
@@ -69,7 +61,7 @@ OperationsStudy count_operations(sim::Config& config) {
     if (structure->kind() == "none") {
       side = std::min(side, std::max(4.0, std::sqrt(most_tests / std::max(1U, triangles->size()))));
     }
-    processors::RenderOptions render = shrink(frame.render, side);
+    processors::RenderOptions render = made_small(frame.render, side);
     for (const bool mailboxes : {false, true}) {
       render.mailboxes = mailboxes;
       if (mailboxes && structure->kind() == "none") {

@@ -90,6 +90,7 @@ LogShape shape_of(const WorkLog& log) {
   shape.scalars.mailboxes = log.mailboxes;
   shape.scalars.width = log.width;
   shape.scalars.height = log.height;
+  shape.scalars.samples = log.samples;
   shape.scalars.primitives = log.primitives;
   shape.scalars.materials = log.materials;
   shape.scalars.voxels = log.voxels;
@@ -106,7 +107,7 @@ void write_shape(ByteWriter& out, const LogShape& shape) {
   out.number(static_cast<std::uint8_t>(log.traversal));
   out.number(static_cast<std::uint8_t>(log.mailboxes ? 1 : 0));
   for (const std::uint32_t number :
-       {log.width, log.height, log.primitives, log.materials, log.voxels, log.lights}) {
+       {log.width, log.height, log.samples, log.primitives, log.materials, log.voxels, log.lights}) {
     out.number(number);
   }
   out.numbers(std::span<const std::uint64_t>(shape.items));
@@ -124,7 +125,7 @@ LogShape read_shape(ByteReader& in) {
   log.traversal = static_cast<accel::Traversal>(traversal);
   log.mailboxes = mailboxes == 1;
   for (std::uint32_t* const number :
-       {&log.width, &log.height, &log.primitives, &log.materials, &log.voxels, &log.lights}) {
+       {&log.width, &log.height, &log.samples, &log.primitives, &log.materials, &log.voxels, &log.lights}) {
     *number = in.number<std::uint32_t>();
   }
   in.numbers(std::span<std::uint64_t>(shape.items));

@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::string_view magic = "martilog";
 constexpr std::uint32_t byte_order_mark = 0x01020304;
-constexpr std::uint32_t format = 1;
+constexpr std::uint32_t format = 2;
 constexpr std::uint64_t most_header_bytes = 1U << 24U;
 // Zstandard's best: four bytes stand for a block of 128 KiB.
 constexpr std::uint64_t most_ratio = 1U << 15U;

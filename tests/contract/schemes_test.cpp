@@ -8,6 +8,7 @@
 #include "processors/program/ray_tree.h"
 #include "processors/replay.h"
 #include "sim/error.h"
+#include "tests/support/logged_samples.h"
 #include "tests/support/random_flow.h"
 
 namespace marti::processors {
@@ -41,13 +42,16 @@ MachineConfig machine_of(Random& random, const SchemeCase& scheme) {
 WorkLog any_log(Random& random) {
   const auto width = static_cast<std::uint32_t>(pick(random, 1, 8));
   const auto height = static_cast<std::uint32_t>(pick(random, 1, 8));
-  switch (pick(random, 0, 2)) {
+  switch (pick(random, 0, 3)) {
     case 0:
       return test::random_log(random, width, height);
     case 1:
       return test::random_tree_log(random, width, height);
-    default:
+    case 2:
       return test::random_ray_trees(random, width, height, 12, 4);
+    default:
+      return test::random_ray_trees(random, width, height, 5, 4,
+                                    static_cast<std::uint32_t>(pick(random, 2, 5)));
   }
 }
 
@@ -164,14 +168,16 @@ TEST_P(Schemes, EveryRayEndsAndEveryContributionArrives) {
     std::vector<LoggedRay> tree;
     for (std::uint32_t y = 0; y < log.height; ++y) {
       for (std::uint32_t x = 0; x < log.width; ++x) {
-        rays_of_pixel(log.pixel(x, y), tree);
-        rays += static_cast<std::int64_t>(tree.size());
-        for (const LoggedRay& ray : tree) {
-          bool lit = false;
-          for (const std::uint32_t* word = ray.begin; word != ray.end; word += step_words(word)) {
-            lit = lit || step_of(*word) == Step::light;
+        for (const auto& words : test::samples_of_pixel(log, x, y)) {
+          rays_of_sample(words, tree);
+          rays += static_cast<std::int64_t>(tree.size());
+          for (const LoggedRay& ray : tree) {
+            bool lit = false;
+            for (const std::uint32_t* word = ray.begin; word != ray.end; word += step_words(word)) {
+              lit = lit || step_of(*word) == Step::light;
+            }
+            contributions += ray.kind != RayKind::shadow || lit ? 1 : 0;
           }
-          contributions += ray.kind != RayKind::shadow || lit ? 1 : 0;
         }
       }
     }

@@ -18,6 +18,7 @@
 #include "processors/program/ray_tree.h"
 #include "processors/stages.h"
 #include "processors/step_time.h"
+#include "tests/support/logged_samples.h"
 
 namespace marti::test {
 
@@ -62,9 +63,9 @@ class NaivePipeline {
       const processors::Packet packet = packets[number];
       for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
         for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
-          auto tree = std::make_shared<Tree>();
-          processors::rays_of_pixel(log.pixel(x, y), *tree);
-          if (!tree->empty()) {
+          for (const auto& words : samples_of_pixel(log, x, y)) {
+            auto tree = std::make_shared<Tree>();
+            processors::rays_of_sample(words, *tree);
             cameras_.push_back(ray_of(tree, 0));
           }
         }

@@ -22,6 +22,7 @@
 #include "processors/space.h"
 #include "processors/space_plan.h"
 #include "processors/step_time.h"
+#include "tests/support/logged_samples.h"
 
 namespace marti::test {
 
@@ -125,7 +126,7 @@ class NaiveSpace {
     std::unique_ptr<memory::Network> network;
     sim::Ticks ready_at = 0;
     std::int64_t in_flight = 0;
-    std::deque<std::pair<std::uint32_t, std::uint32_t>> pixels;  // of the packet it has drawn
+    std::deque<std::span<const std::uint32_t>> samples;  // of the packet it has drawn
   };
 
   void post(sim::Ticks time, int event_class, std::uint32_t component, RayPointer ray) {
@@ -151,17 +152,17 @@ class NaiveSpace {
   // --- host ---
 
   bool draw(Cluster& cluster) {
-    while (cluster.pixels.empty() && next_packet_ < packets_.size()) {
+    while (cluster.samples.empty() && next_packet_ < packets_.size()) {
       const processors::Packet packet = packets_[next_packet_++];
       for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
         for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
-          if (!log_.pixel(x, y).empty()) {
-            cluster.pixels.emplace_back(x, y);
+          for (const auto& words : samples_of_pixel(log_, x, y)) {
+            cluster.samples.push_back(words);
           }
         }
       }
     }
-    return !cluster.pixels.empty();
+    return !cluster.samples.empty();
   }
 
   void admit(std::uint32_t number, sim::Ticks now) {
@@ -171,14 +172,14 @@ class NaiveSpace {
         post(cluster.ready_at, admit_class, number, {});
         return;
       }
-      const auto [x, y] = cluster.pixels.front();
-      cluster.pixels.pop_front();
+      const std::span<const std::uint32_t> words = cluster.samples.front();
+      cluster.samples.pop_front();
       const sim::Ticks occupancy = machine_.host.clock.cycles(machine_.host.occupancy_cycles);
       cluster.ready_at = now + occupancy;
       host_busy_ += occupancy;
       const auto ray = std::make_shared<Ray>();
       ray->tree = std::make_shared<std::vector<processors::LoggedRay>>();
-      processors::rays_of_pixel(log_.pixel(x, y), *ray->tree);
+      processors::rays_of_sample(words, *ray->tree);
       ray->word = ray->logged().begin;
       std::optional<std::uint32_t> to;
       for (const std::uint32_t* w = ray->word; w != ray->logged().end && !to;

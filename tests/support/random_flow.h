@@ -54,30 +54,34 @@ inline void make_random_space(Random& random, processors::MachineConfig& machine
   space.sample_step = static_cast<std::uint32_t>(pick(random, 1, 4));
 }
 
-/// A log whose pixels have trees of up to `most_rays` rays, up to `deepest` bounces deep, each with a short
-/// walk; a ray at a hit point has several children.
+/// A log whose pixels have `samples` trees of up to `most_rays` rays, up to `deepest` bounces deep, each with
+/// a short walk; a ray at a hit point has several children.
 inline processors::WorkLog random_ray_trees(Random& random, std::uint32_t width, std::uint32_t height,
-                                            std::int64_t most_rays, std::int64_t deepest) {
+                                            std::int64_t most_rays, std::int64_t deepest,
+                                            std::uint32_t samples = 1) {
   using processors::make_word;
   using processors::RayKind;
   using processors::Step;
   processors::WorkLog log = random_tree_log(random, width, height);
+  log.samples = samples;
   for (processors::LogRow& row : log.rows) {
     row = {};
     for (std::uint32_t x = 0; x < width; ++x) {
       row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
-      std::int64_t bounce = 0;
-      for (std::int64_t rays = pick(random, 1, most_rays); rays > 0; --rays) {
-        const auto kind = bounce == 0 ? RayKind::camera : static_cast<RayKind>(pick(random, 1, 3));
-        row.words.push_back(make_word(
-            Step::ray, static_cast<std::uint32_t>(kind) | static_cast<std::uint32_t>(bounce) << 2U));
-        append_walk(random, log.topology, log.mailboxes, 0, row.words);
-        if (kind != RayKind::shadow) {
-          row.words.push_back(make_word(Step::shade, 0));
-        } else if (random() % 2 == 0) {
-          row.words.push_back(make_word(Step::light, 0));
+      for (std::uint32_t sample = 0; sample < samples; ++sample) {
+        std::int64_t bounce = 0;
+        for (std::int64_t rays = pick(random, 1, most_rays); rays > 0; --rays) {
+          const auto kind = bounce == 0 ? RayKind::camera : static_cast<RayKind>(pick(random, 1, 3));
+          row.words.push_back(make_word(
+              Step::ray, static_cast<std::uint32_t>(kind) | static_cast<std::uint32_t>(bounce) << 2U));
+          append_walk(random, log.topology, log.mailboxes, 0, row.words);
+          if (kind != RayKind::shadow) {
+            row.words.push_back(make_word(Step::shade, 0));
+          } else if (random() % 2 == 0) {
+            row.words.push_back(make_word(Step::light, 0));
+          }
+          bounce = std::clamp<std::int64_t>(bounce + pick(random, -1, 1), 1, deepest);
         }
-        bounce = std::clamp<std::int64_t>(bounce + pick(random, -1, 1), 1, deepest);
       }
     }
     row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));

@@ -63,8 +63,10 @@ void expect_equal(const test::NaivePipeline& naive, const MachineResult& result)
 RC_GTEST_PROP(Pipeline, EqualsASecondImplementation, (std::uint64_t seed)) {
   Random random(seed);
   const auto side = static_cast<std::uint32_t>(pick(random, 1, 7));
-  const WorkLog log = pick(random, 0, 1) == 0 ? test::random_log(random, side, side)
-                                              : test::random_ray_trees(random, side, side, 15, 4);
+  const WorkLog log =
+      pick(random, 0, 1) == 0
+          ? test::random_log(random, side, side)
+          : test::random_ray_trees(random, side, side, 15, 4, static_cast<std::uint32_t>(pick(random, 1, 4)));
   const MachineConfig machine = machine_without_shared_memory(random);
   expect_equal(test::NaivePipeline(log, machine), replay(log, machine));
   RC_ASSERT(!::testing::Test::HasFailure());
@@ -136,7 +138,7 @@ RC_GTEST_PROP(Pipeline, OneRayAtATimeTakesTheSumOfItsParts, (std::uint64_t seed)
   sim::Ticks last_contribution = 0;
   std::vector<LoggedRay> rays;
   for (std::uint32_t pixel = 0; pixel < 9; ++pixel) {
-    rays_of_pixel(log.pixel(pixel % 3, pixel / 3), rays);
+    rays_of_sample(log.pixel(pixel % 3, pixel / 3), rays);
     for (const LoggedRay& ray : rays) {
       const Path path = path_of(log, ray);
       // The host composes a camera ray; a node composes the others.

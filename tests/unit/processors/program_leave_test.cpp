@@ -145,11 +145,59 @@ INSTANTIATE_TEST_SUITE_P(Scales, Leaving,
                          testing::Values(std::tuple(1.0, 0.0), std::tuple(1e-5, 0.0), std::tuple(1e5, 0.0),
                                          std::tuple(1.0, 1e4), std::tuple(1.0, 1e5), std::tuple(1e-5, 1.0)));
 
+// The same in floats, whose kernel may err by more than the margin: how rare that is, and that floats' own
+// spacing is what decides.
+TEST(Leaving, InFloatsHardlyAnyRayMeetsTheSurfaceThatItLeaves) {
+  const test::Built built(icosphere(3, 1.0, 0.0), "octree");
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> normal;
+  const auto direction = [&] {
+    return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+  };
+  int left = 0;
+  int met = 0;
+  int passed = 0;
+  accel::visit_structure(*built.structure, [&](const auto& concrete) {
+    accel::NullVisitor visitor;
+    for (int i = 0; i < 20000; ++i) {
+      const glm::dvec3 eye = direction() * 4.0;
+      const glm::dvec3 d = glm::normalize(direction() * 0.5 - eye);
+      const accel::Hit hit = concrete.template closest<float>({eye, d}, visitor);
+      ASSERT_TRUE(hit.found());
+      const float weights[3] = {static_cast<float>(hit.u), static_cast<float>(hit.v),
+                                static_cast<float>(hit.w)};
+      const Surface<float> surface = surface_at(built.scene, hit.primitive, weights, Vec3<float>(d));
+      Vec3<float> out(direction());
+      const float cosine = dot(out, surface.geometric);
+      if (std::abs(cosine) < 0.01F) {
+        continue;
+      }
+      out = cosine < 0.0F ? -out : out;
+      const auto is_hit = [&](const Vec3<float>& to) {
+        const Vec3<float> from = leave(surface, to);
+        accel::Ray ray{{from.x, from.y, from.z}, {to.x, to.y, to.z}};
+        ray.t_min = static_cast<double>(std::numeric_limits<float>::denorm_min());
+        return concrete.template occluded<float>(ray, visitor);
+      };
+      met += is_hit(out) ? 1 : 0;
+      passed += is_hit(-out) ? 0 : 1;
+      ++left;
+    }
+  });
+  EXPECT_GT(left, 19000);
+  EXPECT_LT(met, left / 1000);
+  EXPECT_EQ(passed, 0);
+}
+
 TEST(Leaving, NextTowardIsTheNeighbour) {
   for (const double value : {1.0, -1.0, 0.0, -0.0, 1e-310, -3.5e200}) {
     EXPECT_EQ(next_toward(value, 2.0), std::nextafter(value, std::numeric_limits<double>::infinity()));
     EXPECT_EQ(next_toward(value, -2.0), std::nextafter(value, -std::numeric_limits<double>::infinity()));
     EXPECT_EQ(next_toward(value, 0.0), value);
+  }
+  for (const float value : {1.0F, -1.0F, 0.0F, 1e-40F, -3.5e20F}) {
+    EXPECT_EQ(next_toward(value, 2.0F), std::nextafter(value, std::numeric_limits<float>::infinity()));
+    EXPECT_EQ(next_toward(value, -2.0F), std::nextafter(value, -std::numeric_limits<float>::infinity()));
   }
 }
 

@@ -3,9 +3,11 @@
 #include <rapidcheck/gtest.h>
 
 #include <numeric>
+#include <span>
 
 #include "processors/program/ray_tree.h"
-#include "tests/support/random_machine.h"
+#include "tests/support/logged_samples.h"
+#include "tests/support/random_flow.h"
 
 namespace marti::processors {
 namespace {
@@ -32,7 +34,7 @@ TEST(RayTree, FollowsTheRecursionOfTheTracer) {
       ray_word(RayKind::reflection, 2), make_word(Step::branch, 0), ray_word(RayKind::refraction, 1),
       make_word(Step::branch, 0)};
   std::vector<LoggedRay> rays;
-  rays_of_pixel(words, rays);
+  rays_of_sample(words, rays);
   ASSERT_EQ(rays.size(), 7U);
   EXPECT_EQ(children_of(rays, 0), (std::vector<std::uint32_t>{1, 2, 3, 6}));
   EXPECT_EQ(children_of(rays, 3), (std::vector<std::uint32_t>{4, 5}));
@@ -43,7 +45,7 @@ TEST(RayTree, FollowsTheRecursionOfTheTracer) {
 
 TEST(RayTree, OfAPixelWithoutRaysIsEmpty) {
   std::vector<LoggedRay> rays(3);
-  rays_of_pixel({}, rays);
+  rays_of_sample({}, rays);
   EXPECT_TRUE(rays.empty());
 }
 
@@ -53,7 +55,7 @@ RC_GTEST_PROP(RayTree, EveryWordIsOneRaysAndEveryRayHasOneParent, ()) {
   std::vector<LoggedRay> rays;
   for (std::uint32_t x = 0; x < 3; ++x) {
     const auto words = log.pixel(x, 1);
-    rays_of_pixel(words, rays);
+    rays_of_sample(words, rays);
     RC_ASSERT(!rays.empty());
     const std::uint32_t* at = words.data();
     std::vector<int> parents(rays.size());
@@ -71,6 +73,25 @@ RC_GTEST_PROP(RayTree, EveryWordIsOneRaysAndEveryRayHasOneParent, ()) {
     RC_ASSERT(std::accumulate(parents.begin(), parents.end(), 0) == static_cast<int>(rays.size()) - 1);
     RC_ASSERT(std::all_of(parents.begin() + 1, parents.end(), [](int n) { return n == 1; }));
   }
+}
+
+RC_GTEST_PROP(RayTree, SamplesAreAPixelsWordsFromCameraRayToCameraRay, ()) {
+  test::Random random(*rc::gen::arbitrary<std::uint64_t>());
+  const auto samples = static_cast<std::uint32_t>(test::pick(random, 1, 6));
+  WorkLog log = test::random_ray_trees(random, 4, 2, 6, 3, samples);
+  log.lights = 1;
+  validate(log);
+  for (std::uint32_t x = 0; x < 4; ++x) {
+    std::span<const std::uint32_t> left = log.pixel(x, 1);
+    for (const auto& expected : test::samples_of_pixel(log, x, 1)) {
+      const auto sample = first_sample(log, left);
+      RC_ASSERT(sample.data() == expected.data());
+      RC_ASSERT(sample.size() == expected.size());
+      left = left.subspan(sample.size());
+    }
+    RC_ASSERT(left.empty());
+  }
+  RC_ASSERT(first_sample(log, {}).empty());
 }
 
 }  // namespace

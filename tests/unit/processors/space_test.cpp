@@ -32,13 +32,15 @@ MachineConfig random_space(test::Random& random) {
 WorkLog random_frame(test::Random& random) {
   const auto width = static_cast<std::uint32_t>(test::pick(random, 1, 9));
   const auto height = static_cast<std::uint32_t>(test::pick(random, 1, 9));
-  switch (test::pick(random, 0, 2)) {
+  switch (test::pick(random, 0, 3)) {
     case 0:
       return test::random_log(random, width, height);
     case 1:
       return test::random_tree_log(random, width, height);
-    default:
+    case 2:
       return test::random_ray_trees(random, width, height, 12, 4);
+    default:
+      return test::random_ray_trees(random, width, height, 5, 3, 3);
   }
 }
 
@@ -144,7 +146,7 @@ RC_GTEST_PROP(Space, WhatComesToANodeLeavesIt, (std::uint64_t seed)) {
   std::size_t most_rays = 0;
   std::vector<LoggedRay> rays;
   for (std::uint32_t pixel = 0; pixel < log.width * log.height; ++pixel) {
-    rays_of_pixel(log.pixel(pixel % log.width, pixel / log.width), rays);
+    rays_of_sample(log.pixel(pixel % log.width, pixel / log.width), rays);
     most_rays = std::max(most_rays, rays.size());
   }
   RC_ASSERT(result.flow.most_in_flight <= static_cast<std::int64_t>(std::uint64_t{admission_limit(machine)} *

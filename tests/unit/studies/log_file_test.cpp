@@ -168,7 +168,7 @@ TEST(LogFile, OtherLogsAreRefused) {
   const std::string message = user_error_of([&] { log_of(bytes, key_of(1), "1.2.3", 1000); });
   EXPECT_NE(message.find("more than 1000 B"), std::string::npos) << message;
   ++bytes[12];
-  expect_refused(bytes, "it has format 2, and this program's is 1");
+  expect_refused(bytes, "it has format 3, and this program's is 2");
   std::swap(bytes[8], bytes[11]);
   expect_refused(bytes, "another byte order");
   bytes[0] = 'M';

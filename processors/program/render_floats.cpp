@@ -1,0 +1,14 @@
+// The tracer in floats: a file of its own, because it is compiled for every structure and recorder once more.
+#include "processors/program/render_rows.h"
+
+namespace marti::processors {
+
+void render_in_floats(const scenes::Scene& scene, const accel::Structure& structure,
+                      const RenderOptions& options, unsigned threads, std::vector<LogRow>& rows,
+                      Frame& frame) {
+  accel::visit_structure(structure, [&](const auto& concrete) {
+    render_with<float>(scene, concrete, options, threads, rows, frame);
+  });
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,109 @@
+// The rows of a frame on all host cores, by one kind of tracer; render.cpp and render_floats.cpp instantiate
+// it.
+#pragma once
+
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "accel/mailbox.h"
+#include "accel/structure.h"
+#include "processors/program/recorder.h"
+#include "processors/program/render.h"
+#include "processors/program/tracer.h"
+
+namespace marti::processors {
+
+/// What one host thread keeps from row to row.
+template <typename Recorder>
+struct Worker {
+  Recorder recorder;
+  RayCounts rays;
+  std::uint64_t hit_hash = 0;
+};
+
+/// Renders all rows; `rows` is where a RowRecorder's rows go, with mailboxes or without.
+template <typename Real, typename Structure, typename Recorder>
+void render_rows(const scenes::Scene& scene, const Structure& structure, const RenderOptions& options,
+                 unsigned threads, std::vector<LogRow>& rows, Frame& frame) {
+  const scenes::ImagePlane plane = scene.camera.image_plane(options.width, options.height);
+  tbb::enumerable_thread_specific<Worker<Recorder>> workers;
+
+  const auto render_row = [&](std::uint32_t y) {
+    Worker<Recorder>& worker = workers.local();
+    Tracer<Real, Structure, Recorder> tracer(scene, structure, plane, options, worker.recorder);
+    constexpr bool recording = std::is_base_of_v<RowRecorder, Recorder>;
+    if constexpr (accel::has_mailboxes<Recorder>) {
+      worker.recorder.prepare(structure.triangles().size());
+    }
+    if constexpr (recording) {
+      worker.recorder.begin_row(options.width);
+    }
+    glm::vec3* pixels = frame.image.pixels.data() + std::size_t{y} * options.width;
+    for (std::uint32_t x = 0; x < options.width; ++x) {
+      const Vec3<Real> color = tracer.trace(x, y);
+      pixels[x] = {static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)};
+    }
+    if constexpr (recording) {
+      worker.recorder.end_row(rows[y]);
+    }
+    worker.rays += tracer.rays();
+    worker.hit_hash += tracer.hit_hash();
+  };
+
+  // More threads than cores are asked for by tests of determinism; TBB grants them only on request.
+  std::optional<tbb::global_control> more_threads;
+  if (threads > static_cast<unsigned>(tbb::info::default_concurrency())) {
+    more_threads.emplace(tbb::global_control::max_allowed_parallelism, threads);
+  }
+  tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
+  arena.execute([&] {
+    // Rows differ in cost by orders of magnitude: the smallest grain, handed out as threads fall idle.
+    tbb::parallel_for(
+        tbb::blocked_range<std::uint32_t>(0, options.height, 1),
+        [&](const tbb::blocked_range<std::uint32_t>& range) {
+          for (std::uint32_t y = range.begin(); y < range.end(); ++y) {
+            render_row(y);
+          }
+        },
+        tbb::simple_partitioner());
+  });
+  // Integer sums: the order of the threads does not matter.
+  for (const Worker<Recorder>& worker : workers) {
+    frame.rays += worker.rays;
+    frame.hit_hash += worker.hit_hash;
+  }
+}
+
+/// All rows, with the recorder that the options ask for.
+template <typename Real, typename Structure>
+void render_with(const scenes::Scene& scene, const Structure& structure, const RenderOptions& options,
+                 unsigned threads, std::vector<LogRow>& rows, Frame& frame) {
+  const auto run = [&]<typename Recorder>(Recorder /*which*/) {
+    render_rows<Real, Structure, Recorder>(scene, structure, options, threads, rows, frame);
+  };
+  const bool mailboxes = options.mailboxes && options.keep_mailboxes;
+  if (mailboxes && options.record) {
+    run(accel::Mailboxed<RowRecorder>());
+  } else if (mailboxes) {
+    run(accel::Mailboxed<NullRecorder>());
+  } else if (options.record) {
+    run(RowRecorder());
+  } else {
+    run(NullRecorder());
+  }
+}
+
+/// The same of any structure, in floats.
+void render_in_floats(const scenes::Scene& scene, const accel::Structure& structure,
+                      const RenderOptions& options, unsigned threads, std::vector<LogRow>& rows,
+                      Frame& frame);
+
+}  // namespace marti::processors

@@ -1,0 +1,34 @@
+// Keys of the rendering family of `marti study error`: which settings are rendered, and against what.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/config.h"
+#include "sim/schema.h"
+#include "studies/frame_keys.h"
+
+namespace marti::studies {
+
+struct RenderingErrorOptions {
+  std::uint32_t side = 64;             ///< pixels of the image's longer side at most
+  std::vector<std::uint32_t> samples;  ///< a pixel; ascending, each once; not empty
+  /// Of each of the two references of `samples`; at least 16 times the largest of these. More than one
+  /// rendering may have are rendered in several.
+  std::uint32_t reference_samples = 1024;
+  std::vector<std::uint32_t> depths;  ///< ascending, each once, below reference_depth
+  std::uint32_t reference_depth = 16;
+  std::vector<double> weights;     ///< ascending, each once, above 0
+  std::vector<double> voxel_cuts;  ///< ascending, each once, above 0
+  std::uint32_t repeats = 7;       ///< of every measurement of run time; each has other samples
+};
+
+void declare_rendering_error_keys(sim::Schema& schema);
+
+/// The schema of this family alone: the keys of `marti run`, whose machine is not used, and the section above.
+[[nodiscard]] sim::Schema rendering_error_schema();
+
+/// Throws UserError naming file, line and key. `frame` is what is rendered.
+[[nodiscard]] RenderingErrorOptions read_rendering_error(sim::Config& config, const FrameConfig& frame);
+
+}  // namespace marti::studies

@@ -1,0 +1,228 @@
+#include "studies/error/rendering_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace marti::studies {
+
+namespace {
+
+std::string name_of(Knob knob) { return std::string(knob_names[static_cast<std::size_t>(knob)]); }
+
+std::vector<std::size_t> points_of(const RenderingStudy& study, Knob knob) {
+  std::vector<std::size_t> points;
+  for (std::size_t i = 0; i < study.points.size(); ++i) {
+    if (study.points[i].setting.knob == knob) {
+      points.push_back(i);
+    }
+  }
+  return points;
+}
+
+// What a knob's error is measured from: the setting that has none, else the one of most samples.
+std::size_t dearest_of(const RenderingStudy& study, Knob knob) {
+  const std::vector<std::size_t> points = points_of(study, knob);
+  const auto reference = std::find_if(
+      points.begin(), points.end(), [&](std::size_t point) { return study.points[point].setting.reference; });
+  return reference != points.end() ? *reference : points.back();
+}
+
+// Where errors of nothing are drawn: a decade and more below all others.
+double exact_line(const RenderingStudy& study) {
+  double least = 1.0;
+  for (const RenderingPoint& point : study.points) {
+    const double error = known_error(study, point);
+    least = error > 0.0 ? std::min(least, error) : least;
+  }
+  return std::pow(10.0, std::floor(std::log10(least)) - 1.0);
+}
+
+Table targets_table(const RenderingStudy& study, std::string name, std::string title, const Column& cost,
+                    const std::vector<double>& costs) {
+  Table table(
+      std::move(name), std::move(title),
+      {{"target", ColumnType::real, "fraction", "largest relative error allowed"},
+       {"knob", ColumnType::text, "", "what is turned"},
+       {"setting", ColumnType::text, "", "the cheapest setting that meets the target; none: no value"},
+       {"error", ColumnType::real, "fraction", "its root mean square over that of the reference"},
+       cost,
+       {"gain", ColumnType::real, "1",
+        "times cheaper than the knob's exact setting (samples: than the most)"}});
+  for (const double target : rendering_targets) {
+    for (std::size_t k = 0; k < knobs; ++k) {
+      const auto knob = static_cast<Knob>(k);
+      if (knob == Knob::exact || points_of(study, knob).empty()) {
+        continue;
+      }
+      const std::optional<std::size_t> best = cheapest(study, knob, target, costs);
+      if (!best) {
+        table.add_row({target, name_of(knob), Cell(), Cell(), Cell(), Cell()});
+        continue;
+      }
+      const RenderingPoint& point = study.points[*best];
+      table.add_row({target, name_of(knob), point.setting.name, point.errors.relative,
+                     cost.type == ColumnType::integer ? count_cell(point.steps()) : Cell(costs[*best]),
+                     costs[dearest_of(study, knob)] / costs[*best]});
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+double known_error(const RenderingStudy& study, const RenderingPoint& point) {
+  const bool noisy = point.setting.knob == Knob::samples && study.reference_level > 0.0;
+  return std::max(point.errors.relative, noisy ? study.noise_floor / study.reference_level : 0.0);
+}
+
+std::vector<double> counted_costs(const RenderingStudy& study) {
+  std::vector<double> costs;
+  for (const RenderingPoint& point : study.points) {
+    costs.push_back(static_cast<double>(point.steps()));
+  }
+  return costs;
+}
+
+std::vector<double> timed_costs(const RenderingStudy& study) {
+  std::vector<double> costs;
+  for (const RenderingPoint& point : study.points) {
+    costs.push_back(median_interval(point.cpu_ms).median);
+  }
+  return costs;
+}
+
+std::vector<std::size_t> front_of(const RenderingStudy& study, Knob knob, const std::vector<double>& costs) {
+  const std::vector<std::size_t> points = points_of(study, knob);
+  std::vector<CostAndError> pairs;
+  for (const std::size_t point : points) {
+    pairs.push_back({costs[point], known_error(study, study.points[point])});
+  }
+  std::vector<std::size_t> front;
+  for (const std::size_t index : pareto_front(pairs)) {
+    front.push_back(points[index]);
+  }
+  return front;
+}
+
+std::optional<std::size_t> cheapest(const RenderingStudy& study, Knob knob, double target,
+                                    const std::vector<double>& costs) {
+  std::optional<std::size_t> best;
+  for (const std::size_t point : points_of(study, knob)) {
+    if (known_error(study, study.points[point]) <= target && (!best || costs[point] < costs[*best])) {
+      best = point;
+    }
+  }
+  return best;
+}
+
+std::optional<double> sample_exponent(const RenderingStudy& study) {
+  double n = 0.0;
+  double x = 0.0;
+  double y = 0.0;
+  double xx = 0.0;
+  double xy = 0.0;
+  for (const std::size_t i : points_of(study, Knob::samples)) {
+    const RenderingPoint& point = study.points[i];
+    if (point.setting.render.samples > 1 && !point.below_floor && point.errors.plain.rmse > 0.0) {
+      const double log_samples = std::log(point.setting.value);
+      const double log_error = std::log(point.errors.plain.rmse);
+      n += 1.0;
+      x += log_samples;
+      y += log_error;
+      xx += log_samples * log_samples;
+      xy += log_samples * log_error;
+    }
+  }
+  if (n < 2.0) {
+    return std::nullopt;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+Table rendering_error_table(const RenderingStudy& study) {
+  Table table(
+      "rendering_error", "Settings of the renderer: error and counted work",
+      {{"knob", ColumnType::text, "", "what is turned; exact: what must not change the image"},
+       {"setting", ColumnType::text, "", "to what"},
+       {"value", ColumnType::real, "1", "the same as a number; 0 for exact"},
+       {"rmse", ColumnType::real, "1", "root mean square of the difference from the reference, linear light"},
+       {"relative", ColumnType::real, "1", "the same over the root mean square of the reference"},
+       {"rel_mse", ColumnType::real, "1", "mean of (x - r)^2 / (r^2 + 0.01)"},
+       {"largest", ColumnType::real, "1", "largest difference of a channel"},
+       {"changed", ColumnType::real, "fraction", "pixels that differ in any bit"},
+       {"visible", ColumnType::integer, "1", "pixels with a channel that differs by more than 1/255"},
+       {"median_change", ColumnType::real, "1",
+        "of the pixels that differ, the median of the largest difference, relative"},
+       {"first_column", ColumnType::integer, "1", "of the first pixel that differs, row by row"},
+       {"first_row", ColumnType::integer, "1", "of the same"},
+       {"noise", ColumnType::real, "1", "relative noise of the reference: errors below it are not known"},
+       {"below_noise", ColumnType::integer, "1", "1: the error is not above that noise"},
+       {"rays", ColumnType::integer, "1", "rays traced"},
+       {"visits", ColumnType::integer, "1", "nodes visited"},
+       {"tests", ColumnType::integer, "1", "primitives tested"}});
+  const double noise = study.reference_level > 0.0 ? study.noise_floor / study.reference_level : 0.0;
+  for (const RenderingPoint& point : study.points) {
+    const RenderingErrors& errors = point.errors;
+    const double pixels =
+        static_cast<double>(point.setting.render.width) * static_cast<double>(point.setting.render.height);
+    const std::uint32_t width = point.setting.render.width;
+    table.add_row({name_of(point.setting.knob), point.setting.name, point.setting.value, errors.plain.rmse,
+                   errors.relative, errors.rel_mse, errors.plain.largest,
+                   static_cast<double>(errors.plain.changed) / pixels, count_cell(errors.plain.visible),
+                   errors.median_change, errors.first ? count_cell(*errors.first % width) : Cell(),
+                   errors.first ? count_cell(*errors.first / width) : Cell(),
+                   point.setting.knob == Knob::samples ? noise : 0.0, count_cell(point.below_floor ? 1 : 0),
+                   count_cell(point.work.all_rays()), count_cell(point.visits()),
+                   count_cell(point.work.tests)});
+  }
+  return table;
+}
+
+Table rendering_cheapest_table(const RenderingStudy& study) {
+  return targets_table(study, "rendering_cheapest", "The least counted work for an error of at most ...",
+                       {"steps", ColumnType::integer, "1", "its rays, visits and tests"},
+                       counted_costs(study));
+}
+
+Table rendering_fastest_table(const RenderingStudy& study) {
+  return targets_table(study, "rendering_fastest", "The fastest setting for an error of at most ...",
+                       {"cpu", ColumnType::real, "ms", "its run time, the median"}, timed_costs(study));
+}
+
+Table rendering_time_table(const RenderingStudy& study) {
+  Table table(
+      "rendering_time", "Settings of the renderer: error against run time",
+      {{"knob", ColumnType::text, "", "what is turned; exact: what must not change the image"},
+       {"setting", ColumnType::text, "", "to what"},
+       {"value", ColumnType::real, "1", "the same as a number; 0 for exact"},
+       {"cpu", ColumnType::real, "ms", "processor time of one thread, the median of the repeats"},
+       {"cpu_low", ColumnType::real, "ms", "the shortest"},
+       {"cpu_high", ColumnType::real, "ms", "the longest"},
+       {"confidence", ColumnType::real, "fraction", "with which the true median lies between these"},
+       {"relative", ColumnType::real, "1", "root mean square of the error over that of the reference"},
+       {"drawn", ColumnType::real, "1",
+        "the same for a logarithmic axis: no error at a line below all others"},
+       {"efficiency", ColumnType::real, "1/ms", "1 / (mean square error x run time); none without error"},
+       {"front", ColumnType::integer, "1", "1: no other setting of the knob is both faster and better"}});
+  const std::vector<double> costs = timed_costs(study);
+  const double line = exact_line(study);
+  std::vector<bool> front(study.points.size());
+  for (std::size_t knob = 0; knob < knobs; ++knob) {
+    for (const std::size_t point : front_of(study, static_cast<Knob>(knob), costs)) {
+      front[point] = true;
+    }
+  }
+  for (std::size_t i = 0; i < study.points.size(); ++i) {
+    const RenderingPoint& point = study.points[i];
+    const MedianInterval cpu = median_interval(point.cpu_ms);
+    const double error = known_error(study, point);
+    const double square = point.errors.plain.rmse * point.errors.plain.rmse;
+    table.add_row({name_of(point.setting.knob), point.setting.name, point.setting.value, cpu.median, cpu.low,
+                   cpu.high, cpu.confidence, point.errors.relative, error > 0.0 ? error : line,
+                   square > 0.0 ? Cell(1.0 / (square * cpu.median)) : Cell(), count_cell(front[i] ? 1 : 0)});
+  }
+  return table;
+}
+
+}  // namespace marti::studies

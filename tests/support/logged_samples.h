@@ -1,0 +1,31 @@
+// The samples of a logged pixel, found the simple way.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "processors/program/work_log.h"
+
+namespace marti::test {
+
+/// The words of each of a pixel's samples: a log with one has them together, others begin a sample with each
+/// camera ray.
+inline std::vector<std::span<const std::uint32_t>> samples_of_pixel(const processors::WorkLog& log,
+                                                                    std::uint32_t x, std::uint32_t y) {
+  const std::span<const std::uint32_t> words = log.pixel(x, y);
+  std::vector<std::size_t> begins;
+  for (std::size_t at = 0; at < words.size(); at += processors::step_words(words.data() + at)) {
+    if (at == 0 || (log.samples > 1 && words[at] == processors::make_word(processors::Step::ray, 0))) {
+      begins.push_back(at);
+    }
+  }
+  begins.push_back(words.size());
+  std::vector<std::span<const std::uint32_t>> samples;
+  for (std::size_t i = 1; i < begins.size() && !words.empty(); ++i) {
+    samples.push_back(words.subspan(begins[i - 1], begins[i] - begins[i - 1]));
+  }
+  return samples;
+}
+
+}  // namespace marti::test
