@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "studies/error/error_keys.h"
+#include "studies/error/rendering.h"
 #include "studies/error/simulator_tables.h"
 #include "studies/results/provenance.h"
 #include "studies/results/text_table.h"
@@ -44,7 +45,10 @@ StudyOutput simulator_error(const ErrorConfig& config) {
 StudyOutput run_error(sim::Config& config) {
   const ErrorConfig error = read_error(config);
   StudyOutput output;
-  append(output, simulator_error(error));
+  for (const ErrorFamily family : error.families) {
+    append(output, family == ErrorFamily::simulator ? simulator_error(error)
+                                                    : rendering_error(error.frame, error.rendering));
+  }
   output.tables.push_back(provenance_table(config.effective_values()));
   output.host_tables.push_back(host_table());
   return output;

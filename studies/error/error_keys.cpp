@@ -1,6 +1,8 @@
 #include "studies/error/error_keys.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "memory/cache_config.h"
 #include "sim/units.h"
@@ -11,6 +13,8 @@
 namespace marti::studies {
 
 namespace {
+
+constexpr std::array<std::string_view, 2> family_names = {"simulator", "rendering"};
 
 template <class T>
 std::vector<T> ascending(std::span<const sim::Value> values) {
@@ -51,8 +55,18 @@ void declare_error_keys(sim::Schema& schema) {
   schema.section("error",
                  "only for `marti study error`: the scenes and machines on which cheaper methods are held "
                  "against exact replay; image, structure and the rest of the machine are those of this file");
+  sim::Key families;
+  families.name = "error.families";
+  families.type = sim::ValueType::choice;
+  families.is_list = true;
+  families.choices = {family_names.begin(), family_names.end()};
+  families.default_value = {families.choices[0], families.choices[1]};
+  families.meaning =
+      "what is measured: cheaper ways of timing machines, on error.scenes, and cheaper settings of the "
+      "renderer, on scene.source";
+  schema.add(std::move(families));
   schema.texts("error.scenes", {"gears:2", "tetra:6", "teapot:4", "teapot:12", "large"},
-               "scenes, in the place of scene.source");
+               "scenes whose frames are timed");
   schema.integers("error.nodes", {1, 4, 16, 64, 256}, {1, 65536}, "nodes",
                   "nodes of a machine, in the place of machine.nodes; 1 must be among them");
   sim::Key sizes;
@@ -76,6 +90,7 @@ sim::Schema error_schema() {
   declare_frame_keys(schema);
   declare_machine_keys(schema);
   declare_error_keys(schema);
+  declare_rendering_error_keys(schema);
   return schema;
 }
 
@@ -98,9 +113,17 @@ ErrorConfig read_error(sim::Config& config) {
   if (error.frame.frames.count > 1) {
     config.fail("frames.count", "the study renders one frame, that of frames.first");
   }
-  if (config.given("scene.source")) {
-    config.fail("scene.source", "the study takes its scenes from error.scenes");
+  for (const sim::Value& name : config.values("error.families")) {
+    const auto at = std::find(family_names.begin(), family_names.end(), std::get<std::string>(name));
+    const auto family = static_cast<ErrorFamily>(at - family_names.begin());
+    if (std::find(error.families.begin(), error.families.end(), family) == error.families.end()) {
+      error.families.push_back(family);
+    }
   }
+  if (error.families.empty()) {
+    config.fail("error.families", "must name a family");
+  }
+  error.rendering = read_rendering_error(config, error.frame);
   error.machine = read_machine(config);
   error.scenes = config.texts("error.scenes");
   if (error.scenes.empty()) {

@@ -8,12 +8,18 @@
 #include "processors/machine_config.h"
 #include "sim/config.h"
 #include "sim/schema.h"
+#include "studies/error/rendering_keys.h"
 #include "studies/frame_keys.h"
 
 namespace marti::studies {
 
+/// What is held against exact answers: cheaper ways of timing a machine, cheaper settings of the renderer.
+enum class ErrorFamily : std::uint8_t { simulator, rendering };
+
 struct ErrorConfig {
-  FrameConfig frame;                  ///< its scene is each of `scenes` in turn
+  std::vector<ErrorFamily> families;  ///< at least one, each once
+  FrameConfig frame;                  ///< of the simulator's family its scene is each of `scenes` in turn
+  RenderingErrorOptions rendering;
   std::vector<std::string> scenes;    ///< at least one
   processors::MachineConfig machine;  ///< its nodes and its cache are each of these in turn
   std::vector<std::uint32_t> nodes;   ///< ascending, each once; the first is 1

@@ -38,7 +38,7 @@ class Finder {
 
   void find_materials() {
     const View view(scene_.camera.image_plane(options_.width, options_.height), options_.width,
-                    options_.height);
+                    options_.height, options_.samples > 1);
     std::vector<bool> listed(scene_.materials.size());
     std::vector<bool> seen(scene_.materials.size());
     needs_.primitives = in_view_.size();

@@ -16,21 +16,27 @@ constexpr double thinnest = 0x1p-32;
 
 }  // namespace
 
-View::View(const scenes::ImagePlane& plane, std::uint32_t width, std::uint32_t height) : eye_(plane.origin) {
+View::View(const scenes::ImagePlane& plane, std::uint32_t width, std::uint32_t height, bool several_samples)
+    : eye_(plane.origin) {
   const auto at = [&](double x, double y) { return plane.corner + plane.step_x * x + plane.step_y * y; };
   const double w = width;
   const double h = height;
-  const std::array<glm::dvec3, 4> edges = {at(0.0, 0.0), at(w, 0.0), at(w, h), at(0.0, h)};
-  const std::array<glm::dvec3, 4> outermost = {at(0.5, 0.5), at(w - 0.5, 0.5), at(w - 0.5, h - 0.5),
-                                               at(0.5, h - 0.5)};
+  // Half a pixel beyond the outermost rays, whose cone no rounding then crosses.
+  const double ray = several_samples ? 0.0 : 0.5;
+  const double edge = ray - 0.5;
+  const auto corners = [&](double in) {
+    return std::array<glm::dvec3, 4>{at(in, in), at(w - in, in), at(w - in, h - in), at(in, h - in)};
+  };
+  const std::array<glm::dvec3, 4> edges = corners(edge);
+  const std::array<glm::dvec3, 4> outermost = corners(ray);
   const glm::dvec3 middle = at(0.5 * w, 0.5 * h);
   usable_ = true;
   for (std::size_t i = 0; i < outward_.size(); ++i) {
     const glm::dvec3 across = i < edges.size() ? glm::cross(edges[i], edges[(i + 1) % edges.size()]) : middle;
     outward_[i] = across * ((glm::dot(across, middle) > 0.0 ? -1.0 : 1.0) / glm::length(across));
     // All rays lie between the outermost four, so these alone tell on which side all are.
-    for (const glm::dvec3& ray : outermost) {
-      usable_ = usable_ && -glm::dot(outward_[i], ray) > thinnest * glm::length(ray);
+    for (const glm::dvec3& outer : outermost) {
+      usable_ = usable_ && -glm::dot(outward_[i], outer) > thinnest * glm::length(outer);
     }
   }
 }

@@ -15,7 +15,8 @@ namespace marti::studies {
 /// before the eye.
 class View {
  public:
-  View(const scenes::ImagePlane& plane, std::uint32_t width, std::uint32_t height);
+  /// Rays go through the pixels' centres, or with several samples anywhere through the pixels.
+  View(const scenes::ImagePlane& plane, std::uint32_t width, std::uint32_t height, bool several_samples);
 
   /// False only when no ray of the camera can meet the primitive: all its corners, or those of its box, lie
   /// beyond one side of the cone or behind the eye, and by more than the kernels round.

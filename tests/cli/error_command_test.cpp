@@ -17,7 +17,9 @@ const std::string small =
     quoted(fs::path(MARTI_SOURCE) / "configs" / "error.toml") +
     " --set image.width=24 --set image.height=16 --set 'error.scenes=[\"tetra:2\",\"teapot:2:pot\"]'"
     " --set error.nodes=[1,2,4] --set 'error.cache_sizes=[\"32 B\",\"1 KiB\",\"64 KiB\"]' --set "
-    "error.repeats=2";
+    "error.repeats=2 --set scene.source=gears:1 --set error.rendering.side=12 "
+    "--set error.rendering.samples=[1,2] --set error.rendering.reference_samples=32 "
+    "--set error.rendering.repeats=2";
 
 TEST(StudyError, WritesTheSameTablesAgainButForRunTimes) {
   const TemporaryDirectory directory;
@@ -61,7 +63,9 @@ TEST(StudyError, WrongInputIsTwo) {
   refused(" --set error.cache_sizes=[]", "error.cache_sizes");
   refused(" --set 'error.cache_sizes=[\"48 B\"]'", "error.cache_sizes");
   refused(" --set error.repeats=0", "error.repeats");
-  refused(" --set scene.source=tetra:2", "error.scenes");
+  refused(" --set error.families=[]", "error.families");
+  refused(" --set error.families=[\"sim\"]", "error.families");
+  refused(" --set error.rendering.reference_samples=16", "error.rendering.reference_samples");
   refused(" --set cache.replacement=fifo", "LRU");
   refused(" --set machine.scheme=space", "image");
   refused(" --set error.scene=x", "error.scenes");

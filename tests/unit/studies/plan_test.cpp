@@ -272,7 +272,8 @@ TEST(View, HoldsAllThatARayMeets) {
       add_triangle(scene, a, b, center + random.point(0.4 * reach), 0);
     }
     const scenes::ImagePlane plane = scene.camera.image_plane(16, 8);
-    const View view(plane, 16, 8);
+    const bool several = random.chance(0.5);
+    const View view(plane, 16, 8, several);
     for (std::uint32_t id = 0; id < 20; ++id) {
       scenes::Scene one = scene;
       one.triangles = {scene.triangles[id]};
@@ -280,8 +281,10 @@ TEST(View, HoldsAllThatARayMeets) {
       const auto structure = accel::make_structure("none", std::make_shared<const accel::TriangleSet>(set));
       bool hit = false;
       for (std::uint32_t pixel = 0; pixel < 128; ++pixel) {
+        const double x = several ? 0.5 * (pixel % 3) : 0.5;
+        const double y = several ? 0.5 * (pixel % 5 / 2) : 0.5;
         const glm::dvec3 direction =
-            plane.corner + plane.step_x * (pixel % 16 + 0.5) + plane.step_y * (pixel / 16 + 0.5);
+            plane.corner + plane.step_x * (pixel % 16 + x) + plane.step_y * (pixel / 16 + y);
         hit = hit || structure
                          ->closest({{plane.origin.x, plane.origin.y, plane.origin.z},
                                     {direction.x, direction.y, direction.z}})
