@@ -31,6 +31,8 @@
 #include "studies/schemes/schemes.h"
 #include "studies/schemes/schemes_keys.h"
 #include "studies/signals_held.h"
+#include "studies/stability/stability.h"
+#include "studies/stability/stability_keys.h"
 #include "studies/sweep/sweep_keys.h"
 #include "studies/sweep_command.h"
 #include "studies/trace/trace.h"
@@ -89,7 +91,8 @@ std::string no_empty_directory(const std::string& name) {
   return name.empty() ? "the name of a directory must not be empty" : "";
 }
 
-// Runs a study; without a directory it only prints.
+// Runs a study; without a directory it only prints. What it finds wrong with the program is our fault, once
+// everything is written.
 template <class Study>
 void run_study(const StudyArguments& arguments, const sim::Schema& schema, const Study& study) {
   sim::Config config = arguments.config.empty()
@@ -110,6 +113,9 @@ void run_study(const StudyArguments& arguments, const sim::Schema& schema, const
     }
   }
   print(text);
+  if (!output.fault.empty()) {
+    throw sim::InternalError(output.fault);
+  }
 }
 
 void add_study_commands(CLI::App& app, StudyArguments& arguments) {
@@ -122,13 +128,15 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
       study->add_subcommand("frames", "The cycle \"build, render\" of each frame of an animated scene");
   CLI::App* schemes =
       study->add_subcommand("schemes", "Parallel schemes on one scene: how they grow, and what limits them");
-  for (CLI::App* command : {operations, paper, frames, schemes}) {
+  CLI::App* stability = study->add_subcommand(
+      "stability", "Stiff and extreme cases, each against an oracle; exit 1 if one fails");
+  for (CLI::App* command : {operations, paper, frames, schemes, stability}) {
     CLI::Option* config = command->add_option("CONFIG", arguments.config, "configuration file (TOML)");
     CLI::Option* directory =
         command->add_option("-o,--output", arguments.directory, "directory for tables, charts and report")
             ->check(no_empty_directory);
-    config->required(command != operations);
-    directory->required(command != operations);
+    config->required(command != operations && command != stability);
+    directory->required(command != operations && command != stability);
     command->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
         ->allow_extra_args(false);
   }
@@ -136,6 +144,10 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
   paper->callback([&] { run_study(arguments, studies::paper_schema(), studies::run_paper); });
   frames->callback([&] { run_study(arguments, studies::run_schema(), studies::run_frames); });
   schemes->callback([&] { run_study(arguments, studies::schemes_schema(), studies::run_schemes); });
+  stability->callback([&] {
+    run_study(arguments, studies::stability_schema(),
+              [](sim::Config& config) { return studies::run_stability(config); });
+  });
 }
 
 void add_sweep_command(CLI::App& app, studies::SweepArguments& arguments) {
@@ -309,6 +321,7 @@ int parse_and_run(int argc, char** argv) {
     sim::Schema schema = studies::run_schema();
     studies::declare_paper_keys(schema);
     studies::declare_schemes_keys(schema);
+    studies::declare_stability_keys(schema);
     studies::declare_sweep_keys(schema);
     print(markdown ? sim::list_keys_as_markdown(schema) : sim::list_keys_as_text(schema));
   });

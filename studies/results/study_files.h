@@ -21,6 +21,7 @@ struct StudyOutput {
   std::string report;                ///< for people; the same input gives the same text
   std::string host_report;           ///< for people; what was measured on the host
   std::vector<StudyImage> images{};  ///< the same input gives the same pixels
+  std::string fault{};               ///< what the study found wrong with the program itself; empty: nothing
 };
 
 /// Writes into `directory`, which must exist:

@@ -8,52 +8,13 @@
 #include "processors/bounds.h"
 #include "processors/closed_network.h"
 #include "processors/replay.h"
-#include "processors/step_time.h"
 #include "sim/engine.h"
+#include "studies/stability/cyclic_machine.h"
 
 namespace marti::processors {
 namespace {
 
-// D/D/1//N: every computing takes Z, every read holds the bus for S. A pixel shades `reads` points and then
-// adds lights for so long that no pixel is written before the last node's reads are over.
-struct Cyclic {
-  Cyclic(std::uint32_t nodes, std::uint32_t reads, std::int64_t bank_cycles) {
-    machine.nodes = nodes;
-    machine.operations = {1, 1, 1, 1, 1, 1, 1, 1};
-    machine.cache.organisation = CacheOrganisation::none;
-    machine.interconnect.mode = memory::BusMode::held;
-    machine.banks.access_cycles = bank_cycles;
-    machine.banks.busy_cycles = bank_cycles;
-    machine.layout.material_bytes = 8;
-    machine.packets = {1, 1, PacketOrder::scanline};
-    machine.host.assignment = Assignment::interleaved;
-    log.width = nodes;
-    log.height = 1;
-    log.topology.nodes.push_back({0, 0, 1, true});
-    log.primitives = 1;
-    log.materials = 1;
-    log.lights = 1;
-    log.texture_begin = {0};
-    const StepTicks ticks = step_ticks(machine, log);
-    think = ticks.shade;
-    service = machine.interconnect.clock.cycles(2) + machine.banks.clock.cycles(bank_cycles);
-    const auto lights = static_cast<std::size_t>(nodes * service / ticks.light + 1);
-    after = static_cast<sim::Ticks>(lights) * ticks.light + ticks.pixel;
-    log.rows.resize(1);
-    for (std::uint32_t node = 0; node < nodes; ++node) {
-      log.rows[0].begin.push_back(static_cast<std::uint32_t>(log.rows[0].words.size()));
-      log.rows[0].words.insert(log.rows[0].words.end(), reads, make_word(Step::shade, 0));
-      log.rows[0].words.insert(log.rows[0].words.end(), lights, make_word(Step::light, 0));
-    }
-    log.rows[0].begin.push_back(static_cast<std::uint32_t>(log.rows[0].words.size()));
-  }
-
-  WorkLog log;
-  MachineConfig machine;
-  sim::Ticks think = 0;
-  sim::Ticks service = 0;
-  sim::Ticks after = 0;
-};
+using studies::Cyclic;
 
 TEST(ClosedForms, DeterministicNodesOnOneBusAreExact) {
   constexpr std::int64_t reads = 50;

@@ -1,0 +1,60 @@
+// A machine whose times are known in closed form.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "processors/machine_config.h"
+#include "processors/program/work_log.h"
+#include "processors/step_time.h"
+#include "sim/time.h"
+
+namespace marti::studies {
+
+/// D/D/1//N: every node computes for `think`, then reads from a held bus for `service`, `reads` times. A
+/// node has one pixel; it shades `reads` points and then adds lights for `after`: unless their number is
+/// given, for so long that no pixel is written before the last node's reads are over.
+struct Cyclic {
+  Cyclic(std::uint32_t nodes, std::uint32_t reads, std::int64_t bank_cycles, std::size_t lights = 0) {
+    machine.nodes = nodes;
+    machine.operations = {1, 1, 1, 1, 1, 1, 1, 1};
+    machine.cache.organisation = processors::CacheOrganisation::none;
+    machine.interconnect.mode = memory::BusMode::held;
+    machine.banks.access_cycles = bank_cycles;
+    machine.banks.busy_cycles = bank_cycles;
+    machine.layout.material_bytes = 8;
+    machine.packets = {1, 1, processors::PacketOrder::scanline};
+    machine.host.assignment = processors::Assignment::interleaved;
+    log.width = nodes;
+    log.height = 1;
+    log.topology.nodes.push_back({0, 0, 1, true});
+    log.primitives = 1;
+    log.materials = 1;
+    log.lights = 1;
+    log.texture_begin = {0};
+    const processors::StepTicks ticks = processors::step_ticks(machine, log);
+    think = ticks.shade;
+    service = machine.interconnect.clock.cycles(2) + machine.banks.clock.cycles(bank_cycles);
+    if (lights == 0) {
+      lights = static_cast<std::size_t>(nodes * service / ticks.light + 1);
+    }
+    after = static_cast<sim::Ticks>(lights) * ticks.light + ticks.pixel;
+    log.rows.resize(1);
+    for (std::uint32_t node = 0; node < nodes; ++node) {
+      log.rows[0].begin.push_back(static_cast<std::uint32_t>(log.rows[0].words.size()));
+      log.rows[0].words.insert(log.rows[0].words.end(), reads,
+                               processors::make_word(processors::Step::shade, 0));
+      log.rows[0].words.insert(log.rows[0].words.end(), lights,
+                               processors::make_word(processors::Step::light, 0));
+    }
+    log.rows[0].begin.push_back(static_cast<std::uint32_t>(log.rows[0].words.size()));
+  }
+
+  processors::WorkLog log;
+  processors::MachineConfig machine;
+  sim::Ticks think = 0;
+  sim::Ticks service = 0;  ///< of a read, and of the write of a pixel
+  sim::Ticks after = 0;
+};
+
+}  // namespace marti::studies

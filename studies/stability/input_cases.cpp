@@ -1,0 +1,177 @@
+// Cases of input that is no geometry: not numbers, infinities, directions of no length.
+#include <unistd.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "accel/precision.h"
+#include "scenes/open.h"
+#include "scenes/procedural.h"
+#include "sim/error.h"
+#include "sim/files.h"
+#include "studies/stability/geometry_oracles.h"
+
+namespace marti::studies {
+
+namespace {
+
+using accel::Ray;
+using accel::TriangleSet;
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+CaseOutcome bad_vertex(double value) {
+  return refuses(
+      [value] {
+        std::vector<accel::TriangleCorners> soup = hostile_soup(0.0, 61);
+        soup[7][4] = value;
+        (void)TriangleSet(std::move(soup));
+      },
+      "triangle 7 has a coordinate that is not a number");
+}
+
+/// A binary glTF of `corners`, three to a triangle, as floats.
+std::string glb_of(const std::vector<float>& coordinates) {
+  const std::size_t bytes = coordinates.size() * sizeof(float);
+  std::string json = fmt::format(
+      R"({{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],)"
+      R"("meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],)"
+      R"("accessors":[{{"bufferView":0,"componentType":5126,"count":{},"type":"VEC3",)"
+      R"("min":[0,0,0],"max":[1,1,1]}}],)"
+      R"("bufferViews":[{{"buffer":0,"byteLength":{}}}],"buffers":[{{"byteLength":{}}}]}})",
+      coordinates.size() / 3, bytes, bytes);
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string data(bytes, '\0');
+  std::memcpy(data.data(), coordinates.data(), bytes);
+  const auto word = [](std::size_t value) {
+    std::string text(4, '\0');
+    for (std::size_t k = 0; k < 4; ++k) {
+      text[k] = static_cast<char>((value >> (8 * k)) & 0xffU);
+    }
+    return text;
+  };
+  std::string file = "glTF" + word(2) + word(12 + 8 + json.size() + 8 + data.size());
+  file += word(json.size()) + "JSON" + json;
+  file += word(data.size()) + std::string("BIN\0", 4) + data;
+  return file;
+}
+
+/// One corner of 10,000 triangles is no number: the scene is that of the other 9,999, and says so once.
+CaseOutcome gltf_with(float value, const CaseSize& size) {
+  constexpr std::size_t triangles = 10'000;
+  Random random(62);
+  std::vector<float> coordinates;
+  for (std::size_t k = 0; k < 9 * triangles; ++k) {
+    coordinates.push_back(static_cast<float>(random.unit()));
+  }
+  constexpr std::size_t bad = 1234;
+  std::vector<float> rest = coordinates;
+  rest.erase(rest.begin() + 9 * bad, rest.begin() + 9 * (bad + 1));
+  coordinates[9 * bad + 4] = value;
+  const auto open = [](const std::vector<float>& all) {
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / fmt::format("marti-stability-{}.glb", ::getpid());
+    sim::write_file(path, glb_of(all));
+    scenes::Scene scene = scenes::open_scene(path.string(), {}, {});
+    std::filesystem::remove(path);
+    return scene;
+  };
+  const scenes::Scene scene = open(coordinates);
+  const scenes::Scene expected = open(rest);
+  const auto a = std::make_shared<const TriangleSet>(scene);
+  const auto b = std::make_shared<const TriangleSet>(expected);
+  const accel::Octree with = accel::Octree::build(a);
+  const accel::Octree without = accel::Octree::build(b);
+  RayMaker maker(*b, without.bounds(), 63);
+  Tally tally;
+  for (std::uint32_t k = 0; k < size.rays; ++k) {
+    const Ray ray = maker.make(all_aims[k % all_aims.size()]);
+    accel::NullVisitor visitor;
+    tally.add(same_hit(with.closest(ray, visitor), without.closest(ray, visitor)));
+  }
+  std::size_t notes = 0;
+  for (const std::string& note : scene.notes) {
+    notes += note.find("not finite") != std::string::npos ? 1U : 0U;
+  }
+  CaseOutcome outcome = none_wrong(tally, "rays differ");
+  outcome.value += a->size() == triangles - 1 && notes == 1 ? 0.0 : 1.0;
+  outcome.figure += fmt::format("; {} triangles left, {} note", grouped(a->size()), notes);
+  return outcome;
+}
+
+/// Every structure must say that it is no ray, and not walk for ever.
+CaseOutcome bad_ray(const Ray& ray) {
+  const auto triangles = std::make_shared<const TriangleSet>(hostile_soup(0.0, 64));
+  Tally tally;
+  for (const auto& structure : build_structures(triangles)) {
+    bool refused = false;
+    try {
+      (void)structure->closest(ray);
+    } catch (const sim::InternalError&) {
+      refused = true;
+    }
+    tally.add(refused);
+  }
+  return none_wrong(tally, "structures took it");
+}
+
+/// The recommendation follows what floats do to the scene.
+CaseOutcome recommendation() {
+  const scenes::Scene teapot = scenes::make_procedural("teapot:4");
+  std::string asked;
+  Tally tally;
+  for (const double offset : {0.0, 1e3, 1e6, 1e9}) {
+    scenes::Scene moved = teapot;
+    for (glm::dvec3& p : moved.positions) {
+      p += glm::dvec3(offset);
+    }
+    const accel::PrecisionNeed need = accel::precision_need(TriangleSet(moved));
+    tally.add(need.wants_double() == (offset >= 1e6));
+    asked += fmt::format("{} at {:g}", need.collapsed, offset) + (offset < 1e9 ? ", " : "");
+  }
+  CaseOutcome outcome = none_wrong(tally, "places advised wrongly");
+  outcome.figure += "; triangles that collapse in floats: " + asked;
+  return outcome;
+}
+
+}  // namespace
+
+void add_input_cases(std::vector<StabilityCase>& cases) {
+  const auto add = [&](std::string id, std::string risk, std::string oracle, auto run) {
+    cases.push_back({std::move(id), CaseGroup::geometry, std::move(risk), std::move(oracle), run});
+  };
+  add("nan-vertex", "a coordinate that is no number poisons the bounds of the whole tree",
+      "refused, with the triangle's number", [](const CaseSize&) { return bad_vertex(not_a_number); });
+  add("infinite-vertex", "an infinite coordinate makes every cell infinite",
+      "refused, with the triangle's number", [](const CaseSize&) { return bad_vertex(-infinity); });
+  add("gltf-nan", "one NaN among 10,000 triangles of a file", "hits of the file without it, and one note",
+      [](const CaseSize& size) { return gltf_with(std::numeric_limits<float>::quiet_NaN(), size); });
+  add("gltf-infinity", "one infinity among 10,000 triangles of a file",
+      "hits of the file without it, and one note",
+      [](const CaseSize& size) { return gltf_with(std::numeric_limits<float>::infinity(), size); });
+  add("direction-zero", "a ray that goes nowhere walks for ever", "an error, in every structure",
+      [](const CaseSize&) {
+        return bad_ray({{0, 0, 0}, {0, -0.0, 0}});
+      });
+  add("direction-nan", "a direction that is no number walks for ever", "an error, in every structure",
+      [](const CaseSize&) {
+        return bad_ray({{0, 0, 0}, {1, not_a_number, 0}});
+      });
+  add("origin-infinite", "an origin at infinity walks for ever", "an error, in every structure",
+      [](const CaseSize&) {
+        return bad_ray({{infinity, 0, 0}, {1, 0, 0}});
+      });
+  add("advice", "doubles are advised where floats would do, or not where they lose triangles",
+      "teapot at 0 and 1e3: no; at 1e6 and 1e9: yes", [](const CaseSize&) { return recommendation(); });
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,39 @@
+// The machines that the stability study times, and a frame small enough to be timed thousands of times.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "processors/machine_config.h"
+#include "processors/replay.h"
+#include "studies/stability/stability_case.h"
+
+namespace marti::studies {
+
+/// A frame of 24 x 16 pixels with shadows and reflections, rendered once.
+[[nodiscard]] const processors::WorkLog& small_log();
+
+struct NamedTiming {
+  std::string name;
+  processors::MachineConfig machine;
+};
+
+/// A machine of every kind of scheme, memory and interconnect, of six nodes (a pipeline needs three). The
+/// periods of all clocks are different and below 10 ticks. `assignment` is that of the image schemes.
+[[nodiscard]] std::vector<NamedTiming> machines_of_every_kind(
+    processors::Assignment assignment = processors::Assignment::dynamic);
+
+/// Every duration of the machine times `factor`; false when a clock's period would not fit.
+[[nodiscard]] bool stretch(processors::MachineConfig& machine, std::int64_t factor);
+
+/// Whether `long_one` is `short_one` with every time multiplied by `factor`, and everything else equal.
+[[nodiscard]] bool is_stretched(const processors::MachineResult& short_one,
+                                const processors::MachineResult& long_one, std::int64_t factor);
+
+/// Every duration of a machine 0, except those that hold no cycles: they are all in cycles.
+void take_all_time_away(processors::MachineConfig& machine);
+
+/// The same hits and misses at every node.
+[[nodiscard]] bool same_references(const processors::MachineResult& a, const processors::MachineResult& b);
+
+}  // namespace marti::studies

@@ -1,0 +1,61 @@
+#include "studies/stability/stability.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "studies/results/provenance.h"
+#include "studies/results/text_table.h"
+#include "studies/stability/precision_table.h"
+#include "studies/stability/stability_keys.h"
+
+namespace marti::studies {
+
+namespace {
+
+Table empty_table() {
+  return Table(
+      "stability", "Stiff and extreme cases",
+      {{"group", ColumnType::text, "", "what is tried"},
+       {"case", ColumnType::text, "", "its name"},
+       {"what_could_go_wrong", ColumnType::text, "", "what breaks where no care is taken"},
+       {"oracle", ColumnType::text, "", "what must hold instead"},
+       {"figure", ColumnType::text, "", "what was found"},
+       {"objection", ColumnType::real, "1", "what the oracle objects to; nan when the case ended early"},
+       {"limit", ColumnType::real, "1", "the most it may be"},
+       {"verdict", ColumnType::text, "", "pass or FAIL"}});
+}
+
+}  // namespace
+
+StudyOutput run_stability(sim::Config& config) { return run_stability(config, stability_cases()); }
+
+StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> cases) {
+  const CaseSize size = read_stability(config);
+  StudyOutput output;
+  Table table = empty_table();
+  std::string failed;
+  std::size_t failures = 0;
+  for (const StabilityCase& one : cases) {
+    const CaseOutcome outcome = run_case(one, size);
+    table.add_row({std::string(one.group == CaseGroup::geometry ? "geometry" : "machine"), one.id, one.risk,
+                   one.oracle, outcome.figure, outcome.value, outcome.limit,
+                   std::string(outcome.passed() ? "pass" : "FAIL")});
+    if (!outcome.passed()) {
+      ++failures;
+      failed += (failed.empty() ? "" : ", ") + one.id;
+    }
+  }
+  const Table precision = precision_table(compare_precisions(size.rays));
+  output.report = text_of(table) + "\n" + text_of(precision) + "\n" +
+                  fmt::format("{} cases, {} passed, {} failed{}\n", cases.size(), cases.size() - failures,
+                              failures, failed.empty() ? "" : ": " + failed);
+  output.tables = {std::move(table), precision, provenance_table(config.effective_values())};
+  if (failures > 0) {
+    output.fault = fmt::format("{} of {} cases failed: {}", failures, cases.size(), failed);
+  }
+  return output;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,19 @@
+// `marti study stability`: stiff and extreme cases of geometry and of machines, each against an oracle.
+#pragma once
+
+#include <span>
+
+#include "sim/config.h"
+#include "studies/results/study_files.h"
+#include "studies/stability/stability_case.h"
+
+namespace marti::studies {
+
+/// Runs every case. When one fails, the output's `fault` says which. Throws UserError for anything wrong with
+/// the input.
+[[nodiscard]] StudyOutput run_stability(sim::Config& config);
+
+/// The same of other cases than stability_cases().
+[[nodiscard]] StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> cases);
+
+}  // namespace marti::studies
