@@ -6,6 +6,7 @@
 
 #include "accel/octree.h"
 #include "accel/octree_sort.h"
+#include "sim/time.h"
 
 namespace marti::processors {
 
@@ -105,10 +106,14 @@ const BuildMixes& build_mixes() {
 
 BuildCycles build_cycles(const OperationCycles& cycles, const RecordWords& words) {
   const BuildMixes& mixes = build_mixes();
-  const auto fetch = [&](std::int64_t count) { return cycles.integer + count * cycles.load; };
-  const auto store = [&](std::int64_t count) { return cycles.integer + count * cycles.store; };
-  return {.lock = cycles.integer + cycles.load + cycles.store,
-          .listed = price(mixes.listed, cycles, fetch(words.entry) + fetch(words.primitive)),
+  using sim::add_ticks;
+  const auto words_of = [&](std::int64_t count, std::int64_t each) {
+    return add_ticks(cycles.integer, sim::multiply_ticks(each, count));
+  };
+  const auto fetch = [&](std::int64_t count) { return words_of(count, cycles.load); };
+  const auto store = [&](std::int64_t count) { return words_of(count, cycles.store); };
+  return {.lock = add_ticks(add_ticks(cycles.integer, cycles.load), cycles.store),
+          .listed = price(mixes.listed, cycles, add_ticks(fetch(words.entry), fetch(words.primitive))),
           .overlap = price(mixes.overlap, cycles, 0),
           .child = price(mixes.child, cycles, store(words.node)),
           .entry = store(words.entry),

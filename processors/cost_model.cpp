@@ -1,7 +1,10 @@
 #include "processors/cost_model.h"
 
+#include <limits>
+
 #include "processors/operation_mix.h"
 #include "sim/error.h"
+#include "sim/time.h"
 
 namespace marti::processors {
 
@@ -60,16 +63,23 @@ constexpr std::array<Preset, 3> presets{{
 
 /// Reading one record: an integer operation for its address, then its words.
 std::int64_t read_record(const OperationCycles& cycles, std::int64_t words) {
-  return cycles.integer + words * cycles.load;
+  return sim::add_ticks(cycles.integer, sim::multiply_ticks(cycles.load, words));
 }
 
 }  // namespace
 
 std::int64_t price(const OperationMix& mix, const OperationCycles& cycles, std::int64_t fixed) {
-  const std::int64_t thousandths = mix.add * cycles.add + mix.multiply * cycles.multiply +
-                                   mix.divide * cycles.divide + mix.square_root * cycles.square_root +
-                                   mix.compare * cycles.compare + mix.integer * cycles.integer;
-  return (thousandths + 500) / 1000 + fixed;
+  // Prices may be anything that fits 64 bits; six of them times their counts then fit 128.
+  __extension__ using Wide = __int128;
+  const auto times = [](std::int64_t count, std::int64_t price) { return static_cast<Wide>(count) * price; };
+  const Wide thousandths = times(mix.add, cycles.add) + times(mix.multiply, cycles.multiply) +
+                           times(mix.divide, cycles.divide) + times(mix.square_root, cycles.square_root) +
+                           times(mix.compare, cycles.compare) + times(mix.integer, cycles.integer);
+  const Wide whole = (thousandths + 500) / 1000;
+  if (whole > std::numeric_limits<std::int64_t>::max()) {
+    sim::fail_time_overflow();
+  }
+  return sim::add_ticks(static_cast<std::int64_t>(whole), fixed);
 }
 
 std::span<const std::string_view> cost_presets() { return names; }
@@ -99,19 +109,20 @@ StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words, 
   const std::int64_t quadric = read_record(cycles, words.quadric);
   // With mailboxes the entry is fetched to look its mailbox up, and a test leaves the ray's number there.
   if (mailboxes) {
-    steps.lookup = price(mixes.lookup, cycles, entry + read_record(cycles, 1));
+    steps.lookup = price(mixes.lookup, cycles, sim::add_ticks(entry, read_record(cycles, 1)));
   }
   const std::int64_t beside = mailboxes ? cycles.store : entry;
-  steps.test = price(mixes.test, cycles, beside + primitive);
-  steps.sphere_test = price(mixes.sphere_test, cycles, beside + quadric);
-  steps.cone_test = price(mixes.cone_test, cycles, beside + quadric);
+  steps.test = price(mixes.test, cycles, sim::add_ticks(beside, primitive));
+  steps.sphere_test = price(mixes.sphere_test, cycles, sim::add_ticks(beside, quadric));
+  steps.cone_test = price(mixes.cone_test, cycles, sim::add_ticks(beside, quadric));
   // The nearest primitive and the lights are in the node's registers or local store.
   steps.shade = price(mixes.shade, cycles, read_record(cycles, words.material));
   steps.light = price(mixes.light, cycles, 0);
   steps.texel = price(mixes.texel, cycles, read_record(cycles, words.texel));
   steps.cut = price(mixes.cut, cycles, read_record(cycles, words.node));
   steps.pass = price(mixes.cut, cycles, read_record(cycles, words.material));
-  steps.pixel = price(mixes.pixel, cycles, cycles.integer + words.pixel * cycles.store);
+  steps.pixel = price(mixes.pixel, cycles,
+                      sim::add_ticks(cycles.integer, sim::multiply_ticks(cycles.store, words.pixel)));
   return steps;
 }
 

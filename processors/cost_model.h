@@ -64,7 +64,7 @@ struct StepCycles {
 /// cost_model.cpp.
 [[nodiscard]] OperationCycles cost_preset(std::string_view name);
 
-/// The cycles of a mix, rounded to the nearest, halves up, and `fixed` whole ones beside it.
+/// The cycles of a mix, rounded to the nearest, halves up, and `fixed` whole ones; UserError beyond 64 bits.
 [[nodiscard]] std::int64_t price(const OperationMix& mix, const OperationCycles& cycles, std::int64_t fixed);
 
 /// Prices the measured operation mixes of a traversal (operation_mix.h). Rounds each step to whole cycles,
