@@ -70,8 +70,13 @@ CaseOutcome gltf_with(float value, const CaseSize& size) {
   constexpr std::size_t triangles = 10'000;
   Random random(62);
   std::vector<float> coordinates;
-  for (std::size_t k = 0; k < 9 * triangles; ++k) {
-    coordinates.push_back(static_cast<float>(random.unit()));
+  for (std::size_t k = 0; k < triangles; ++k) {
+    const glm::dvec3 a = random.in_box(glm::dvec3(0.05), glm::dvec3(0.95));
+    for (const glm::dvec3& p : {a, a + 0.02 * random.direction(), a + 0.02 * random.direction()}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        coordinates.push_back(static_cast<float>(p[axis]));
+      }
+    }
   }
   constexpr std::size_t bad = 1234;
   std::vector<float> rest = coordinates;

@@ -69,6 +69,10 @@ std::vector<NamedTiming> machines_of_every_kind(processors::Assignment assignmen
     m.nodes = 3;
   });
   add("four contexts", [](MachineConfig& m) { m.contexts = 4; });
+  add("tree built meanwhile", [](MachineConfig& m) {
+    m.build.sharing = processors::Sharing::shared;
+    m.build.initial = processors::InitialTree::level;
+  });
   add("pipeline", [](MachineConfig& m) {
     m.scheme = Scheme::pipeline;
     m.pipeline = processors::default_stages(m.nodes);

@@ -18,7 +18,7 @@ struct NamedTiming {
   processors::MachineConfig machine;
 };
 
-/// A machine of every kind of scheme, memory and interconnect, of six nodes (a pipeline needs three). The
+/// A machine of every kind of scheme, memory and interconnect, of six nodes. The
 /// periods of all clocks are different and below 10 ticks. `assignment` is that of the image schemes.
 [[nodiscard]] std::vector<NamedTiming> machines_of_every_kind(
     processors::Assignment assignment = processors::Assignment::dynamic);

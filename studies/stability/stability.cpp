@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,14 @@ Table empty_table() {
        {"verdict", ColumnType::text, "", "pass or FAIL"}});
 }
 
+Table empty_times() {
+  return Table("stability_times", "CPU time of each case on this computer",
+               {{"case", ColumnType::text, "", "its name"},
+                {"cpu_time", ColumnType::real, "s", "process CPU time, building what it needs included"}});
+}
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC); }
+
 }  // namespace
 
 StudyOutput run_stability(sim::Config& config) { return run_stability(config, stability_cases()); }
@@ -35,10 +44,13 @@ StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> ca
   const CaseSize size = read_stability(config);
   StudyOutput output;
   Table table = empty_table();
+  Table times = empty_times();
   std::string failed;
   std::size_t failures = 0;
   for (const StabilityCase& one : cases) {
+    const double before = cpu_seconds();
     const CaseOutcome outcome = run_case(one, size);
+    times.add_row({one.id, cpu_seconds() - before});
     table.add_row({std::string(one.group == CaseGroup::geometry ? "geometry" : "machine"), one.id, one.risk,
                    one.oracle, outcome.figure, outcome.value, outcome.limit,
                    std::string(outcome.passed() ? "pass" : "FAIL")});
@@ -52,6 +64,7 @@ StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> ca
                   fmt::format("{} cases, {} passed, {} failed{}\n", cases.size(), cases.size() - failures,
                               failures, failed.empty() ? "" : ": " + failed);
   output.tables = {std::move(table), precision, provenance_table(config.effective_values())};
+  output.host_tables = {std::move(times), host_table()};
   if (failures > 0) {
     output.fault = fmt::format("{} of {} cases failed: {}", failures, cases.size(), failed);
   }

@@ -1,0 +1,51 @@
+// `marti study stability` as its user meets it: exit status, table, files, refusals.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/cli/shell.h"
+#include "tests/support/temporary_directory.h"
+
+namespace marti::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string small = " --set stability.rays=100 --set stability.nodes=64";
+
+TEST(StabilityCommand, PrintsAndWritesItsTables) {
+  const TemporaryDirectory directory;
+  const fs::path out = directory.path() / "out";
+  const Outcome outcome = marti("study stability" + small + " -o " + quoted(out));
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  for (const char* text :
+       {"what_could_go_wrong", "leaks-at-1e6", "zero-latencies", "Floats beside doubles", " 0 failed"}) {
+    EXPECT_NE(outcome.output.find(text), std::string::npos) << text;
+  }
+  EXPECT_EQ(outcome.output.find("FAIL"), std::string::npos);
+  for (const char* name :
+       {"stability.csv", "float_double.csv", "columns.csv", "report.txt", "results.sqlite"}) {
+    EXPECT_TRUE(fs::exists(out / name)) << name;
+  }
+  const std::string csv = read(out / "stability.csv");
+  EXPECT_EQ(csv.find("group,case,what_could_go_wrong,oracle,figure,objection,limit,verdict"), 0U) << csv;
+}
+
+TEST(StabilityCommand, RefusesWhatHasNoEffectOrIsOutOfRange) {
+  const TemporaryDirectory directory;
+  const auto refused = [&](const std::string& options, const std::string& complaint) {
+    const fs::path out = directory.path() / "none";
+    const Outcome outcome = marti("study stability -o " + quoted(out) + options);
+    EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.output;
+    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
+    EXPECT_FALSE(fs::exists(out / "stability.csv"));
+  };
+  refused(" --set machine.nodes=4", "machine.nodes");
+  refused(" --set scene.source=teapot", "scene.source");
+  refused(" --set stability.rays=0", "stability.rays");
+  refused(" --set stability.nodes=4000000000", "stability.nodes");
+}
+
+}  // namespace
+}  // namespace marti::test
