@@ -82,10 +82,11 @@ CaseOutcome closed_fans(const CaseSize& size) {
     ray.direction = apex - ray.origin;
     const glm::dvec3 s = glm::normalize(glm::cross(toward, random.direction()));
     const glm::dvec3 r = glm::cross(toward, s);
+    // No two neighbours are half a turn apart, or a fan of three would not be closed around the ray.
     std::vector<glm::dvec3> rim;
     for (std::size_t i = 0; i < k; ++i) {
       const double angle =
-          6.283185307179586 * (static_cast<double>(i) + random.between(-0.3, 0.3)) / static_cast<double>(k);
+          6.283185307179586 * (static_cast<double>(i) + random.between(-0.2, 0.2)) / static_cast<double>(k);
       rim.push_back(apex + std::cos(angle) * s + std::sin(angle) * r + random.between(-0.2, 0.2) * toward);
     }
     const RaySetup<double> setup(ray);

@@ -19,8 +19,9 @@ struct PrecisionRow {
   std::uint64_t float_agree = 0;   ///< rays with the same id in floats as in doubles at this place
 };
 
-/// At 0, 1e3, 1e6 and 1e9. Half of the rays are aimed at corners, the others anywhere.
-[[nodiscard]] std::vector<PrecisionRow> compare_precisions(std::uint32_t rays);
+/// At 0, 1e3, 1e6 and 1e9. Half of the rays are aimed at triangles, the others anywhere. Without `floats`
+/// nothing is traced in floats, which takes long where all their cells are one.
+[[nodiscard]] std::vector<PrecisionRow> compare_precisions(std::uint32_t rays, bool floats = true);
 
 /// "float_double".
 [[nodiscard]] Table precision_table(const std::vector<PrecisionRow>& rows);

@@ -59,7 +59,7 @@ StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> ca
       failed += (failed.empty() ? "" : ", ") + one.id;
     }
   }
-  const Table precision = precision_table(compare_precisions(size.rays));
+  const Table precision = precision_table(compare_precisions(size.rays / 4));
   output.report = text_of(table) + "\n" + text_of(precision) + "\n" +
                   fmt::format("{} cases, {} passed, {} failed{}\n", cases.size(), cases.size() - failures,
                               failures, failed.empty() ? "" : ": " + failed);
