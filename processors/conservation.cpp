@@ -79,11 +79,12 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
     const memory::InterconnectStatistics& traffic = cluster.interconnect;
     reads += traffic.reads;
     writes += traffic.writes;
-    interconnect_waits += traffic.waits.sum;
+    // Many may wait at a time: their waits together may not fit although the frame does.
+    interconnect_waits = sim::add_ticks(interconnect_waits, traffic.waits.sum);
     require(!has_links(config) || traffic.busy <= sim::multiply_ticks(result.end, traffic.links),
             "links are not busy for longer than the frame");
     for (const memory::BankStatistics& bank : cluster.banks) {
-      bank_waits += bank.waits.sum;
+      bank_waits = sim::add_ticks(bank_waits, bank.waits.sum);
     }
     check_distributed(cluster);
   }
@@ -99,7 +100,7 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
   // Posted writes wait too, but no node waits with them.
   const TimeDivision time = result.time();
   for (const memory::WaitStatistics& waits : result.l2.waits) {
-    bank_waits += waits.sum;
+    bank_waits = sim::add_ticks(bank_waits, waits.sum);
   }
   require(part(time, Activity::interconnect_wait) <= interconnect_waits,
           "nodes wait for the interconnect no longer than its transactions do");
