@@ -93,7 +93,8 @@ Table figure_table(const SimulatorStudy& study, std::span<const MethodErrors> er
        {"covered_widened", ColumnType::real, "fraction",
         "share in it when widened by what errors exceed it by on other scenes"},
        {"allowance_16", ColumnType::real, "fraction", "by how much it is to be widened, up to 16 nodes"},
-       {"allowance_256", ColumnType::real, "fraction", "likewise, 17 to 256 nodes"}});
+       {"allowance_64", ColumnType::real, "fraction", "likewise, 17 to 64 nodes"},
+       {"allowance_256", ColumnType::real, "fraction", "likewise, 65 to 256 nodes"}});
   const std::span<const Method> methods = simulator_methods();
   for (std::size_t m = 0; m < methods.size(); ++m) {
     for (std::size_t figure = 0; errors[m].any && figure < figure_count; ++figure) {
@@ -103,7 +104,8 @@ Table figure_table(const SimulatorStudy& study, std::span<const MethodErrors> er
                      found.summary.worst,
                      found.summary.worst == 0.0 ? Cell() : Cell(study.cases[found.summary.worst_case].name),
                      optional_cell(found.covered), optional_cell(found.covered_widened),
-                     optional_cell(found.allowance[0]), optional_cell(found.allowance[1])});
+                     optional_cell(found.allowance[0]), optional_cell(found.allowance[1]),
+                     optional_cell(found.allowance[2])});
     }
   }
   return table;

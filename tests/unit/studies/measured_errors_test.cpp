@@ -72,7 +72,7 @@ TEST(Within, MachinesThatWereNotMeasuredAreOutside) {
   const processors::MachineConfig machine;
   constexpr std::uint64_t packets = 4096;
   EXPECT_FALSE(outside_measured(machine, packets));
-  const auto outside = [&](auto change, const std::string& word, std::uint64_t count = packets) {
+  const auto outside = [&](auto change, const std::string& word, std::uint64_t count = 4096) {
     processors::MachineConfig other = machine;
     change(other);
     const std::optional<std::string> reason = outside_measured(other, count);
