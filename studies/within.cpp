@@ -28,12 +28,16 @@ constexpr std::uint64_t least_packets = 1024;
 constexpr std::uint64_t least_packets_a_node = 4;
 constexpr std::uint64_t sample_seed = 1;
 
-// Both half-widths together.
+// Both half-widths together. That of the interconnect's use is measured in points, on machines that may use
+// it less; it is at least what the misses and the frame time leave open, which are relative.
 void widen(Estimate& estimate, const MeasuredError& measured) {
+  Figures& half = estimate.half_width;
   for (std::size_t i = 0; i < figure_count; ++i) {
     const auto figure = static_cast<Figure>(i);
-    estimate.half_width[figure] += measured.allowance[figure];
+    half[figure] += measured.allowance[figure];
   }
+  half[Figure::use] =
+      std::max(half[Figure::use], estimate.value[Figure::use] * (half[Figure::misses] + half[Figure::end]));
 }
 
 double width_of(const Figures& half_width) {
