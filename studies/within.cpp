@@ -27,6 +27,8 @@ namespace {
 constexpr std::uint64_t least_packets = 1024;
 constexpr std::uint64_t least_packets_a_node = 4;
 constexpr std::uint64_t sample_seed = 1;
+// A method whose intervals hold less often on scenes that they were not measured on is not taken.
+constexpr double least_covered = 0.9;
 
 // Both half-widths together. That of the interconnect's use is measured in points, on machines that may use
 // it less; it is at least what the misses and the frame time leave open, which are relative.
@@ -151,8 +153,8 @@ std::optional<EstimatedRun> estimate_within(const processors::WorkLog& log,
     const MeasuredError* const error = find(errors, method, machine.nodes);
     // One that is no faster than exact replay is never better; one that is wider than asked for in what was
     // measured alone never fits.
-    if (error != nullptr && error->share < exact->share && width_of(error->allowance) <= tolerance &&
-        find(errors, method, 1) != nullptr) {
+    if (error != nullptr && error->covered >= least_covered && error->share < exact->share &&
+        width_of(error->allowance) <= tolerance && find(errors, method, 1) != nullptr) {
       candidates.push_back(error);
     }
   }
