@@ -370,6 +370,7 @@ int parse_and_run(int argc, char** argv) {
     studies::declare_paper_keys(schema);
     studies::declare_schemes_keys(schema);
     studies::declare_error_keys(schema);
+    studies::declare_rendering_error_keys(schema);
     studies::declare_stability_keys(schema);
     studies::declare_sweep_keys(schema);
     print(markdown ? sim::list_keys_as_markdown(schema) : sim::list_keys_as_text(schema));

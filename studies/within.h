@@ -29,8 +29,9 @@ struct EstimatedRun {
 };
 
 /// By the cheapest method whose half-widths of frame time and speed-up, its own and the measured ones
-/// together, are at most `tolerance`; a sample whose own turns out too wide gives way to the next method.
-/// Nothing when only exact replay is left. The machine must not be outside_measured().
+/// together, are at most `tolerance`; a sample whose own turns out too wide gives way to the next method, and
+/// so does the analytic model where it finds the interconnect busy. Nothing when only exact replay is left.
+/// The machine must not be outside_measured().
 [[nodiscard]] std::optional<EstimatedRun> estimate_within(const processors::WorkLog& log,
                                                           const processors::MachineConfig& machine,
                                                           double tolerance);

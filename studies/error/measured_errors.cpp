@@ -15,7 +15,7 @@ namespace marti::studies {
 
 namespace {
 
-constexpr std::size_t first_figure = 4;
+constexpr std::size_t first_figure = 5;
 constexpr std::size_t column_count = first_figure + 2 * figure_count;
 
 [[noreturn]] void fail(const std::string& reason) {
@@ -77,7 +77,8 @@ std::uint32_t whole_number_of(std::string_view text) {
 
 std::vector<MeasuredError> parse_measured_errors(std::string_view csv) {
   const std::array<std::string_view, column_count> header = cells_of(take_line(csv));
-  constexpr std::array<std::string_view, first_figure> first = {"version", "number", "nodes_to", "share"};
+  constexpr std::array<std::string_view, first_figure> first = {"version", "number", "nodes_to", "share",
+                                                                "covered"};
   for (std::size_t i = 0; i < column_count; ++i) {
     const std::string wanted = i < first_figure ? std::string(first[i])
                                                 : std::string(figure_names[(i - first_figure) / 2]) +
@@ -97,6 +98,7 @@ std::vector<MeasuredError> parse_measured_errors(std::string_view csv) {
     error.method = whole_number_of(cells[1]);
     error.nodes_to = whole_number_of(cells[2]);
     error.share = number_of(cells[3]);
+    error.covered = number_of(cells[4]);
     if (error.method >= simulator_methods().size() || !answers_alone(simulator_methods()[error.method]) ||
         std::find(node_classes.begin(), node_classes.end(), error.nodes_to) == node_classes.end()) {
       fail("a method or class of machines that is not known");

@@ -11,8 +11,8 @@
 
 namespace marti::studies {
 
-/// Allowances are measured apart for machines of up to 16 nodes and of up to 256: contention differs.
-inline constexpr std::array<std::uint32_t, 2> node_classes = {16, 256};
+/// Allowances are measured apart for machines of up to 16, 64 and 256 nodes: contention differs.
+inline constexpr std::array<std::uint32_t, 3> node_classes = {16, 64, 256};
 /// The class of a number of nodes; nothing beyond the last.
 [[nodiscard]] std::optional<std::size_t> node_class_of(std::uint32_t nodes);
 

@@ -3,8 +3,6 @@
 #include <ctime>
 
 #include <algorithm>
-#include <map>
-#include <utility>
 
 #include "memory/cache_config.h"
 #include "sim/units.h"
@@ -111,7 +109,7 @@ class SceneStudy {
         exact_seconds_[number - first_] = seconds;
         study_.truth[number] = found;
       }
-      study_.estimates[m][number] = std::move(found);
+      study_.estimates[m][number] = found;
     }
   }
 
@@ -188,7 +186,7 @@ class SceneStudy {
     Estimate found = estimate_between(method.curve, sizes, machines, size_at(method, at));
     const Estimate& exact = study_.truth[index(cache, node)];
     found.references = exact.references;  // of the image, not of the machine
-    study_.estimates[m][index(cache, node)] = std::move(found);
+    study_.estimates[m][index(cache, node)] = found;
   }
 
   [[nodiscard]] double size_at(const Method& method, std::size_t i) const {

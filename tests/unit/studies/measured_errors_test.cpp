@@ -29,6 +29,7 @@ TEST(MeasuredErrors, CoverEveryMethodThatAnswersAlone) {
   }
   for (const MeasuredError& error : errors) {
     EXPECT_GT(error.share, 0.0);
+    EXPECT_LE(error.covered, 1.0);
     if (error.method == 0) {
       EXPECT_EQ(error.share, 1.0);
       EXPECT_EQ(error.allowance, Figures());
@@ -47,12 +48,12 @@ TEST(MeasuredErrors, AnotherTableIsAFault) {
   other.replace(other.find('\n') + 1, 1, "9");  // the version
   refused(other);
   refused(good + "1,2\n");
-  refused(good + "1,999,16,0.5,0,0,0,0,0,0,0,0,0,0\n");
-  refused(good + "1,1,17,0.5,0,0,0,0,0,0,0,0,0,0\n");
-  refused(good + "1,1,16,0.5,0,0,0,0,0,0,0,0,0,0,0\n");
-  refused(good + "1,1,16,half,0,0,0,0,0,0,0,0,0,0\n");
-  refused(good + "1,1,16,-0.5,0,0,0,0,0,0,0,0,0,0\n");
-  EXPECT_EQ(parse_measured_errors(good + "1,1,16,0.5,0,0,0,0,0,0,0,0,inf,0\n").size(),
+  refused(good + "1,999,16,0.5,1,0,0,0,0,0,0,0,0,0,0\n");
+  refused(good + "1,1,17,0.5,1,0,0,0,0,0,0,0,0,0,0\n");
+  refused(good + "1,1,16,0.5,1,0,0,0,0,0,0,0,0,0,0,0\n");
+  refused(good + "1,1,16,half,1,0,0,0,0,0,0,0,0,0,0\n");
+  refused(good + "1,1,16,-0.5,1,0,0,0,0,0,0,0,0,0,0\n");
+  EXPECT_EQ(parse_measured_errors(good + "1,1,16,0.5,1,0,0,0,0,0,0,0,0,inf,0\n").size(),
             parse_measured_errors(good).size() + 1);
 }
 
@@ -72,7 +73,7 @@ TEST(Within, MachinesThatWereNotMeasuredAreOutside) {
   const processors::MachineConfig machine;
   constexpr std::uint64_t packets = 4096;
   EXPECT_FALSE(outside_measured(machine, packets));
-  const auto outside = [&](auto change, const std::string& word, std::uint64_t count = packets) {
+  const auto outside = [&](auto change, const std::string& word, std::uint64_t count = 4096) {
     processors::MachineConfig other = machine;
     change(other);
     const std::optional<std::string> reason = outside_measured(other, count);
@@ -117,6 +118,7 @@ TEST(Within, AnEstimateIsNeverWiderThanAskedFor) {
     });
     ASSERT_NE(found, errors.end());
     EXPECT_LT(found->share, 1.0);
+    EXPECT_GE(found->covered, 0.9);
     for (std::size_t i = 0; i < figure_count; ++i) {
       EXPECT_GE(run->machine.half_width[static_cast<Figure>(i)], found->allowance[static_cast<Figure>(i)]);
     }
