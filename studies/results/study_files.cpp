@@ -57,7 +57,7 @@ std::vector<fs::path> write_study(const StudyOutput& output, const fs::path& dir
   files.write("columns.csv", csv_of(columns));
   for (const ChartSpecification& chart : chart_specifications()) {
     const std::string wanted = table_of(chart);
-    for (const Table& table : output.tables) {
+    for (const Table& table : all) {
       if (table.name() == wanted && !table.rows().empty()) {
         files.write(std::string(chart.name) + ".vl.json", fill_chart(chart, table));
       }

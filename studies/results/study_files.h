@@ -25,11 +25,11 @@ struct StudyOutput {
 
 /// Writes into `directory`, which must exist:
 ///   NAME.csv for each table, and columns.csv with unit and meaning of every column;
-///   NAME.vl.json for each chart whose table is among `tables` and has rows;
+///   NAME.vl.json for each chart whose table is among them and has rows;
 ///   NAME.exr and NAME.png for each image;
 ///   report.txt, and host.txt unless host_report is empty;
 ///   results.sqlite with all tables and their columns.
-/// Only host.txt, the host tables' files and results.sqlite differ between two equal runs. All files are
+/// Only host.txt, the host tables' files and charts and results.sqlite differ between two equal runs. All files are
 /// written under temporary names first and renamed together at the end; signals that end the program wait
 /// until that is done. Returns the files. Throws UserError with the reason; older results stay as they
 /// were then.
