@@ -23,7 +23,8 @@ Real power(const Real& base, const Real& exponent) {
   // Splitting off the binary exponent is integer work on a register.
   const auto bits = std::bit_cast<std::uint64_t>(static_cast<double>(base));
   auto binary = static_cast<std::int64_t>(bits >> 52U) - 1023;
-  auto mantissa = static_cast<Real>(std::bit_cast<double>((bits & 0x000fffffffffffffU) | 0x3ff0000000000000U));
+  auto mantissa =
+      static_cast<Real>(std::bit_cast<double>((bits & 0x000fffffffffffffU) | 0x3ff0000000000000U));
   if (mantissa > Real(1.4142135623730951)) {
     mantissa = mantissa * Real(0.5);
     ++binary;

@@ -186,13 +186,13 @@ Table rendering_cheapest_table(const RenderingStudy& study) {
 }
 
 Table rendering_fastest_table(const RenderingStudy& study) {
-  return targets_table(study, "rendering_fastest", "The fastest setting for an error of at most ...",
+  return targets_table(study, "host_rendering_fastest", "The fastest setting for an error of at most ...",
                        {"cpu", ColumnType::real, "ms", "its run time, the median"}, timed_costs(study));
 }
 
 Table rendering_time_table(const RenderingStudy& study) {
   Table table(
-      "rendering_time", "Settings of the renderer: error against run time",
+      "host_rendering_time", "Settings of the renderer: error against run time",
       {{"knob", ColumnType::text, "", "what is turned; exact: what must not change the image"},
        {"setting", ColumnType::text, "", "to what"},
        {"value", ColumnType::real, "1", "the same as a number; 0 for exact"},

@@ -38,9 +38,9 @@ inline constexpr std::array<double, 4> rendering_targets = {0.10, 0.03, 0.01, 0.
 [[nodiscard]] Table rendering_error_table(const RenderingStudy& study);
 /// "rendering_cheapest": for each target and knob the setting of the fewest counted steps. Likewise.
 [[nodiscard]] Table rendering_cheapest_table(const RenderingStudy& study);
-/// "rendering_time": a row for each setting, with its run time. Differs from run to run.
+/// "host_rendering_time": a row for each setting, with its run time. Differs from run to run.
 [[nodiscard]] Table rendering_time_table(const RenderingStudy& study);
-/// "rendering_fastest": for each target and knob the fastest setting. Likewise.
+/// "host_rendering_fastest": for each target and knob the fastest setting. Likewise.
 [[nodiscard]] Table rendering_fastest_table(const RenderingStudy& study);
 
 }  // namespace marti::studies
