@@ -59,12 +59,12 @@ struct RunArguments {
 };
 
 void run_command(const RunArguments& arguments) {
+  const studies::KeptItems keep(arguments.keep);
   sim::Config config = sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
   if (!arguments.directory.empty()) {
     studies::prepare_output(arguments.directory);
   }
-  const studies::RunResult result =
-      studies::run(config, arguments.directory, studies::KeptItems(arguments.keep));
+  const studies::RunResult result = studies::run(config, arguments.directory, keep);
   const studies::PlanVerdict verdict =
       arguments.verify_plan ? studies::verify_plan(result) : studies::PlanVerdict();
   if (!verdict.holds) {
