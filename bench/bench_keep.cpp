@@ -27,9 +27,9 @@ struct Usage {
 };
 
 void run_once(const std::string& scene, const std::string& size, const studies::KeptItems& keep) {
-  sim::Config config =
-      sim::Config::from_text(studies::run_schema(), "", "bench",
-                             {"scene.source=" + scene, "image.width=" + size, "image.height=" + size});
+  const std::vector<std::string> keys = {"scene.source=" + scene, "image.width=" + size,
+                                         "image.height=" + size};
+  sim::Config config = sim::Config::from_text(studies::run_schema(), "", "bench", keys);
   static_cast<void>(studies::run(config, {}, keep));
 }
 

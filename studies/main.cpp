@@ -85,6 +85,7 @@ void run_within_command(const RunArguments& arguments, sim::Config& config) {
 }
 
 void run_command(const RunArguments& arguments) {
+  const studies::KeptItems keep(arguments.keep);
   sim::Config config = sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
   if (!arguments.within.empty()) {
     run_within_command(arguments, config);
@@ -93,8 +94,7 @@ void run_command(const RunArguments& arguments) {
   if (!arguments.directory.empty()) {
     studies::prepare_output(arguments.directory);
   }
-  const studies::RunResult result =
-      studies::run(config, arguments.directory, studies::KeptItems(arguments.keep));
+  const studies::RunResult result = studies::run(config, arguments.directory, keep);
   const studies::PlanVerdict verdict =
       arguments.verify_plan ? studies::verify_plan(result) : studies::PlanVerdict();
   if (!verdict.holds) {

@@ -59,20 +59,6 @@ inline bool shows_light(const scenes::Material& material) {
          (material.highlight > 0.0 && !black(material.specular_color));
 }
 
-/// Whether the normal of a corner, the file's, says no more than the triangle's own: it is that one or its
-/// opposite, bit for bit, or zero, which means "not given".
-inline bool is_own_normal(const glm::dvec3& normal, const glm::dvec3& own) {
-  return normal == glm::dvec3(0.0) || normal == own || normal == -own;
-}
-
-/// The same of all three corners; `own` is the triangle's unit normal as surface_at() computes it. Such a
-/// triangle is flat: it is shaded as if it had no normals.
-inline bool is_flat(const scenes::Scene& scene, const scenes::Triangle& triangle, const glm::dvec3& own) {
-  return is_own_normal(scene.normals[triangle.vertex[0]], own) &&
-         is_own_normal(scene.normals[triangle.vertex[1]], own) &&
-         is_own_normal(scene.normals[triangle.vertex[2]], own);
-}
-
 /// The point with barycentric weights b and the normals of the triangle there, seen along `direction`.
 template <typename Real>
 Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, const Real (&b)[3],
@@ -100,9 +86,7 @@ Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, con
     surface.geometric = -surface.geometric;
   }
   surface.normal = surface.geometric;
-  const glm::dvec3 face(static_cast<double>(surface.geometric.x), static_cast<double>(surface.geometric.y),
-                        static_cast<double>(surface.geometric.z));
-  if (!scene.normals.empty() && !is_flat(scene, t, face)) {
+  if (!scene.normals.empty()) {
     const auto corner = [&](int k) {
       const glm::dvec3& n = scene.normals[t.vertex[static_cast<std::size_t>(k)]];
       const bool none = n.x == 0.0 && n.y == 0.0 && n.z == 0.0;

@@ -125,10 +125,7 @@ PlanEntry normals(const PlanFacts& facts) {
   if (!choice.exists) {
     choice.fact = "the scene has no normals of vertices";
   } else {
-    choice.fact = std::to_string(needs.smooth) +
-                  " triangles that a ray may meet are shaded by normals of "
-                  "their vertices that differ from their own, " +
-                  std::to_string(needs.flat) + " by such that do not";
+    choice.fact = std::to_string(needs.smooth) + " triangles that a ray may meet are shaded by them";
   }
   return entry_of(PlanItem::normals, PlanClass::proved, facts.keep, std::move(choice), "vertices",
                   {integer(facts.normals) * normal_bytes, integer(facts.normals)});

@@ -117,22 +117,9 @@ class Finder {
           !(everything_ || uses_normal(scene_.materials[triangle.material]))) {
         continue;
       }
-      if (is_flat(triangle)) {
-        ++needs_.flat;
-      } else {
-        ++needs_.smooth;
-      }
+      ++needs_.smooth;
     }
-    needs_.normals = needs_.smooth > 0 || (everything_ && needs_.flat > 0);
-  }
-
-  // The triangle's own normal in the very operations of surface_at().
-  [[nodiscard]] bool is_flat(const scenes::Triangle& triangle) const {
-    using Vec = processors::Vec3<double>;
-    const Vec a(scene_.positions[triangle.vertex[0]]);
-    const Vec own = normalized(
-        cross(Vec(scene_.positions[triangle.vertex[1]]) - a, Vec(scene_.positions[triangle.vertex[2]]) - a));
-    return processors::is_flat(scene_, triangle, glm::dvec3(own.x, own.y, own.z));
+    needs_.normals = needs_.smooth > 0;
   }
 
   const scenes::Scene& scene_;

@@ -35,8 +35,9 @@ struct SceneNeeds {
   std::uint64_t unlit = 0;                ///< ask for lights, though none adds anything
   std::uint64_t reflecting_beside = 0;    ///< of those that may not be shaded
   std::uint64_t transmitting_beside = 0;  ///< likewise
-  std::uint64_t smooth = 0;               ///< triangles that may be shaded with the normals of their vertices
-  std::uint64_t flat = 0;  ///< triangles that may be shaded and whose vertices' normals are their own
+  /// Triangles that may be shaded with the normals of their vertices. Where these are the triangle's own, or
+  /// not given, they count all the same: mixing them at a point rounds.
+  std::uint64_t smooth = 0;
 
   [[nodiscard]] bool secondary_rays() const { return reflection_rays || refraction_rays; }
 };
