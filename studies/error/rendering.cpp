@@ -220,7 +220,7 @@ RenderingStudy measure_rendering(const FrameConfig& frame, const RenderingErrorO
   return Measurement(frame, options).run();
 }
 
-RenderingErrorPart rendering_error(const FrameConfig& frame, const RenderingErrorOptions& options) {
+StudyOutput rendering_error(const FrameConfig& frame, const RenderingErrorOptions& options) {
   return output_of(measure_rendering(frame, options));
 }
 

@@ -40,27 +40,16 @@ struct RenderingStudy {
   std::vector<RenderingPoint> points;  ///< in the order of the plan
 };
 
-/// The family of `marti study error`: tables that are the same always, host tables with run times, text.
-struct RenderingErrorPart {
-  std::vector<Table> tables;
-  std::vector<Table> host_tables;
-  std::string report;
-  std::string host_report;
-};
-
 /// Renders everything. Throws InternalError when a setting that must not change the image does, or a
 /// rendering is not the same twice; UserError as open_scene and render do, and when a frame would take more
 /// than host_machine.memory_limit.
 [[nodiscard]] RenderingStudy measure_rendering(const FrameConfig& frame,
                                                const RenderingErrorOptions& options);
 
-[[nodiscard]] RenderingErrorPart output_of(const RenderingStudy& study);
+/// The family of `marti study error`: tables that are the same always, host tables with run times, text.
+[[nodiscard]] StudyOutput output_of(const RenderingStudy& study);
 
 /// Both.
-[[nodiscard]] RenderingErrorPart rendering_error(const FrameConfig& frame,
-                                                 const RenderingErrorOptions& options);
-
-/// The family as a study of its own, of a configuration by rendering_error_schema().
-[[nodiscard]] StudyOutput run_rendering_error(sim::Config& config);
+[[nodiscard]] StudyOutput rendering_error(const FrameConfig& frame, const RenderingErrorOptions& options);
 
 }  // namespace marti::studies

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "processors/program/render.h"
-#include "studies/run_result.h"
 
 namespace marti::studies {
 
@@ -59,12 +58,6 @@ void declare_rendering_error_keys(sim::Schema& schema) {
                "octree, no curved primitives: cuts, in the place of image.voxel_cut");
   schema.integer("error.rendering.repeats", 7, {1, 1000}, "",
                  "times that each run time is measured, in shuffled order");
-}
-
-sim::Schema rendering_error_schema() {
-  sim::Schema schema = run_schema();
-  declare_rendering_error_keys(schema);
-  return schema;
 }
 
 RenderingErrorOptions read_rendering_error(sim::Config& config, const FrameConfig& frame) {

@@ -25,10 +25,6 @@ struct RenderingErrorOptions {
 
 void declare_rendering_error_keys(sim::Schema& schema);
 
-/// The schema of this family alone: the keys of `marti run`, whose machine is not used, and the section
-/// above.
-[[nodiscard]] sim::Schema rendering_error_schema();
-
 /// Throws UserError naming file, line and key. `frame` is what is rendered.
 [[nodiscard]] RenderingErrorOptions read_rendering_error(sim::Config& config, const FrameConfig& frame);
 

@@ -5,8 +5,6 @@
 #include <utility>
 
 #include "studies/error/rendering_tables.h"
-#include "studies/machine_keys.h"
-#include "studies/results/provenance.h"
 #include "studies/results/text_table.h"
 
 namespace marti::studies {
@@ -82,8 +80,8 @@ std::string precision_lines(const RenderingStudy& study) {
 
 }  // namespace
 
-RenderingErrorPart output_of(const RenderingStudy& study) {
-  RenderingErrorPart part;
+StudyOutput output_of(const RenderingStudy& study) {
+  StudyOutput part;
   part.tables = {rendering_error_table(study), rendering_cheapest_table(study)};
   part.host_tables = {rendering_time_table(study), rendering_fastest_table(study)};
 
@@ -104,18 +102,6 @@ RenderingErrorPart output_of(const RenderingStudy& study) {
   part.report += ".\n\n" + text_of(part.tables[1]);
   part.host_report = time_lines(study, part.host_tables[0]) + "\n" + text_of(part.host_tables[1]);
   return part;
-}
-
-StudyOutput run_rendering_error(sim::Config& config) {
-  const FrameConfig frame = read_frame(config);
-  const RenderingErrorOptions options = read_rendering_error(config, frame);
-  static_cast<void>(read_machine(config));
-  config.refuse_unused();
-  RenderingErrorPart part = rendering_error(frame, options);
-  part.tables.push_back(provenance_table(config.effective_values()));
-  part.host_tables.push_back(host_table());
-  return {std::move(part.tables), std::move(part.host_tables), std::move(part.report),
-          std::move(part.host_report)};
 }
 
 }  // namespace marti::studies

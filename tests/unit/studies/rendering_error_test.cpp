@@ -10,6 +10,7 @@
 #include "accel/structure.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
+#include "studies/error/error_keys.h"
 #include "studies/error/rendering.h"
 #include "studies/error/rendering_tables.h"
 #include "studies/machine_keys.h"
@@ -94,8 +95,8 @@ TEST(RenderingError, MoreSamplesAndDeeperRaysAreNearer) {
 }
 
 TEST(RenderingError, TablesDoNotDependOnTheRun) {
-  const RenderingErrorPart first = output_of(jacks());
-  const RenderingErrorPart second = rendering_error(small_frame("gears:1"), small_options());
+  const StudyOutput first = output_of(jacks());
+  const StudyOutput second = rendering_error(small_frame("gears:1"), small_options());
   ASSERT_EQ(first.tables.size(), second.tables.size());
   for (std::size_t i = 0; i < first.tables.size(); ++i) {
     EXPECT_EQ(text_of(first.tables[i]), text_of(second.tables[i]));
@@ -231,7 +232,7 @@ TEST(RenderingError, FloatsChangeLittleInMostPixels) {
 }
 
 sim::Config config_of(const std::string& text) {
-  return sim::Config::from_text(rendering_error_schema(), text, "error.toml");
+  return sim::Config::from_text(error_schema(), text, "error.toml");
 }
 
 std::string refusal(const std::string& text) {
