@@ -32,8 +32,6 @@ class LineSet {
     return there;
   }
 
-  [[nodiscard]] std::size_t bytes() const { return bits_.size() * sizeof(std::uint64_t); }
-
  private:
   std::uint64_t words_;  // of each cache
   sim::LargeVector<std::uint64_t> bits_;

@@ -82,7 +82,6 @@ class LogWalker {
 
   /// Of the reads that a cluster's nodes have made by themselves.
   [[nodiscard]] std::int64_t own_read_bytes(std::uint32_t cluster) const { return own_read_bytes_[cluster]; }
-
   /// The steps of a pixel are done; what is left is to convert and store it.
   void finish_pixel(Cursor& cursor, NodeStatistics& statistics) const {
     ++statistics.steps.pixels;
@@ -465,16 +464,14 @@ class LogWalker {
   // A read that asks nobody: of the node's own memory, or one that always takes the same time.
   void read_alone(Cursor& cursor, NodeStatistics& statistics, std::uint32_t bytes) {
     const memory::Service service =
-        own_read_bytes_.empty() ? local_.read(bytes, cursor.time) : own_read(cursor.time);
+        own_read_bytes_.empty()
+            ? local_.read(bytes, cursor.time)
+            : memory::Service{sim::add_ticks(cursor.time, *input_.own_reads), 0, *input_.own_reads, 0, 0};
     read_bytes_ += bytes;
     statistics.time[static_cast<std::size_t>(Activity::transfer)] += service.transfer;
     statistics.time[static_cast<std::size_t>(Activity::bank_access)] += service.bank;
     cursor.time = service.done;
     note_wait(cursor, service);
-  }
-
-  [[nodiscard]] memory::Service own_read(sim::Ticks now) const {
-    return {sim::add_ticks(now, *input_.own_reads), 0, *input_.own_reads, 0, 0};
   }
 
   ReplayInput input_;

@@ -162,7 +162,11 @@ FunctionalRun run_planned(const FrameConfig& config, scenes::Scene scene, scenes
   FunctionalRun run;
   run.plan = make_plan(facts);
   scenes::SceneFacts scene_facts = scenes::facts_of(scene);
-  drop_parts(run.plan, facts.needs, decode_image, scene);
+  try {
+    drop_parts(run.plan, facts.needs, decode_image, scene);
+  } catch (const sim::UserError& error) {
+    throw sim::UserError(config.scene + ": " + error.what());
+  }
   return render_and_record(config, std::move(scene_facts), scene, &facts, std::move(run));
 }
 

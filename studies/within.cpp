@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "accel/octree.h"
 #include "processors/packets.h"
 #include "sim/error.h"
 #include "sim/units.h"
@@ -35,7 +36,7 @@ constexpr double most_analytic_use = 0.25;
 
 // Both half-widths together. That of the interconnect's use is measured in points, on machines that may use
 // it less; it is at least what the misses and the frame time leave open, which are relative.
-void widen(Estimate& estimate, const MeasuredError& measured) {
+void widen(Estimate& estimate, const MeasuredError& measured, std::uint32_t nodes) {
   Figures& half = estimate.half_width;
   for (std::size_t i = 0; i < figure_count; ++i) {
     const auto figure = static_cast<Figure>(i);
@@ -43,6 +44,9 @@ void widen(Estimate& estimate, const MeasuredError& measured) {
   }
   half[Figure::use] =
       std::max(half[Figure::use], estimate.value[Figure::use] * (half[Figure::misses] + half[Figure::end]));
+  if (nodes == 1) {
+    half[Figure::speed_up] = 0.0;  // a node is as fast as itself, whatever a method says
+  }
 }
 
 double width_of(const Figures& half_width) {
@@ -76,6 +80,13 @@ std::string number_bar(double value, double half_width, int digits) {
              half_width < 1.0 ? text(value / (1.0 - half_width)) : "any number");
 }
 
+// A figure in percent, with its half-width in points.
+std::string points_bar(double percent, double half_width, std::string_view what) {
+  return std::isfinite(half_width)
+             ? fmt::format("{:.2f} %{:<8} +- {:.2g} points\n", percent, what, half_width)
+             : fmt::format("{:.2f} %{:<8} error not known\n", percent, what);
+}
+
 std::string text_of(const EstimatedRun& run, double tolerance, std::uint32_t nodes) {
   const Method& method = simulator_methods()[run.method];
   const Figures& value = run.machine.value;
@@ -85,7 +96,7 @@ std::string text_of(const EstimatedRun& run, double tolerance, std::uint32_t nod
   std::string text = fmt::format(
       "\nestimate      {}, {}: not exact, asked for within {:g} %\n"
       "rests on      errors that `marti study error` measured against exact replay on machines of up to {} "
-      "nodes, of which 95 % are covered{}\n\n",
+      "nodes with the bus and the banks of configs/error.toml, of which 95 % are covered{}\n\n",
       method.name(), method.knob(), 100.0 * tolerance, run.nodes_to,
       method.kind == MethodKind::sampled ? ", and the spread of this run's own sample" : "");
   text += "frame time    " + time_bar(value[Figure::end], half[Figure::end]);
@@ -93,10 +104,8 @@ std::string text_of(const EstimatedRun& run, double tolerance, std::uint32_t nod
   text += fmt::format("  on {} node{}\n", nodes, nodes == 1 ? "" : "s");
   text += "one node      " + time_bar(run.one_node.value[Figure::end], run.one_node.half_width[Figure::end]);
   text += "misses        " + number_bar(value[Figure::misses], half[Figure::misses], 0);
-  text += fmt::format("hit ratio     {:.2f} %       +- {:.2g} points\n", 100.0 - share,
-                      share * half[Figure::misses]);
-  const double use = 100.0 * value[Figure::use];
-  text += fmt::format("interconnect  {:.1f} % busy   +- {:.2g} points\n", use, 100.0 * half[Figure::use]);
+  text += "hit ratio     " + points_bar(100.0 - share, share * half[Figure::misses], "");
+  text += "interconnect  " + points_bar(100.0 * value[Figure::use], 100.0 * half[Figure::use], " busy");
   text += "mean wait     " + time_bar(value[Figure::wait], half[Figure::wait]);
   text += "\nall else is told by exact replay: run without --within\n";
   return text;
@@ -125,6 +134,16 @@ double parse_tolerance(std::string_view text) {
     throw sim::UserError("\"" + std::string(text) + "\": a tolerance is from 0 to 100 %");
   }
   return value;
+}
+
+std::optional<std::string> outside_measured(const FrameConfig& frame) {
+  if (frame.structure != accel::Octree::kind_name || frame.render.mailboxes) {
+    return "errors have been measured with an octree without mailboxes only";
+  }
+  if (frame.render.samples > 1 || frame.render.voxel_cut > 0.0) {
+    return "errors have been measured with one sample a pixel and without the voxel cut only";
+  }
+  return std::nullopt;
 }
 
 std::optional<std::string> outside_measured(const processors::MachineConfig& machine, std::uint64_t packets) {
@@ -179,8 +198,8 @@ std::optional<EstimatedRun> estimate_within(const processors::WorkLog& log,
       continue;
     }
     add_speed_up(run.machine, run.one_node);
-    widen(run.machine, *candidate);
-    widen(run.one_node, *find(errors, candidate->method, 1));
+    widen(run.machine, *candidate, machine.nodes);
+    widen(run.one_node, *find(errors, candidate->method, 1), 1);
     if (width_of(run.machine.half_width) <= tolerance) {
       return run;
     }
@@ -192,16 +211,21 @@ std::string run_within(sim::Config& config, double tolerance) {
   FrameConfig frame = read_frame(config);
   refuse_several_frames(config, frame.frames);
   const processors::MachineConfig machine = read_machine(config);
-  const RecordConfig record = read_record(config, false);
+  const RecordConfig record = read_record(config, true);
+  if (record.heat_maps || record.timeline) {
+    config.fail(record.timeline ? "record.timeline" : "record.heat_maps",
+                "an estimate does nothing that could be recorded; leave --within out");
+  }
   config.refuse_unused();
   refuse_beyond_memory(config, frame, machine);
   const std::uint64_t packets =
       processors::PacketList(frame.render.width, frame.render.height, machine.packets).size();
-  std::optional<std::string> reason = outside_measured(machine, packets);
+  std::optional<std::string> reason = outside_measured(frame);
+  if (!reason) {
+    reason = outside_measured(machine, packets);
+  }
   if (tolerance == 0.0) {
     reason = "nothing else is within 0 %";
-  } else if (record.heat_maps || record.timeline) {
-    reason = "what a machine does is recorded by exact replay only";
   }
   if (reason) {
     return exact_text(run(config), *reason);

@@ -9,11 +9,16 @@
 #include "processors/program/work_log.h"
 #include "sim/config.h"
 #include "studies/error/simulator_figures.h"
+#include "studies/frame_keys.h"
 
 namespace marti::studies {
 
 /// "2%", "2 %" or "0.02". Throws UserError unless it is from 0 to 100 %.
 [[nodiscard]] double parse_tolerance(std::string_view text);
+
+/// Why no method but exact replay is known to be good for a frame, by what the study measured: nothing when
+/// some are.
+[[nodiscard]] std::optional<std::string> outside_measured(const FrameConfig& frame);
 
 /// Why no method but exact replay is known to be good for a machine, by what the study measured: nothing when
 /// some are. Packets are those of the frame.

@@ -287,6 +287,12 @@ class Tracer {
     if (!(size > Real(0.0)) || size < Real(options_.min_weight * share_)) {
       return;
     }
+    if constexpr (std::is_same_v<Real, float>) {
+      // The normal of edges whose squares are no floats.
+      if (!std::isfinite(direction.x + direction.y + direction.z)) {
+        return;
+      }
+    }
     // Rounding would let the length drift over many bounces.
     push(leave(surface, direction), normalized(direction), weight, kind, pending.bounce + 1);
   }

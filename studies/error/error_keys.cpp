@@ -5,8 +5,10 @@
 #include <string_view>
 
 #include "memory/cache_config.h"
+#include "scenes/open.h"
 #include "sim/units.h"
 #include "studies/error/simulator_methods.h"
+#include "studies/image_file.h"
 #include "studies/machine_keys.h"
 #include "studies/run_result.h"
 
@@ -45,6 +47,17 @@ void check_machines(const sim::Config& config, const ErrorConfig& error) {
         throw sim::UserError(config.name() + ": the study measures every method on the machine, and " +
                              problem.what());
       }
+    }
+  }
+}
+
+// Before anything is measured.
+void check_scenes(const sim::Config& config, const ErrorConfig& error) {
+  for (const std::string& scene : error.scenes) {
+    try {
+      (void)scenes::open_scene(scene, error.frame.open, decode_image);
+    } catch (const sim::UserError& problem) {
+      config.fail("error.scenes", problem.what());
     }
   }
 }
@@ -123,7 +136,15 @@ ErrorConfig read_error(sim::Config& config) {
   if (error.families.empty()) {
     config.fail("error.families", "must name a family");
   }
-  error.rendering = read_rendering_error(config, error.frame);
+  const auto measures = [&](ErrorFamily family) {
+    return std::find(error.families.begin(), error.families.end(), family) != error.families.end();
+  };
+  if (measures(ErrorFamily::rendering)) {
+    error.rendering = read_rendering_error(config, error.frame);
+  } else {
+    config.mark_unused_reason("error.rendering", "error.families does not name \"rendering\"",
+                              "error.families");
+  }
   error.machine = read_machine(config);
   error.scenes = config.texts("error.scenes");
   if (error.scenes.empty()) {
@@ -140,7 +161,10 @@ ErrorConfig read_error(sim::Config& config) {
   error.repeats = static_cast<std::uint32_t>(config.integer("error.repeats"));
   error.seed = static_cast<std::uint64_t>(config.integer("error.seed"));
   config.refuse_unused();
-  check_machines(config, error);
+  if (measures(ErrorFamily::simulator)) {
+    check_machines(config, error);
+    check_scenes(config, error);
+  }
   return error;
 }
 

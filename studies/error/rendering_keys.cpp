@@ -56,6 +56,8 @@ void declare_rendering_error_keys(sim::Schema& schema) {
                "shares of a sample below which a ray is not traced, in the place of image.min_weight");
   schema.reals("error.rendering.voxel_cuts", {0.25, 1.0, 4.0, 16.0}, {1e-6, 1'000'000.0}, "pixels",
                "octree, no curved primitives: cuts, in the place of image.voxel_cut");
+  schema.integer("error.rendering.seed", 1, {0, std::int64_t{1} << 62U}, "",
+                 "of the samples, in the place of image.seed");
   schema.integer("error.rendering.repeats", 7, {1, 1000}, "",
                  "times that each run time is measured, in shuffled order");
 }
@@ -82,6 +84,7 @@ RenderingErrorOptions read_rendering_error(sim::Config& config, const FrameConfi
   }
   options.weights = ascending_reals(config, "error.rendering.weights");
   options.voxel_cuts = ascending_reals(config, "error.rendering.voxel_cuts");
+  options.seed = static_cast<std::uint64_t>(config.integer("error.rendering.seed"));
   options.repeats = static_cast<std::uint32_t>(config.integer("error.rendering.repeats"));
   if (frame.render.voxel_cut > 0.0) {
     config.fail("image.voxel_cut", "the study sets it itself, from error.rendering.voxel_cuts");

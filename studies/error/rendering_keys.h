@@ -20,6 +20,7 @@ struct RenderingErrorOptions {
   std::uint32_t reference_depth = 16;
   std::vector<double> weights;     ///< ascending, each once, above 0
   std::vector<double> voxel_cuts;  ///< ascending, each once, above 0
+  std::uint64_t seed = 1;          ///< of all samples; references and repeats have seeds above it
   std::uint32_t repeats = 7;       ///< of every measurement of run time; each has other samples
 };
 

@@ -19,6 +19,7 @@ class Planner {
   Planner(const FrameConfig& frame, const RenderingErrorOptions& options, const scenes::Scene& scene)
       : frame_(frame), options_(options), scene_(scene) {
     plan_.base = made_small(frame.render, options.side);
+    plan_.base.seed = options.seed;
     plan_.base.mailboxes = false;
     plan_.base.record = false;
     plan_.structures.push_back({frame.structure, frame.structure_options});

@@ -19,6 +19,10 @@ struct Answer {
 std::vector<Answer> answers_of(const SimulatorStudy& study, std::size_t method, Figure figure) {
   std::vector<Answer> answers;
   for (std::size_t number = 0; number < study.cases.size(); ++number) {
+    // One node is as fast as itself, whatever a method says.
+    if (figure == Figure::speed_up && study.cases[number].nodes == 1) {
+      continue;
+    }
     if (const std::optional<Estimate>& estimate = study.estimates[method][number]) {
       answers.push_back({number, error_of(figure, estimate->value[figure], study.truth[number].value[figure]),
                          estimate->half_width[figure]});
@@ -65,6 +69,9 @@ std::optional<double> cover_widened(const SimulatorStudy& study, const std::vect
 FigureErrors figure_errors(const SimulatorStudy& study, std::size_t method, Figure figure) {
   const std::vector<Answer> answers = answers_of(study, method, figure);
   FigureErrors result;
+  if (answers.empty()) {
+    return result;
+  }
   std::vector<double> errors;
   std::size_t stated = 0;
   std::size_t covered = 0;

@@ -8,6 +8,7 @@
 #include "processors/left_out.h"
 #include "processors/replay_parts.h"
 #include "sim/units.h"
+#include "studies/text_units.h"
 
 namespace marti::studies {
 
@@ -64,7 +65,7 @@ std::vector<PlanEntry> machine_plan(const KeptItems& kept, const processors::Mac
   cache.unit = "look-ups in tags";
   if (lookups == nullptr) {
     const std::uint64_t lines = processors::lines_of(layout, machine.cache.cache.line);
-    cache.fact = "the database of " + sim::print_size(static_cast<std::int64_t>(layout.database_bytes())) +
+    cache.fact = "the database of " + bytes(static_cast<double>(layout.database_bytes())) +
                  " fits the cache of " +
                  sim::print_size(static_cast<std::int64_t>(machine.cache.cache.size)) +
                  ", set by set: only first references miss";

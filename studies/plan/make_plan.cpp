@@ -63,7 +63,7 @@ PlanEntry shadow_rays(const PlanFacts& facts) {
   } else {
     choice.fact = of(needs.unlit, needs.shaded, "materials that a ray may meet ask for lights and are black");
   }
-  const auto pixels = std::uint64_t{facts.render.width} * facts.render.height;
+  const auto pixels = std::uint64_t{facts.render.width} * facts.render.height * facts.render.samples;
   return entry_of(
       PlanItem::shadow_rays, needs.shadow_rays ? PlanClass::on_demand : PlanClass::proved, facts.keep,
       std::move(choice), "lights asked at points",
@@ -86,7 +86,7 @@ PlanEntry spawned_rays(const PlanFacts& facts, PlanItem item, bool needed, std::
     }
   }
   // Both kinds are decided by one test at each point.
-  const auto pixels = std::int64_t{facts.render.width} * facts.render.height;
+  const auto pixels = std::int64_t{facts.render.width} * facts.render.height * facts.render.samples;
   return entry_of(item, PlanClass::proved, facts.keep, std::move(choice), "tests at points",
                   {0, in_one_go ? pixels : 0});
 }

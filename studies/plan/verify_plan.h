@@ -18,8 +18,8 @@ struct PlanVerdict {
 /// Runs as often again as there are items left out, and once more. What must be equal: the bits of all
 /// pixels, the hits of all rays, the work log word by word, and with all items kept every figure of the
 /// machine. Where shadow rays were left out that no light could show, the log without them must be equal, and
-/// the machine's figures may differ, as its rays do. Throws UserError where a part of a file that was not
-/// read is broken.
+/// the machine's figures may differ, as its rays do. Where a part of a file that was not read is broken, the
+/// verdict says that there is nothing to compare with.
 [[nodiscard]] PlanVerdict verify_plan(const RunResult& result);
 
 /// The log without the shadow rays, and the lights added, at points of these materials (by index; averaged

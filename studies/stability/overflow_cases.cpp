@@ -22,7 +22,9 @@ constexpr sim::Ticks most_waiting = std::int64_t{1} << 20;
 /// A machine with all durations times 2^k, for every k: a frame that fits is timed exactly, one that does not
 /// is refused as the user's.
 CaseOutcome up_to_the_end(const MachineConfig& machine) {
-  const MachineResult base = processors::replay(small_log(), machine);
+  // The events are what is tried here.
+  const processors::ReplayOptions all = {.keep_lookups = true, .keep_read_events = true};
+  const MachineResult base = processors::replay(small_log(), machine, all);
   Tally tally;
   int largest = 0;
   std::uint64_t refused = 0;
@@ -33,7 +35,7 @@ CaseOutcome up_to_the_end(const MachineConfig& machine) {
       break;
     }
     try {
-      const MachineResult result = processors::replay(small_log(), slow);
+      const MachineResult result = processors::replay(small_log(), slow, all);
       processors::check_bounds(slow, result);
       (void)result.time();
       tally.add(is_stretched(base, result, factor));

@@ -40,8 +40,10 @@ double cpu_seconds() { return static_cast<double>(std::clock()) / static_cast<do
 
 StudyOutput run_stability(sim::Config& config) { return run_stability(config, stability_cases()); }
 
-StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> cases) {
-  const CaseSize size = read_stability(config);
+StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> all) {
+  const StabilityConfig stability = read_stability(config, all);
+  const CaseSize& size = stability.size;
+  const std::vector<StabilityCase>& cases = stability.cases;
   StudyOutput output;
   Table table = empty_table();
   Table times = empty_times();

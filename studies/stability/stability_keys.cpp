@@ -1,5 +1,10 @@
 #include "studies/stability/stability_keys.h"
 
+#include <algorithm>
+#include <string>
+
+#include "sim/nearest.h"
+
 namespace marti::studies {
 
 void declare_stability_keys(sim::Schema& schema) {
@@ -7,6 +12,7 @@ void declare_stability_keys(sim::Schema& schema) {
   schema.section("stability", "only for `marti study stability`, whose scenes and machines are its own");
   schema.integer("stability.rays", size.rays, {100, 10'000'000}, "rays",
                  "of each geometry case, roughly, and references of each cache case");
+  schema.texts("stability.only", {}, "cases that are run, by their names in the table; empty: all");
   schema.integer("stability.nodes", size.nodes, {64, 1 << 20}, "", "of the largest machine");
 }
 
@@ -16,12 +22,25 @@ sim::Schema stability_schema() {
   return schema;
 }
 
-CaseSize read_stability(sim::Config& config) {
-  CaseSize size;
-  size.rays = static_cast<std::uint32_t>(config.integer("stability.rays"));
-  size.nodes = static_cast<std::uint32_t>(config.integer("stability.nodes"));
+StabilityConfig read_stability(sim::Config& config, std::span<const StabilityCase> all) {
+  StabilityConfig stability;
+  stability.size.rays = static_cast<std::uint32_t>(config.integer("stability.rays"));
+  stability.size.nodes = static_cast<std::uint32_t>(config.integer("stability.nodes"));
+  const std::vector<std::string> only = config.texts("stability.only");
   config.refuse_unused();
-  return size;
+  std::vector<std::string> names;
+  for (const StabilityCase& one : all) {
+    names.push_back(one.id);
+    if (only.empty() || std::find(only.begin(), only.end(), one.id) != only.end()) {
+      stability.cases.push_back(one);
+    }
+  }
+  for (const std::string& name : only) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      config.fail("stability.only", "there is no case \"" + name + "\"" + sim::did_you_mean(name, names));
+    }
+  }
+  return stability;
 }
 
 }  // namespace marti::studies

@@ -21,15 +21,20 @@ sim::Ticks spent(const processors::NodeStatistics& node, Activity activity) {
   return node.time[static_cast<std::size_t>(activity)];
 }
 
+/// Nothing is left out because it is known beforehand: the events are what is tried here.
+MachineResult replay_all(const processors::WorkLog& log, const MachineConfig& machine) {
+  return processors::replay(log, machine, {.keep_lookups = true, .keep_read_events = true});
+}
+
 /// All durations of a machine times 1, 10, ... 1e9.
 CaseOutcome homogeneous(const MachineConfig& machine) {
-  const MachineResult base = processors::replay(small_log(), machine);
+  const MachineResult base = replay_all(small_log(), machine);
   Tally tally;
   std::int64_t factor = 1;
   for (int k = 1; k <= 9; ++k) {
     factor *= 10;
     MachineConfig slow = machine;
-    tally.add(stretch(slow, factor) && is_stretched(base, processors::replay(small_log(), slow), factor));
+    tally.add(stretch(slow, factor) && is_stretched(base, replay_all(small_log(), slow), factor));
   }
   CaseOutcome outcome = none_wrong(tally, "scales differ");
   outcome.figure += fmt::format("; {} events at each", grouped(base.events));
@@ -52,8 +57,8 @@ MachineConfig one_node_with(std::int64_t ratio) {
 /// A hit takes one cycle, a miss `ratio`: the frame's time is known in advance.
 CaseOutcome stiff(std::int64_t ratio) {
   const MachineConfig machine = one_node_with(ratio);
-  const MachineResult result = processors::replay(small_log(), machine);
-  const std::uint64_t events_at_one = processors::replay(small_log(), one_node_with(1)).events;
+  const MachineResult result = replay_all(small_log(), machine);
+  const std::uint64_t events_at_one = replay_all(small_log(), one_node_with(1)).events;
   const processors::NodeStatistics& node = result.nodes[0];
   processors::TimeDivision counted{};
   processors::add_counted_time(processors::step_ticks(machine, small_log()), node.steps,
@@ -81,7 +86,7 @@ CaseOutcome stiff_and_crowded(const CaseSize& /*size*/) {
   machine.clock = sim::Clock::from_period(1);
   machine.banks.count = 1;
   machine.banks.clock = sim::Clock::from_period(1'000'000'000);
-  const MachineResult result = processors::replay(small_log(), machine);
+  const MachineResult result = replay_all(small_log(), machine);
   processors::check_bounds(machine, result);
   // The one bank is all that takes time: it is busy from the first access to the last.
   const processors::FrameBounds bounds = processors::frame_bounds(machine, result);
@@ -93,9 +98,9 @@ CaseOutcome without_time() {
   Tally tally;
   for (const NamedTiming& one : machines_of_every_kind(processors::Assignment::interleaved)) {
     MachineConfig machine = one.machine;
-    const MachineResult usual = processors::replay(small_log(), machine);
+    const MachineResult usual = replay_all(small_log(), machine);
     take_all_time_away(machine);
-    const MachineResult result = processors::replay(small_log(), machine);
+    const MachineResult result = replay_all(small_log(), machine);
     // Where rays move, contexts take turns or a tree is shared, the order of events decides what a cache
     // holds; and who builds a branch reads more.
     const bool own_order = machine.scheme == processors::Scheme::image && machine.contexts == 1;
@@ -111,7 +116,7 @@ CaseOutcome without_time_dynamic() {
   Tally tally;
   for (NamedTiming& one : machines_of_every_kind()) {
     take_all_time_away(one.machine);
-    const MachineResult result = processors::replay(small_log(), one.machine);
+    const MachineResult result = replay_all(small_log(), one.machine);
     tally.add(result.end == 0 && result.packets > 0);
   }
   return none_wrong(tally, "machines differ");
@@ -122,9 +127,9 @@ CaseOutcome without_one_time() {
   Tally tally;
   const auto differs = [&](auto&& change) {
     MachineConfig machine = machines_of_every_kind(processors::Assignment::interleaved).front().machine;
-    const MachineResult usual = processors::replay(small_log(), machine);
+    const MachineResult usual = replay_all(small_log(), machine);
     change(machine);
-    tally.add(same_references(usual, processors::replay(small_log(), machine)));
+    tally.add(same_references(usual, replay_all(small_log(), machine)));
   };
   differs([](MachineConfig& m) { m.operations = {0, 0, 0, 0, 0, 0, 0, 0}; });
   differs([](MachineConfig& m) { m.cache.hit_cycles = 0; });

@@ -12,7 +12,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string small = " --set stability.rays=100 --set stability.nodes=64";
+// All cases are tests of their own, without the command.
+const std::string small =
+    " --set stability.rays=100 --set stability.nodes=64"
+    " --set 'stability.only=[\"leaks-at-1e6\",\"zero-latencies\"]'";
 
 TEST(StabilityCommand, PrintsAndWritesItsTables) {
   const TemporaryDirectory directory;
@@ -43,6 +46,7 @@ TEST(StabilityCommand, RefusesWhatHasNoEffectOrIsOutOfRange) {
   };
   refused(" --set machine.nodes=4", "machine.nodes");
   refused(" --set scene.source=teapot", "scene.source");
+  refused(" --set 'stability.only=[\"zero-latency\"]'", "did you mean \"zero-latencies\"");
   refused(" --set stability.rays=0", "stability.rays");
   refused(" --set stability.nodes=4000000000", "stability.nodes");
 }

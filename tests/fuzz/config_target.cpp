@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "sim/error.h"
+#include "studies/error/error_keys.h"
 #include "studies/frame_keys.h"
 #include "studies/machine_keys.h"
 #include "studies/record_keys.h"
@@ -23,6 +24,13 @@ std::vector<sim::EffectiveValue> read_run(std::string_view text) {
   (void)studies::read_record(config, true);
   config.refuse_unused();
   return config.effective_values();
+}
+
+void read_error_study(std::string_view text) {
+  static const sim::Schema schema = studies::error_schema();
+  sim::Config config = sim::Config::from_text(schema, text, "fuzz.toml");
+  const studies::FrameConfig frame = studies::read_frame(config);
+  (void)studies::read_rendering_error(config, frame);
 }
 
 void read_sweep(std::string_view text) {
@@ -65,6 +73,9 @@ void try_config(std::span<const std::uint8_t> bytes) {
       promise(values[i].key == reread[i].key && values[i].value == reread[i].value,
               values[i].key + " = " + values[i].value + " is read again as " + reread[i].value);
     }
+  }
+  if (text.find("error") != std::string::npos) {
+    (void)accepted([&] { read_error_study(text); });
   }
   if (text.find("sweep") != std::string::npos) {
     (void)accepted([&] { read_sweep(text); });

@@ -114,6 +114,7 @@ void try_gltf(std::span<const std::uint8_t> bytes) {
     scenes::GltfOptions options;
     options.max_triangles = most_triangles;
     options.max_file_bytes = 1U << 20U;
+    options.read_unused = true;
     const scenes::AnimatedScene scene = scenes::open_gltf(path, options, decode);
     check(scene.at(0.0));
     for (const double part : {0.3, 1.0}) {

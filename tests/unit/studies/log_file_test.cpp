@@ -71,6 +71,7 @@ processors::WorkLog real_log(Random& random) {
   options.height = static_cast<std::uint32_t>(pick(random, 1, 16));
   options.max_depth = static_cast<std::uint32_t>(pick(random, 1, 3));
   options.mailboxes = random() % 2 == 0;
+  options.samples = static_cast<std::uint32_t>(pick(random, 1, 3));
   options.voxel_cut = kind == "octree" && scene.quadrics.empty() && random() % 2 == 0 ? 8.0 : 0.0;
   options.record = true;
   return *processors::render(scene, *triangles, *structure, options).log;
@@ -83,6 +84,7 @@ RC_GTEST_PROP(LogFile, RealLogsComeBackAndReplayTheSame, (std::uint64_t seed)) {
   expect_equal(frame, back);
   RC_ASSERT(!::testing::Test::HasFatalFailure());
   RC_ASSERT(bytes_of(back) == bytes_of(frame));
+  RC_ASSERT(back.log->samples == frame.log->samples);
   const processors::MachineConfig machine = marti::test::random_machine(random);
   const processors::MachineResult before = processors::replay(*frame.log, machine);
   const processors::MachineResult after = processors::replay(*back.log, machine);

@@ -226,6 +226,7 @@ inline FrameConfig random_frame(Random& random, const std::string& structure) {
   config.render.shadows = random.chance(0.8);
   config.render.mailboxes = random.chance(0.3);
   config.render.min_weight = random.chance(0.3) ? 0.1 : 0.0;
+  config.render.samples = random.chance(0.3) ? 1 + random.below(4) : 1;
   return config;
 }
 
