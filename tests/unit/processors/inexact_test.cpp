@@ -56,7 +56,7 @@ RC_GTEST_PROP(Inexact, ASampleOfAllPacketsIsExact, (std::uint64_t seed)) {
   const WorkLog log = small_log(random);
   const MachineConfig machine = random_sampled(random);
   const std::uint64_t packets = PacketList(log.width, log.height, machine.packets).size();
-  const MachineResult exact = replay(log, machine);
+  const MachineResult exact = replay(log, machine, {.keep_read_events = true});
   for (const std::uint64_t warm_up : {std::uint64_t{0}, std::uint64_t{1}, PacketSample::all_before}) {
     const PacketSample sample(everything(packets), packets, warm_up);
     const MachineResult sampled = replay(log, machine, {.sample = &sample});
@@ -181,7 +181,7 @@ RC_GTEST_PROP(Inexact, OneNodeIsExactWithAnyQuantum, (std::uint64_t seed)) {
   RC_PRE(machine.placement != Placement::distributed);
   machine.clusters = 1;
   machine.nodes = 1;
-  expect_equal(replay(log, machine),
+  expect_equal(replay(log, machine, {.keep_read_events = true}),
                replay(log, machine, {.quantum = test::pick(random, 2, 1'000'000'000'000)}));
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
