@@ -42,8 +42,7 @@ std::optional<TreePlan> plan_of(const WorkLog& log, const MachineConfig& config,
 // Decides what is left out, and enters it.
 LeftOut leave_out(const ReplayOptions& options, ReplayInput& input) {
   LeftOut left;
-  if (options.step_by_step || options.with_contexts || options.stripped != nullptr ||
-      options.sample != nullptr || options.quantum > 1) {
+  if (options.step_by_step || options.with_contexts || options.stripped != nullptr) {
     return left;
   }
   const MachineConfig& config = input.config;
@@ -54,8 +53,9 @@ LeftOut leave_out(const ReplayOptions& options, ReplayInput& input) {
         memory::shape_of(config.cache.cache).lines() * sizeof(std::uint32_t) * config.all_nodes();
     left.line_set_bytes = (input.line_set + 7) / 8 * config.all_nodes();
   }
-  // Who watches is told of each read.
-  if (!options.keep_read_events && options.observer == nullptr && why_read_events(config) == nullptr) {
+  // Who watches is told of each read; what is not exact has its own way with events.
+  const bool plain = options.observer == nullptr && options.sample == nullptr && options.quantum <= 1;
+  if (!options.keep_read_events && plain && why_read_events(config) == nullptr) {
     input.own_reads = memory::ideal_read(config.interconnect);
     left.read_events = true;
   }

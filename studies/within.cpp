@@ -82,9 +82,9 @@ std::string number_bar(double value, double half_width, int digits) {
 
 // A figure in percent, with its half-width in points.
 std::string points_bar(double percent, double half_width, std::string_view what) {
-  return std::isfinite(half_width)
-             ? fmt::format("{:.2f} %{:<8} +- {:.2g} points\n", percent, what, half_width)
-             : fmt::format("{:.2f} %{:<8} error not known\n", percent, what);
+  const std::string value = fmt::format("{:.2f} %{}", percent, what);
+  return std::isfinite(half_width) ? fmt::format("{:<14}+- {:.2g} points\n", value, half_width)
+                                   : fmt::format("{:<14}error not known\n", value);
 }
 
 std::string text_of(const EstimatedRun& run, double tolerance, std::uint32_t nodes) {

@@ -48,8 +48,10 @@ class SamplePoints {
       return {x + 0.5, y + 0.5};
     }
     const std::uint32_t rows = samples_ / columns_;
-    return {x + (sample % columns_ + counted_number(x, y, sample, 0, seed_)) / columns_,
-            y + (sample / columns_ + counted_number(x, y, sample, 1, seed_)) / rows};
+    const std::uint32_t column = sample % columns_;
+    const std::uint32_t row = sample / columns_;
+    return {x + (column + counted_number(x, y, sample, 0, seed_)) / columns_,
+            y + (row + counted_number(x, y, sample, 1, seed_)) / rows};
   }
 
   [[nodiscard]] constexpr std::uint32_t columns() const { return columns_; }
