@@ -9,7 +9,6 @@ namespace marti::studies {
 namespace {
 
 using processors::MachineConfig;
-using processors::RenderOptions;
 
 // Primitives times pixels' samples that brute force may be asked for, each about once a light.
 constexpr double most_tests = 0x1p27;
