@@ -30,10 +30,10 @@ struct StudyOutput {
 ///   NAME.exr and NAME.png for each image;
 ///   report.txt, and host.txt unless host_report is empty;
 ///   results.sqlite with all tables and their columns.
-/// Only host.txt, the host tables' files and charts and results.sqlite differ between two equal runs. All files are
-/// written under temporary names first and renamed together at the end; signals that end the program wait
-/// until that is done. Returns the files. Throws UserError with the reason; older results stay as they
-/// were then.
+/// Only host.txt, the host tables' files and charts and results.sqlite differ between two equal runs. All
+/// files are written under temporary names first and renamed together at the end; signals that end the
+/// program wait until that is done. Returns the files. Throws UserError with the reason; older results stay
+/// as they were then.
 std::vector<std::filesystem::path> write_study(const StudyOutput& output,
                                                const std::filesystem::path& directory);
 

@@ -47,7 +47,8 @@ TEST(StudyError, WritesTheSameTablesAgainButForRunTimes) {
   }
   // Exact replay has no error.
   const std::string methods = read(a / "error_methods.csv");
-  EXPECT_NE(methods.find("\nexact,replay,18,0.0,0.0,0.0,,0.0,0.0,0.0,0.0,1.0,0.0,0.0,"), std::string::npos) << methods;
+  EXPECT_NE(methods.find("\nexact,replay,18,0.0,0.0,0.0,,0.0,0.0,0.0,0.0,1.0,0.0,0.0,"), std::string::npos)
+      << methods;
 }
 
 TEST(StudyError, WrongInputIsTwo) {
