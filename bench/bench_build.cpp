@@ -14,7 +14,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <limits>
 #include <memory>
 #include <string>
@@ -30,6 +29,7 @@
 #include "processors/program/render.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
+#include "studies/cpu_time.h"
 
 namespace {
 
@@ -37,14 +37,6 @@ using namespace marti;
 using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-/// Seconds that the processor has worked for this thread: what one thread needs, whatever else the computer
-/// does.
-double cpu_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 std::shared_ptr<const accel::TriangleSet> triangles_of(const std::string& scene) {
   return std::make_shared<const accel::TriangleSet>(scenes::make_procedural(scene));
@@ -59,9 +51,9 @@ double best_build(const std::shared_ptr<const accel::TriangleSet>& triangles, un
   double spent = 0.0;
   for (int round = 0; round < 3 || (spent < 1.0 && round < 100); ++round) {
     const auto begin = Clock::now();
-    const double cpu_begin = cpu_seconds();
+    const double cpu_begin = studies::thread_cpu_seconds();
     const accel::Octree octree = accel::Octree::build(triangles, options);
-    best = std::min(best, threads == 1 ? cpu_seconds() - cpu_begin : since(begin));
+    best = std::min(best, threads == 1 ? studies::thread_cpu_seconds() - cpu_begin : since(begin));
     spent += since(begin);
   }
   return best;
@@ -195,11 +187,11 @@ void lazy(bench::Report& report) {
         accel::LazyOctreeOptions lazy_options;
         lazy_options.tree.threads = 1;
         lazy_options.initial = limits[k];
-        const double begin = cpu_seconds();
+        const double begin = studies::thread_cpu_seconds();
         const auto structure = accel::make_lazy_octree(triangles, lazy_options);
-        const double built = cpu_seconds() - begin;
+        const double built = studies::thread_cpu_seconds() - begin;
         (void)processors::render(scene, *triangles, *structure, options, 1);
-        const double total = cpu_seconds() - begin;
+        const double total = studies::thread_cpu_seconds() - begin;
         Result& result = results[k];
         result.build = std::min(result.build, built);
         result.render = std::min(result.render, total - built);
@@ -260,12 +252,12 @@ void update(bench::Report& report) {
       std::uint64_t all_tests = 0;
       std::uint32_t moved = 0;
       for (int round = 0; round < 5; ++round) {
-        double begin = cpu_seconds();
+        double begin = studies::thread_cpu_seconds();
         (void)accel::build_octree(after, options, tree.frame());
-        fresh = std::min(fresh, cpu_seconds() - begin);
-        begin = cpu_seconds();
+        fresh = std::min(fresh, studies::thread_cpu_seconds() - begin);
+        begin = studies::thread_cpu_seconds();
         const accel::OctreeUpdate updated = accel::update_octree(tree, after);
-        partial = std::min(partial, cpu_seconds() - begin);
+        partial = std::min(partial, studies::thread_cpu_seconds() - begin);
         tests = 0;
         all_tests = 0;
         moved = updated.moved;

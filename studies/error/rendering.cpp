@@ -12,7 +12,7 @@
 #include "processors/replay.h"
 #include "scenes/open.h"
 #include "sim/error.h"
-#include "studies/error/cpu_time.h"
+#include "studies/cpu_time.h"
 #include "studies/functional_run.h"
 #include "studies/image_file.h"
 

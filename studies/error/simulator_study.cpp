@@ -1,11 +1,10 @@
 #include "studies/error/simulator_study.h"
 
-#include <ctime>
-
 #include <algorithm>
 
 #include "memory/cache_config.h"
 #include "sim/units.h"
+#include "studies/cpu_time.h"
 #include "studies/error/simulator_analytic.h"
 #include "studies/functional_run.h"
 #include "studies/paper/level_counts.h"
@@ -13,13 +12,6 @@
 namespace marti::studies {
 
 namespace {
-
-// Processor time of the calling thread, which does all the work of a method.
-double thread_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 std::vector<ErrorCase> cases_of(const ErrorConfig& config) {
   std::vector<ErrorCase> cases;
@@ -101,9 +93,9 @@ class SceneStudy {
       }
       // Every case draws samples of its own.
       const std::uint64_t seed = config_.seed * 0x9e3779b97f4a7c15ULL + number * methods.size() + m;
-      const double begin = thread_seconds();
+      const double begin = thread_cpu_seconds();
       Estimate found = estimate(methods[m], log_, config, seed);
-      const double seconds = thread_seconds() - begin;
+      const double seconds = thread_cpu_seconds() - begin;
       study_.cpu_seconds[m][repeat] += seconds;
       if (methods[m].kind == MethodKind::exact) {
         exact_seconds_[number - first_] = seconds;
@@ -123,10 +115,10 @@ class SceneStudy {
       for (std::size_t cache = 0; cache < config_.caches.size(); ++cache) {
         shapes.push_back(memory::shape_of(machine(cache, node).cache.cache));
       }
-      const double begin = thread_seconds();
+      const double begin = thread_cpu_seconds();
       std::vector<Estimate> found =
           estimate_analytically(log_, machine(0, node), shapes, {methods[m].walked_nodes});
-      study_.cpu_seconds[m][repeat] += thread_seconds() - begin;
+      study_.cpu_seconds[m][repeat] += thread_cpu_seconds() - begin;
       for (std::size_t cache = 0; cache < found.size(); ++cache) {
         found[cache].words = cache == 0 ? found[cache].words : 0;  // one pass
         study_.estimates[m][index(cache, node)] = found[cache];

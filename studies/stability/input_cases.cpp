@@ -1,13 +1,14 @@
 // Cases of input that is no geometry: not numbers, infinities, directions of no length.
-#include <unistd.h>
-
 #include <bit>
+#include <cerrno>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -65,6 +66,35 @@ std::string glb_of(const std::vector<float>& coordinates) {
   return file;
 }
 
+/// A directory of its own among the temporary files, which goes with it.
+class OwnDirectory {
+ public:
+  OwnDirectory() : path_((std::filesystem::temp_directory_path() / "marti-stability-XXXXXX").string()) {
+    if (::mkdtemp(path_.data()) == nullptr) {
+      throw sim::UserError(path_ + ": cannot make a temporary directory: " + std::strerror(errno));
+    }
+  }
+  OwnDirectory(const OwnDirectory&) = delete;
+  OwnDirectory& operator=(const OwnDirectory&) = delete;
+  ~OwnDirectory() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+
+  [[nodiscard]] std::filesystem::path path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// The scene of a file of these coordinates.
+scenes::Scene opened(const std::vector<float>& coordinates) {
+  const OwnDirectory directory;
+  const std::filesystem::path path = directory.path() / "case.glb";
+  sim::write_file(path, glb_of(coordinates));
+  return scenes::open_scene(path.string(), {}, {});
+}
+
 /// One corner of 10,000 triangles is no number: the scene is that of the other 9,999, and says so once.
 CaseOutcome gltf_with(float value, const CaseSize& size) {
   constexpr std::size_t triangles = 10'000;
@@ -82,16 +112,8 @@ CaseOutcome gltf_with(float value, const CaseSize& size) {
   std::vector<float> rest = coordinates;
   rest.erase(rest.begin() + 9 * bad, rest.begin() + 9 * (bad + 1));
   coordinates[9 * bad + 4] = value;
-  const auto open = [](const std::vector<float>& all) {
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path() / fmt::format("marti-stability-{}.glb", ::getpid());
-    sim::write_file(path, glb_of(all));
-    scenes::Scene scene = scenes::open_scene(path.string(), {}, {});
-    std::filesystem::remove(path);
-    return scene;
-  };
-  const scenes::Scene scene = open(coordinates);
-  const scenes::Scene expected = open(rest);
+  const scenes::Scene scene = opened(coordinates);
+  const scenes::Scene expected = opened(rest);
   const auto a = std::make_shared<const TriangleSet>(scene);
   const auto b = std::make_shared<const TriangleSet>(expected);
   const accel::Octree with = accel::Octree::build(a);

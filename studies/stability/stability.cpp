@@ -1,11 +1,11 @@
 #include "studies/stability/stability.h"
 
-#include <fmt/format.h>
-
-#include <ctime>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "studies/cpu_time.h"
 #include "studies/results/provenance.h"
 #include "studies/results/text_table.h"
 #include "studies/stability/precision_table.h"
@@ -34,8 +34,6 @@ Table empty_times() {
                 {"cpu_time", ColumnType::real, "s", "process CPU time, building what it needs included"}});
 }
 
-double cpu_seconds() { return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC); }
-
 }  // namespace
 
 StudyOutput run_stability(sim::Config& config) { return run_stability(config, stability_cases()); }
@@ -50,9 +48,9 @@ StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> al
   std::string failed;
   std::size_t failures = 0;
   for (const StabilityCase& one : cases) {
-    const double before = cpu_seconds();
+    const double before = process_cpu_seconds();
     const CaseOutcome outcome = run_case(one, size);
-    times.add_row({one.id, cpu_seconds() - before});
+    times.add_row({one.id, process_cpu_seconds() - before});
     table.add_row({std::string(one.group == CaseGroup::geometry ? "geometry" : "machine"), one.id, one.risk,
                    one.oracle, outcome.figure, outcome.value, outcome.limit,
                    std::string(outcome.passed() ? "pass" : "FAIL")});

@@ -1,7 +1,6 @@
 #include "studies/sweep/sweep_worker.h"
 
 #include <chrono>
-#include <ctime>
 #include <exception>
 #include <mutex>
 #include <string>
@@ -12,6 +11,7 @@
 #include "processors/replay.h"
 #include "scenes/open.h"
 #include "sim/error.h"
+#include "studies/cpu_time.h"
 #include "studies/functional_run.h"
 #include "studies/image_file.h"
 #include "studies/scene_hash.h"
@@ -19,13 +19,6 @@
 namespace marti::studies {
 
 namespace {
-
-// Processor time of the calling thread.
-std::int64_t thread_nanoseconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
 
 FrameLog trace(const SweepFrame& frame) {
   const FrameConfig& config = frame.config;
@@ -69,7 +62,7 @@ void do_time(const SweepSite& site, TaskSource& source, const SweepTask& task) {
   const std::shared_ptr<const FrameLog> log = site.logs.take(site.plan.frames[task.frame].key);
   for (const std::size_t number : task.machines) {
     const SweepMachine& machine = site.plan.machines[number];
-    const std::int64_t begin = thread_nanoseconds();
+    const std::int64_t begin = thread_cpu_nanoseconds();
     SweepRow row;
     try {
       const std::shared_ptr<const processors::StrippedLog> stripped =
@@ -83,7 +76,7 @@ void do_time(const SweepSite& site, TaskSource& source, const SweepTask& task) {
     } catch (const sim::UserError& error) {
       throw sim::UserError("the machine with " + name_of(machine) + ": " + error.what());
     }
-    source.timed(number, row, thread_nanoseconds() - begin);
+    source.timed(number, row, thread_cpu_nanoseconds() - begin);
   }
 }
 

@@ -1,0 +1,125 @@
+// `marti run` of other machines: what each scheme, memory and structure reports, and that none changes the
+// image.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/cli/shell.h"
+
+namespace marti::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string small = " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
+
+TEST(MachineCommand, ThePipelineTakesTheStepsOfTheImageSchemeAndSaysHowBusyItsStagesAre) {
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "pipeline.toml";
+  const auto result_of = [&](const fs::path& file) {
+    const Outcome outcome = marti("run --json " + quoted(file) + small);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return nlohmann::json::parse(outcome.output);
+  };
+  const nlohmann::json moving = result_of(config);
+  const nlohmann::json whole = result_of(fs::path(MARTI_SOURCE) / "configs" / "marti.toml");
+  EXPECT_EQ(moving["image"], whole["image"]);
+  const nlohmann::json& machine = moving["machine"];
+  EXPECT_EQ(machine["scheme"], "pipeline");
+  EXPECT_EQ(machine["one_node_time_ps"], whole["machine"]["one_node_time_ps"]);
+  for (const auto& [step, count] : machine["steps"].items()) {
+    EXPECT_EQ(count, step == "pixels" ? 0 : whole["machine"]["steps"][step].get<std::int64_t>()) << step;
+  }
+  const nlohmann::json& flow = machine["flow"];
+  EXPECT_EQ(flow["stages"].size(), 3U);
+  EXPECT_EQ(flow["per_node"].size(), 16U);
+  EXPECT_EQ(flow["rays"], flow["counts"]["ended"]);
+  EXPECT_EQ(flow["contributions"], flow["counts"]["contributions"]);
+  EXPECT_EQ(flow["messages"].get<std::int64_t>(), 24 * 16 + flow["counts"]["passed_on"].get<std::int64_t>() +
+                                                      flow["contributions"].get<std::int64_t>());
+}
+
+TEST(MachineCommand, APipelineIsLimitedByItsSlowestStage) {
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "pipeline.toml";
+  const auto machine_with = [&](const std::string& stages) {
+    const Outcome outcome = marti("run --json " + quoted(config) + small + stages);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return nlohmann::json::parse(outcome.output)["machine"];
+  };
+  const nlohmann::json few =
+      machine_with(" --set pipeline.search=12 --set pipeline.nearest=3 --set pipeline.shade=1");
+  EXPECT_EQ(few["limit"]["what"], "slowest_part");
+  EXPECT_NE(few["limit"]["sentence"].get<std::string>().find("nearest"), std::string::npos);
+  const nlohmann::json more =
+      machine_with(" --set pipeline.search=8 --set pipeline.nearest=6 --set pipeline.shade=2");
+  EXPECT_GT(few["frame_time_ps"].get<double>(), 1.5 * more["frame_time_ps"].get<double>());
+}
+
+TEST(MachineCommand, TheImageDoesNotDependOnTheMachineNorOnTheStructure) {
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
+  const auto hashes = [&](const std::string& options) {
+    const Outcome outcome = marti("run --json " + quoted(config) + small + options);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    const nlohmann::json result = nlohmann::json::parse(outcome.output);
+    return result["image"]["image_hash"].get<std::string>() + result["image"]["hit_hash"].get<std::string>();
+  };
+  const std::string expected = hashes("");
+  EXPECT_EQ(hashes(" --set machine.nodes=3 --set cache.size=\"1 KiB\" --set packets.width=5"), expected);
+  EXPECT_EQ(hashes(" --set structure.max_objects=2 --set structure.max_level=9"), expected);
+  for (const char* kind : {"bsp", "grid", "none"}) {
+    EXPECT_EQ(hashes(std::string(" --set structure.kind=") + kind), expected) << kind;
+  }
+  EXPECT_EQ(hashes(" --set structure.kind=grid --set structure.grid_density=0.3"), expected);
+  EXPECT_NE(hashes(" --set image.max_depth=1"), expected);
+}
+
+TEST(MachineCommand, TheImageDoesNotDependOnHowTheTreeIsBuilt) {
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
+  const auto result = [&](const std::string& options) {
+    const Outcome outcome = marti("run --json " + quoted(config) + small + options);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return nlohmann::json::parse(outcome.output);
+  };
+  const nlohmann::json given = result("");
+  EXPECT_FALSE(given["machine"].contains("build"));
+  for (const char* structure : {"octree", "bsp"}) {
+    for (const char* sharing :
+         {"none", "shared", "shared --set build.initial_level=4", "private --set build.initial_level=full"}) {
+      const nlohmann::json built =
+          result(std::string(" --set structure.kind=") + structure + " --set build.sharing=" + sharing);
+      EXPECT_EQ(built["image"]["image_hash"], given["image"]["image_hash"]) << structure << " " << sharing;
+      const nlohmann::json& build = built["machine"]["build"];
+      EXPECT_EQ(build["per_node"].size(), 16U);
+      EXPECT_GT(build["start_up_ps"].get<std::int64_t>(), 0);
+      EXPECT_EQ(build["all_levels"]["made"], build["counts"]["children"]);
+    }
+  }
+}
+
+TEST(MachineCommand, ADistributedDatabaseReportsItsMessagesAndMemories) {
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "distributed.toml";
+  for (const char* kind : {"mesh", "ideal"}) {
+    const std::string options = small + std::string(" --set network.kind=") + kind;
+    const Outcome outcome = marti("run --json " + quoted(config) + options);
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    const nlohmann::json machine = nlohmann::json::parse(outcome.output)["machine"];
+    const nlohmann::json& cluster = machine["per_cluster"][0];
+    const nlohmann::json& distributed = cluster["distributed"];
+    const auto count = [&](const char* name) { return distributed[name].get<std::int64_t>(); };
+    EXPECT_EQ(cluster["banks"].size(), 16U);
+    EXPECT_EQ(cluster["interconnect"]["reads"].get<std::int64_t>(),
+              count("local_reads") + count("remote_reads"));
+    EXPECT_EQ(count("local_writes") + count("remote_writes"), 24 * 16);
+    EXPECT_EQ(distributed["network"]["messages"].get<std::int64_t>(),
+              2 * count("remote_reads") + count("remote_writes"));
+    EXPECT_EQ(machine["interconnect_utilisation"].is_null(), kind == std::string("ideal"));
+    EXPECT_EQ(machine["database_copies"].get<std::int64_t>(), 1);
+    const Outcome summary = marti("run " + quoted(config) + options);
+    EXPECT_NE(summary.output.find("spread over 16 nodes"), std::string::npos) << summary.output;
+    EXPECT_NE(summary.output.find("\nmemories "), std::string::npos) << summary.output;
+  }
+}
+
+}  // namespace
+}  // namespace marti::test
