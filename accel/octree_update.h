@@ -42,7 +42,8 @@ struct OctreeUpdate {
   std::vector<NodeUpdate> nodes;
   /// [node of the new tree] What was done now, in the terms of a split: `listed` triangles were sorted (a
   /// moved one counts once for where it was and once for where it is), for which `overlaps` tests were run.
-  /// {0, 0} for what was kept; a leaf has some where it turned out that splitting it separates nothing.
+  /// {0, 0} for what was kept; a leaf has some where it turned out that splitting it separates nothing (a
+  /// kept one too, where max_entries had left it undivided before).
   std::vector<SplitWork> work;
   /// [node of the new tree] The old tree's node of the same cell, whose state it goes on with; no_old_node
   /// below a node that was split.

@@ -39,6 +39,11 @@ void expect_same(const MachineResult& a, const MachineResult& b) {
     ASSERT_EQ(x.waits.histogram.percentile(95), y.waits.histogram.percentile(95));
     ASSERT_EQ(x.waits.histogram.count(), y.waits.histogram.count());
   }
+  ASSERT_EQ(a.l2.caches.size(), b.l2.caches.size());
+  for (std::size_t i = 0; i < a.l2.caches.size(); ++i) {
+    ASSERT_EQ(a.l2.caches[i].hits, b.l2.caches[i].hits);
+    ASSERT_EQ(a.l2.caches[i].misses, b.l2.caches[i].misses);
+  }
 }
 
 // A machine whose caches may hold all of a random log's database and whose reads may be free of waiting.
@@ -54,6 +59,9 @@ MachineConfig roomy_machine(test::Random& random) {
   }
   if (test::pick(random, 0, 1) == 1) {
     machine.interconnect.kind = memory::InterconnectKind::ideal;
+  }
+  if (test::pick(random, 0, 2) == 0) {
+    test::add_random_second_level(random, machine);
   }
   return machine;
 }
@@ -76,6 +84,7 @@ RC_GTEST_PROP(LeftOut, ChangesNoResult, (std::uint64_t seed)) {
   }
   RC_CLASSIFY(less.left_out.lookups);
   RC_CLASSIFY(less.left_out.read_events);
+  RC_CLASSIFY(less.left_out.lookups && !less.l2.caches.empty());
 }
 
 // The decision about caches is exact: with a line more than is proved to fit, some order of references

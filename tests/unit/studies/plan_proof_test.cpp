@@ -196,7 +196,9 @@ TEST(PlanOfFiles, DecodesWhatIsSeen) {
     picture.texels[i] = {static_cast<std::uint8_t>(i), 7, 9, 255};
   }
   const std::vector<std::byte> whole = encode_png(picture);
-  std::vector<std::byte> broken(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(whole.size() / 2));
+  // Not cut short: OpenImageIO 2.4 loses the memory of its message about a PNG file that ends early.
+  std::vector<std::byte> broken = whole;
+  broken[broken.size() / 2] ^= std::byte{0xff};
   GltfFile file = GltfFile::square();
   const int uvs = file.add_accessor<float>({0, 0, 1, 0, 1, 1, 0, 1}, 5126, "VEC2", 2);
   file.json["images"] = {{{"bufferView", file.add_view(whole)}, {"mimeType", "image/png"}},
