@@ -21,4 +21,10 @@ struct Script {
 /// False when the program was built without npm, or with MARTI_REPORT=OFF.
 [[nodiscard]] bool have_vega_scripts();
 
+/// What a user is told then.
+inline constexpr const char* no_vega_scripts =
+    "this marti was built without the scripts that draw charts; install node and npm (Debian: nodejs, npm), "
+    "with "
+    "network configure again (cmake --preset release -DMARTI_REPORT=ON says what is missing) and build";
+
 }  // namespace marti::studies
