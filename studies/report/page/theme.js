@@ -37,6 +37,8 @@ marti.theme = (() => {
       legend: { labelColor: ink, titleColor: ink, labelLimit: 260 },
       header: { labelColor: ink, titleColor: ink },
       view: { stroke: line },
+      // Okabe and Ito: told apart by everybody.
+      range: { category: ["#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#999999", "#F0E442"] },
     };
   }
   return { isDark, config, changed: (listener) => listeners.push(listener) };
