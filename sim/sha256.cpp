@@ -23,7 +23,9 @@ constexpr std::array<std::uint32_t, 64> constants = {
 
 using State = std::array<std::uint32_t, 8>;
 
-std::uint32_t byte_at(std::string_view bytes, std::size_t at) { return static_cast<unsigned char>(bytes[at]); }
+std::uint32_t byte_at(std::string_view bytes, std::size_t at) {
+  return static_cast<unsigned char>(bytes[at]);
+}
 
 // Section 6.2.2.
 void add_block(State& state, std::string_view block) {

@@ -1,5 +1,5 @@
-// The hash function SHA-256 (NIST FIPS 180-4). For names of contents, as in a content security policy; it keeps
-// no secrets.
+// The hash function SHA-256 (NIST FIPS 180-4). For names of contents, as in a content security policy; it
+// keeps no secrets.
 #pragma once
 
 #include <array>

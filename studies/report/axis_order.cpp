@@ -63,8 +63,8 @@ std::vector<AxisColumn> order_axes(std::span<const std::string> names,
   std::vector<bool> led(columns.size(), false);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     for (std::size_t j = 0; j < columns.size() && !led[i]; ++j) {
-      const bool leads = i != j && !led[j] && follows(columns[i], columns[j]) &&
-                         (j < i || !follows(columns[j], columns[i]));
+      const bool leads =
+          i != j && !led[j] && follows(columns[i], columns[j]) && (j < i || !follows(columns[j], columns[i]));
       if (leads) {
         led[i] = true;
         columns[j].followers.push_back(columns[i].name);

@@ -17,8 +17,8 @@ struct AxisColumn {
   std::vector<std::size_t> index;      ///< of each point's value among them
 };
 
-/// `points[i][j]` is point i's value of `names[j]`. A name whose value follows from another's belongs to that one;
-/// of two that follow from each other the earlier leads. Names with a single value are no axes.
+/// `points[i][j]` is point i's value of `names[j]`. A name whose value follows from another's belongs to that
+/// one; of two that follow from each other the earlier leads. Names with a single value are no axes.
 [[nodiscard]] std::vector<AxisColumn> order_axes(std::span<const std::string> names,
                                                  std::span<const std::vector<Cell>> points);
 

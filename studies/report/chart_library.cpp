@@ -11,8 +11,8 @@ namespace marti::studies {
 
 ReportChart make_chart(std::string_view specification, const Table& table, const std::string& note) {
   const std::span<const ChartSpecification> all = report_chart_specifications();
-  const auto found = std::find_if(all.begin(), all.end(),
-                                  [&](const ChartSpecification& chart) { return chart.name == specification; });
+  const auto found = std::find_if(
+      all.begin(), all.end(), [&](const ChartSpecification& chart) { return chart.name == specification; });
   if (found == all.end()) {
     throw sim::InternalError("there is no chart specification " + std::string(specification));
   }

@@ -50,8 +50,8 @@ Json error_json(const ModelError* errors) {
   for (const Zone zone : {Zone::between, Zone::beyond}) {
     const ModelError& error = errors[static_cast<std::size_t>(zone)];
     json[zone == Zone::between ? "between" : "beyond"] = {{"points", error.points},
-                                                         {"mean", rounded(error.mean, curve_digits)},
-                                                         {"p95", rounded(error.p95, curve_digits)}};
+                                                          {"mean", rounded(error.mean, curve_digits)},
+                                                          {"p95", rounded(error.p95, curve_digits)}};
   }
   return json;
 }
@@ -118,8 +118,8 @@ void add_model_rows(Table& table, const SweepPoints& sweep, const AxisModel& mod
     const double x = model.x[i];
     const double ms = sample.end * ms_a_ps;
     const double factor = factor_of(model.end, sample.zone);
-    const bool has_speed_up = sample.base_end > 0.0 &&
-                              model.speed_up[static_cast<std::size_t>(sample.zone)].points > 0;
+    const bool has_speed_up =
+        sample.base_end > 0.0 && model.speed_up[static_cast<std::size_t>(sample.zone)].points > 0;
     const double speed_up = has_speed_up ? sample.base_end / sample.end : NAN;
     const double speed_factor = factor_of(model.speed_up, sample.zone);
     table.add_row({"model", zone_name(sample, x, axis), x, Cell(), ms, ms / factor, ms * factor,
@@ -174,7 +174,8 @@ std::vector<ExplorerField> explorer_fields(const SweepPoints& sweep) {
       {"hit_ratio_list", "fraction", "of lists"},
       {"hit_ratio_primitive", "fraction", "of primitives"},
       {"hit_ratio_material", "fraction", "of materials"},
-      {"interconnect_utilisation", "fraction", "busy time of the busiest cluster's interconnect by the frame time"},
+      {"interconnect_utilisation", "fraction",
+       "busy time of the busiest cluster's interconnect by the frame time"},
       {"bank_utilisation", "fraction", "busy time of the busiest bank by the frame time"},
       {"network_utilisation", "fraction", "busy time of the network's links by the frame time"},
       {"mean_interconnect_wait", "us", "mean wait for the interconnect", us_a_ps},
@@ -195,7 +196,8 @@ std::vector<ExplorerField> explorer_fields(const SweepPoints& sweep) {
   return fields;
 }
 
-Table explorer_rows(const SweepPoints& sweep, const AxisModel* model, std::size_t axis, const ReportPoint& through) {
+Table explorer_rows(const SweepPoints& sweep, const AxisModel* model, std::size_t axis,
+                    const ReportPoint& through) {
   Table table = rows_table();
   const std::string key = line_key(through, axis);
   double ideal = 0.0;
@@ -233,7 +235,8 @@ Table explorer_rows(const SweepPoints& sweep, const AxisModel* model, std::size_
 }
 
 Json channel_of(const ReportAxis& axis) {
-  Json channel = {{"title", axis.unit.empty() || axis.unit == "1" ? axis.name : axis.name + ", " + axis.unit}};
+  Json channel = {
+      {"title", axis.unit.empty() || axis.unit == "1" ? axis.name : axis.name + ", " + axis.unit}};
   for (const std::string& follower : axis.followers) {
     channel["title"] = channel["title"].get<std::string>() + ", with " + follower;
   }
@@ -290,7 +293,8 @@ Json explorer_json(const SweepPoints& sweep, std::span<const AxisModel> models, 
   json["fields"] = Json::array();
   json["columns"] = Json::object();
   for (const ExplorerField& field : explorer_fields(sweep)) {
-    json["fields"].push_back({{"name", field.name}, {"unit", field.unit}, {"description", field.description}});
+    json["fields"].push_back(
+        {{"name", field.name}, {"unit", field.unit}, {"description", field.description}});
     Json column = Json::array();
     for (const ReportPoint& point : sweep.points) {
       const bool exact = field.name == "end" || field.name == "speed_up";

@@ -9,8 +9,7 @@ namespace {
 // The same text as UTF-8, by the rules of the JSON library.
 std::string as_utf8(std::string_view text) {
   using Json = nlohmann::json;
-  const std::string quoted =
-      Json(std::string(text)).dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string quoted = Json(std::string(text)).dump(-1, ' ', false, Json::error_handler_t::replace);
   return Json::parse(quoted).get<std::string>();
 }
 

@@ -50,7 +50,7 @@ double interpolate(double a, double b, double share) {
 
 PointCounters interpolate(const PointCounters& a, const PointCounters& b, double share) {
   PointCounters c;
-  for (double PointCounters::* const member :
+  for (double PointCounters::*const member :
        {&PointCounters::end, &PointCounters::base_end, &PointCounters::nodes, &PointCounters::clusters,
         &PointCounters::packets, &PointCounters::work, &PointCounters::delays, &PointCounters::reads,
         &PointCounters::links, &PointCounters::link_busy, &PointCounters::banks, &PointCounters::bank_busy}) {
@@ -76,7 +76,9 @@ double asymptotic_end(const PointCounters& counters) {
                   network.largest() * cycles);
 }
 
-std::optional<double> saturation_nodes(const PointCounters& counters) { return network_of(counters).saturation(); }
+std::optional<double> saturation_nodes(const PointCounters& counters) {
+  return network_of(counters).saturation();
+}
 
 LineModel::LineModel(std::vector<PointCounters> points, bool logarithmic)
     : points_(std::move(points)), logarithmic_(logarithmic) {
@@ -92,8 +94,9 @@ LineModel::LineModel(std::vector<PointCounters> points, bool logarithmic)
 }
 
 Modelled LineModel::at(double x) const {
-  const auto above = std::lower_bound(points_.begin() + 1, points_.end() - 1, x,
-                                      [](const PointCounters& point, double place) { return point.x < place; });
+  const auto above =
+      std::lower_bound(points_.begin() + 1, points_.end() - 1, x,
+                       [](const PointCounters& point, double place) { return point.x < place; });
   const auto right = static_cast<std::size_t>(above - points_.begin());
   const PointCounters& a = points_[right - 1];
   const PointCounters& b = points_[right];

@@ -1,5 +1,6 @@
-// An analytic model of a frame, fitted to exact points that differ in one axis: the machine as a closed network
-// whose demands are read off the points' counters and interpolated between them. docs/report.md has the equations.
+// An analytic model of a frame, fitted to exact points that differ in one axis: the machine as a closed
+// network whose demands are read off the points' counters and interpolated between them. docs/report.md has
+// the equations.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +12,9 @@ namespace marti::studies {
 
 /// What the counters of an exact point say; sums over a machine of any number of clusters. Times in ps.
 struct PointCounters {
-  double x = 0.0;          ///< the point's place on the axis
-  double end = 0.0;        ///< frame time, above 0
-  double base_end = 0.0;   ///< of the machine that its speed-up is measured against; 0: not there
+  double x = 0.0;         ///< the point's place on the axis
+  double end = 0.0;       ///< frame time, above 0
+  double base_end = 0.0;  ///< of the machine that its speed-up is measured against; 0: not there
   double nodes = 1.0;
   double clusters = 1.0;
   double packets = 1.0;    ///< of the frame: no more nodes can have work; 0: not known
@@ -26,8 +27,9 @@ struct PointCounters {
   double bank_busy = 0.0;  ///< of all banks
 };
 
-/// The frame of such a machine by mean value analysis (processors/closed_network.h), ps: `customers` nodes of a
-/// cluster go round between computing, links and banks. Without reads there is no queue. Needs work above 0.
+/// The frame of such a machine by mean value analysis (processors/closed_network.h), ps: `customers` nodes of
+/// a cluster go round between computing, links and banks. Without reads there is no queue. Needs work above
+/// 0.
 [[nodiscard]] double closed_network_end(const PointCounters& counters);
 
 /// No frame is shorter: the work shared by all nodes, the busiest link, the busiest bank.
@@ -39,20 +41,20 @@ struct PointCounters {
 enum class Zone : std::uint8_t { between, beyond };
 
 struct Modelled {
-  double end = 0.0;         ///< ps
-  double base_end = 0.0;    ///< ps; 0: not there
-  double asymptote = 0.0;   ///< ps, asymptotic_end() of the interpolated counters
+  double end = 0.0;        ///< ps
+  double base_end = 0.0;   ///< ps; 0: not there
+  double asymptote = 0.0;  ///< ps, asymptotic_end() of the interpolated counters
   Zone zone = Zone::between;
 };
 
 class LineModel {
  public:
-  /// `points`: at least two, of different x. `logarithmic`: the axis is interpolated in log x; all x are above 0
-  /// then.
+  /// `points`: at least two, of different x. `logarithmic`: the axis is interpolated in log x; all x are
+  /// above 0 then.
   LineModel(std::vector<PointCounters> points, bool logarithmic);
 
-  /// At the points it is the exact frame time; elsewhere counters are interpolated, and so is the ratio of exact to
-  /// closed_network_end(). Beyond the outer points everything goes on as between the last two.
+  /// At the points it is the exact frame time; elsewhere counters are interpolated, and so is the ratio of
+  /// exact to closed_network_end(). Beyond the outer points everything goes on as between the last two.
   [[nodiscard]] Modelled at(double x) const;
 
   [[nodiscard]] std::span<const PointCounters> points() const { return points_; }

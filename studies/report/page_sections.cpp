@@ -30,13 +30,14 @@ std::string words(std::string name) {
 }
 
 std::string table_html(const Table& table) {
-  std::string html = "<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"" + html_text(table.title()) +
-                     "\"><table><thead><tr>";
+  std::string html = "<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"" +
+                     html_text(table.title()) + "\"><table><thead><tr>";
   for (const Column& column : table.columns()) {
     const bool has_unit = !column.unit.empty() && column.unit != "1";
-    html += fmt::format("<th scope=\"col\"{} title=\"{}\">{}{}</th>",
-                        column.type == ColumnType::text ? "" : " class=\"number\"", html_text(column.description),
-                        html_text(words(column.name)), has_unit ? ", " + html_text(column.unit) : "");
+    html +=
+        fmt::format("<th scope=\"col\"{} title=\"{}\">{}{}</th>",
+                    column.type == ColumnType::text ? "" : " class=\"number\"", html_text(column.description),
+                    html_text(words(column.name)), has_unit ? ", " + html_text(column.unit) : "");
   }
   html += "</tr></thead><tbody>\n";
   for (const std::vector<Cell>& row : table.rows()) {
@@ -51,7 +52,8 @@ std::string table_html(const Table& table) {
 }
 
 std::string folded(const std::string& title, const std::string& html, bool open = false) {
-  return fmt::format("<details{}><summary>{}</summary>\n{}</details>\n", open ? " open" : "", html_text(title), html);
+  return fmt::format("<details{}><summary>{}</summary>\n{}</details>\n", open ? " open" : "",
+                     html_text(title), html);
 }
 
 std::string answer_html(const ReportData& report) {
@@ -68,8 +70,10 @@ std::string chart_html(const ReportChart& chart, bool wide) {
       "<figure{0} role=\"group\" aria-labelledby=\"title-{1}\"><h3 id=\"title-{1}\">{2}</h3>\n"
       "<div id=\"chart-{1}\" class=\"chart\" tabindex=\"0\"></div>\n"
       "<figcaption><p class=\"note\" id=\"note-{1}\">{3}</p><p class=\"saves\">"
-      "<a href=\"#chart-{1}\" data-save=\"csv\" data-chart=\"{1}\" aria-label=\"{2}: save the data as CSV\">CSV</a>"
-      "<a href=\"#chart-{1}\" data-save=\"svg\" data-chart=\"{1}\" aria-label=\"{2}: save the chart as SVG\">SVG</a>"
+      "<a href=\"#chart-{1}\" data-save=\"csv\" data-chart=\"{1}\" aria-label=\"{2}: save the data as "
+      "CSV\">CSV</a>"
+      "<a href=\"#chart-{1}\" data-save=\"svg\" data-chart=\"{1}\" aria-label=\"{2}: save the chart as "
+      "SVG\">SVG</a>"
       "</p></figcaption></figure>\n",
       wide ? " class=\"wide\"" : "", name, html_text(chart.title), html_text(chart.note));
 }
@@ -90,23 +94,27 @@ std::string charts_html(const ReportData& report, bool explored) {
 }
 
 std::string explorer_html(const ReportData& report) {
-  return "<p>Points are machines of the sweep, simulated exactly. The curve is the analytic model: it reaches one step "
-         "of the axis beyond the points, where it is dashed and marked as extrapolated. All charts of the sweep follow "
+  return "<p>Points are machines of the sweep, simulated exactly. The curve is the analytic model: it "
+         "reaches one step "
+         "of the axis beyond the points, where it is dashed and marked as extrapolated. All charts of the "
+         "sweep follow "
          "the controls.</p>\n"
          "<div id=\"controls\" role=\"group\" aria-label=\"The machine that is shown\"></div>\n"
          "<p id=\"reading\" role=\"status\" aria-live=\"polite\"></p>\n" +
          charts_html(report, true) +
          "<details id=\"points\"><summary>All points</summary>\n<p class=\"saves\"><a href=\"#points\" "
-         "id=\"save-points\">CSV</a></p>\n<div id=\"points-table\" class=\"table\" role=\"region\" tabindex=\"0\" "
+         "id=\"save-points\">CSV</a></p>\n<div id=\"points-table\" class=\"table\" role=\"region\" "
+         "tabindex=\"0\" "
          "aria-label=\"All points\"></div></details>\n";
 }
 
 std::string images_html(const ReportData& report) {
   std::string html = "<div class=\"images\">\n";
   for (const ReportImage& image : report.images) {
-    html += fmt::format("<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption>"
-                        "</figure>\n",
-                        html_text(image.title), sim::base64(image.png));
+    html += fmt::format(
+        "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption>"
+        "</figure>\n",
+        html_text(image.title), sim::base64(image.png));
   }
   return html + "</div>\n";
 }

@@ -1,5 +1,5 @@
-// What a report shows, gathered from the directory of a run, a sweep or a study: the answer in sentences, charts,
-// tables, images and where it all comes from. It knows no page: report_page.h makes one of it.
+// What a report shows, gathered from the directory of a run, a sweep or a study: the answer in sentences,
+// charts, tables, images and where it all comes from. It knows no page: report_page.h makes one of it.
 #pragma once
 
 #include <filesystem>
@@ -41,16 +41,16 @@ struct ReportData {
   std::vector<ReportChart> charts;
   std::vector<ReportTable> tables;
   std::vector<ReportImage> images;
-  std::string configuration;  ///< text as in a TOML file; may be empty
-  std::string text;           ///< the study's own report; may be empty
+  std::string configuration;                                    ///< text as in a TOML file; may be empty
+  std::string text;                                             ///< the study's own report; may be empty
   std::vector<std::pair<std::string, std::string>> provenance;  ///< what, value
   /// Rows and model of a sweep for the explorer, as docs/report.md describes them; null without.
   nlohmann::ordered_json explorer;
 };
 
-/// Reads the directory that `marti run -o`, `marti sweep -o` or `marti study ... -o` has written. The same files
-/// give the same data. Throws UserError, naming the file and what to do, for a directory that is none of them, and
-/// for what cannot be read, is damaged, of another version or too large for a page.
+/// Reads the directory that `marti run -o`, `marti sweep -o` or `marti study ... -o` has written. The same
+/// files give the same data. Throws UserError, naming the file and what to do, for a directory that is none
+/// of them, and for what cannot be read, is damaged, of another version or too large for a page.
 [[nodiscard]] ReportData read_report(const std::filesystem::path& directory);
 
 }  // namespace marti::studies

@@ -19,7 +19,8 @@ void report_command(const ReportArguments& arguments, void (*print)(const std::s
   const ReportData report = read_report(arguments.directory);
   if (!have_vega_scripts()) {
     throw sim::UserError(
-        "marti report: this program was built without the scripts that draw charts; install node and npm (Debian: "
+        "marti report: this program was built without the scripts that draw charts; install node and npm "
+        "(Debian: "
         "nodejs, npm), and configure and build again with -DMARTI_REPORT=ON");
   }
   const fs::path file =

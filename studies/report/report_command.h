@@ -12,9 +12,9 @@ struct ReportArguments {
   bool pdf = false;       ///< plots also as PDF
 };
 
-/// Writes the page, and with `plots` the charts, and prints which files. Throws UserError for a directory that is
-/// no result, a program that was built without the scripts of the page, and files that cannot be written; an older
-/// page stays as it was then.
+/// Writes the page, and with `plots` the charts, and prints which files. Throws UserError for a directory
+/// that is no result, a program that was built without the scripts of the page, and files that cannot be
+/// written; an older page stays as it was then.
 void report_command(const ReportArguments& arguments, void (*print)(const std::string&));
 
 }  // namespace marti::studies

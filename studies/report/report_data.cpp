@@ -14,17 +14,20 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view expected =
-    "; expected is the directory of `marti run CONFIG -o DIR`, `marti sweep CONFIG -o DIR` or `marti study ... -o "
+    "; expected is the directory of `marti run CONFIG -o DIR`, `marti sweep CONFIG -o DIR` or `marti study "
+    "... -o "
     "DIR`";
 
-// Both have a results.sqlite, with other columns in the table that describes the others. Whoever reads the file
-// says what else is wrong with it.
+// Both have a results.sqlite, with other columns in the table that describes the others. Whoever reads the
+// file says what else is wrong with it.
 bool is_study(const fs::path& file) {
   check_store_file(file);
   std::error_code ignored;
   const bool has_log = fs::exists(file.string() + "-wal", ignored);
-  SqliteConnection connection(file, has_log ? SqliteConnection::Access::read : SqliteConnection::Access::read_alone);
-  return connection.integer("SELECT count(*) FROM pragma_table_info('columns') WHERE name = 'table_name'") > 0;
+  SqliteConnection connection(
+      file, has_log ? SqliteConnection::Access::read : SqliteConnection::Access::read_alone);
+  return connection.integer("SELECT count(*) FROM pragma_table_info('columns') WHERE name = 'table_name'") >
+         0;
 }
 
 }  // namespace
@@ -44,9 +47,10 @@ ReportData read_report(const fs::path& directory) {
   const fs::path run = directory / "result.json";
   const fs::path database = directory / "results.sqlite";
   if (is_there(run) && is_there(database)) {
-    throw sim::UserError(directory.string() +
-                         ": holds both a run (result.json) and a sweep or study (results.sqlite); move one of them "
-                         "to a directory of its own");
+    throw sim::UserError(
+        directory.string() +
+        ": holds both a run (result.json) and a sweep or study (results.sqlite); move one of them "
+        "to a directory of its own");
   }
   if (is_there(run)) {
     return read_run_report(directory);

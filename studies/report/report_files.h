@@ -20,8 +20,8 @@ namespace marti::studies {
 /// A PNG file of at most 16 MiB. UserError when it cannot be read or is none.
 [[nodiscard]] ReportImage read_image(const std::filesystem::path& file, const std::string& title);
 
-/// A chart that a run or a study has written. UserError unless it is a Vega-Lite specification whose rows stand
-/// in data.values, an object each, and that asks for nothing from outside the file.
+/// A chart that a run or a study has written. UserError unless it is a Vega-Lite specification whose rows
+/// stand in data.values, an object each, and that asks for nothing from outside the file.
 [[nodiscard]] ReportChart read_chart(const std::filesystem::path& file);
 
 }  // namespace marti::studies

@@ -1,5 +1,5 @@
-// One reader for each kind of directory that a report is made of. All throw UserError, naming the file and what
-// to do.
+// One reader for each kind of directory that a report is made of. All throw UserError, naming the file and
+// what to do.
 #pragma once
 
 #include <filesystem>
@@ -15,8 +15,8 @@ namespace marti::studies {
 /// A directory of `marti sweep -o`: results.sqlite.
 [[nodiscard]] ReportData read_sweep_report(const std::filesystem::path& directory);
 
-/// A directory of `marti study ... -o`: results.sqlite, and beside it *.vl.json, *.png and report.txt where they
-/// are there.
+/// A directory of `marti study ... -o`: results.sqlite, and beside it *.vl.json, *.png and report.txt where
+/// they are there.
 [[nodiscard]] ReportData read_study_report(const std::filesystem::path& directory);
 
 }  // namespace marti::studies

@@ -44,7 +44,8 @@ std::vector<std::string_view> page_scripts(std::span<const Script> scripts) {
 Json data_of(const ReportData& report) {
   Json data = {{"kind", report.kind}, {"charts", Json::array()}};
   for (const ReportChart& chart : report.charts) {
-    Json& each = data["charts"].emplace_back(Json{{"name", chart.name}, {"title", chart.title}, {"spec", chart.spec}});
+    Json& each =
+        data["charts"].emplace_back(Json{{"name", chart.name}, {"title", chart.title}, {"spec", chart.spec}});
     // By this name rows are exchanged.
     each["spec"]["data"]["name"] = "rows";
     if (chart.live.is_object() && report.explorer.is_object()) {
@@ -68,7 +69,8 @@ std::string fill(std::string_view page, const std::map<std::string_view, std::st
       break;
     }
     const std::size_t end = page.find("}}", begin);
-    const auto part = end == std::string_view::npos ? parts.end() : parts.find(page.substr(begin + 2, end - begin - 2));
+    const auto part =
+        end == std::string_view::npos ? parts.end() : parts.find(page.substr(begin + 2, end - begin - 2));
     sim::ensure(part != parts.end(), "the report's page asks for a part that there is not");
     filled += part->second;
     page.remove_prefix(end + 2);
@@ -92,8 +94,9 @@ std::string report_page(const ReportData& report, std::span<const Script> script
   std::string sections;
   for (const PageSection& section : page_sections(report)) {
     contents += "<li><a href=\"#" + section.id + "\">" + section.title + "</a></li>\n";
-    sections += "<section id=\"" + section.id + "\" aria-labelledby=\"title-of-" + section.id + "\"><h2 id=\"title-of-" +
-                section.id + "\">" + section.title + "</h2>\n" + section.html + "</section>\n";
+    sections += "<section id=\"" + section.id + "\" aria-labelledby=\"title-of-" + section.id +
+                "\"><h2 id=\"title-of-" + section.id + "\">" + section.title + "</h2>\n" + section.html +
+                "</section>\n";
   }
   return fill(report_page_html(), {{"policy", policy},
                                    {"version", html_text(version)},

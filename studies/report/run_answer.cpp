@@ -61,7 +61,8 @@ std::string bound_sentence(const RunJson& run) {
     return {};
   }
   return fmt::format(
-      "No machine with this work can be faster than {} ({}): better waiting and balance could gain {:.1f} % at most.",
+      "No machine with this work can be faster than {} ({}): better waiting and balance could gain {:.1f} % "
+      "at most.",
       time_text(*least), words(run.text("machine.bounds.by")), 100.0 * std::max(0.0, 1.0 - *least / *end));
 }
 

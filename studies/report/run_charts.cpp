@@ -128,7 +128,8 @@ Table tree_table(const RunJson& run) {
   std::int64_t level = 0;
   for (const RunJson& each : run.list("structure.levels")) {
     const std::int64_t empty = whole(each, "empty_leaves");
-    table.add_row({++level, whole(each, "branches"), plus(whole(each, "leaves"), -empty), empty, whole(each, "entries")});
+    table.add_row({++level, whole(each, "branches"), plus(whole(each, "leaves"), -empty), empty,
+                   whole(each, "entries")});
   }
   return table;
 }
@@ -154,7 +155,7 @@ Table memory_table(const RunJson& run) {
               {{"record", ColumnType::text, "", "kind of record"},
                {"records", ColumnType::integer, "1", "how many"},
                {"bytes", ColumnType::integer, "byte", "records by their size, without alignment"}});
-  const std::int64_t quadrics = 
+  const std::int64_t quadrics =
       plus(plus(whole(run, "scene.spheres"), whole(run, "scene.cylinders")), whole(run, "scene.cones"));
   const std::tuple<const char*, const char*, std::int64_t> kinds[] = {
       {"nodes", "layout.node", whole(run, "structure.nodes")},
@@ -223,7 +224,8 @@ void add_histogram(const RunJson& waits, Histogram& histogram) {
     return;
   }
   for (const Json& bucket : buckets) {
-    if (bucket.is_array() && bucket.size() == 3 && bucket[1].is_number_integer() && bucket[2].is_number_integer()) {
+    if (bucket.is_array() && bucket.size() == 3 && bucket[1].is_number_integer() &&
+        bucket[2].is_number_integer()) {
       std::int64_t& count = histogram[bucket[1].get<std::int64_t>()];
       count = plus(count, bucket[2].get<std::int64_t>());
     }

@@ -116,8 +116,9 @@ RunJson read_run_json(const std::filesystem::path& path) {
     refuse(file, "has no number \"marti.schema\"");
   }
   if (found != schema) {
-    throw sim::UserError(file + ": is a result of schema " + found.dump() + ", but this program reads schema " +
-                         std::to_string(schema) + "; report it with the program that wrote it");
+    throw sim::UserError(file + ": is a result of schema " + found.dump() +
+                         ", but this program reads schema " + std::to_string(schema) +
+                         "; report it with the program that wrote it");
   }
   for (const char* part : {"config.keys", "scene", "structure", "image", "work_log", "plan", "machine"}) {
     (void)run.at(part);

@@ -22,7 +22,8 @@ void add_configuration(const RunJson& run, ReportData& report) {
     const std::string line = key + " = " + each.text("value") + "\n";
     (each.boolean("given") ? report.configuration : defaults) += line;
   }
-  report.configuration = "# given in the file or by --set\n" + report.configuration + "\n# defaults\n" + defaults;
+  report.configuration =
+      "# given in the file or by --set\n" + report.configuration + "\n# defaults\n" + defaults;
 }
 
 Table plan_table(const RunJson& run) {
@@ -43,13 +44,14 @@ Table plan_table(const RunJson& run) {
 }
 
 Table figures_table(const RunJson& run) {
-  Table table("figures", "Figures of the run",
-              {{"figure", ColumnType::text, "", "field of result.json"}, {"value", ColumnType::text, "", ""}});
+  Table table(
+      "figures", "Figures of the run",
+      {{"figure", ColumnType::text, "", "field of result.json"}, {"value", ColumnType::text, "", ""}});
   for (const char* part : {"scene", "structure", "image", "work_log", "machine"}) {
     for (const auto& [name, value] : run.at(part).items()) {
       if (value.is_number() || value.is_boolean() || value.is_string()) {
-        table.add_row({fmt::format("{}.{}", part, name),
-                       value.is_string() ? value.get<std::string>() : value.dump()});
+        table.add_row(
+            {fmt::format("{}.{}", part, name), value.is_string() ? value.get<std::string>() : value.dump()});
       }
     }
   }

@@ -41,8 +41,8 @@ Descriptions descriptions_of(SqliteConnection& connection) {
 
 std::vector<std::string> tables_of(SqliteConnection& connection) {
   std::vector<std::string> names;
-  SqliteStatement rows(connection,
-                       "SELECT name FROM sqlite_schema WHERE type = 'table' AND name <> 'columns' ORDER BY rowid");
+  SqliteStatement rows(
+      connection, "SELECT name FROM sqlite_schema WHERE type = 'table' AND name <> 'columns' ORDER BY rowid");
   while (rows.next()) {
     names.push_back(rows.text(0));
   }
@@ -50,11 +50,14 @@ std::vector<std::string> tables_of(SqliteConnection& connection) {
 }
 
 ColumnType type_of(const std::string& declared) {
-  return declared == "INTEGER" ? ColumnType::integer : declared == "REAL" ? ColumnType::real : ColumnType::text;
+  return declared == "INTEGER" ? ColumnType::integer
+         : declared == "REAL"  ? ColumnType::real
+                               : ColumnType::text;
 }
 
 bool is_plain(const std::string& name) {
-  return !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
+  return !name.empty() &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
 }
 
 // SQLite keeps what was put in, whatever its column says.
@@ -94,9 +97,10 @@ Table read_table(SqliteConnection& connection, const fs::path& file, const std::
   SqliteStatement rows(connection, "SELECT * FROM " + sql_name(name));
   while (rows.next()) {
     if (rows_left == 0) {
-      throw sim::UserError(fmt::format("{}: has more than {} rows, too many for one page; read the tables with "
-                                       "sqlite3 or from the .csv files",
-                                       file.string(), most_rows));
+      throw sim::UserError(
+          fmt::format("{}: has more than {} rows, too many for one page; read the tables with "
+                      "sqlite3 or from the .csv files",
+                      file.string(), most_rows));
     }
     --rows_left;
     std::vector<Cell> cells;

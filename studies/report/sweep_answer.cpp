@@ -85,8 +85,8 @@ std::string speed_text(const ReportPoint& point) {
   if (!point.has("speed_up")) {
     return {};
   }
-  return fmt::format(", {:.2f} times as fast as its base machine (efficiency {:.0f} %)", point.figure("speed_up"),
-                     100.0 * point.figure("efficiency"));
+  return fmt::format(", {:.2f} times as fast as its base machine (efficiency {:.0f} %)",
+                     point.figure("speed_up"), 100.0 * point.figure("efficiency"));
 }
 
 }  // namespace
@@ -132,7 +132,8 @@ std::string limit_sentence(const ReportPoint& point) {
        "fewer misses or faster memory would help"},
       {share({"dispatch_wait"}), "waiting for packets or for the initial tree",
        "larger packets or a faster host would help"},
-      {share({"lock_wait"}), "waiting for branches that others split", "a higher build.initial_level would help"},
+      {share({"lock_wait"}), "waiting for branches that others split",
+       "a higher build.initial_level would help"},
       {share({"idle"}), "idling because the work is uneven at the end of the frame",
        "smaller packets or fewer nodes would help"},
       {share({"queue_full_wait"}), "waiting for room in a buffer or queue", "longer queues would help"},
@@ -141,7 +142,8 @@ std::string limit_sentence(const ReportPoint& point) {
        "computing", "more or faster nodes would help"}};
   const auto most = std::max_element(limits.begin(), limits.end(),
                                      [](const Limit& a, const Limit& b) { return a.share < b.share; });
-  return fmt::format("its nodes spend {:.1f} % of their time {}; {}", 100.0 * most->share, most->what, most->remedy);
+  return fmt::format("its nodes spend {:.1f} % of their time {}; {}", 100.0 * most->share, most->what,
+                     most->remedy);
 }
 
 std::vector<std::string> answer_of(const SweepPoints& sweep, const Chosen& chosen) {
@@ -149,26 +151,28 @@ std::vector<std::string> answer_of(const SweepPoints& sweep, const Chosen& chose
   const ReportPoint& knee = sweep.points[chosen.knee];
   const std::string unit = sweep.priced ? "at a price of" : "with a node count of";
   std::vector<std::string> answer;
-  answer.push_back(fmt::format("The fastest of {} machines takes {} a frame{} {} {:g}: {}.", sweep.points.size(),
-                               time_text(fastest.figure("end")), speed_text(fastest), unit,
-                               price_of(fastest), place_text(sweep, fastest)));
+  answer.push_back(fmt::format("The fastest of {} machines takes {} a frame{} {} {:g}: {}.",
+                               sweep.points.size(), time_text(fastest.figure("end")), speed_text(fastest),
+                               unit, price_of(fastest), place_text(sweep, fastest)));
   answer.push_back(fmt::format("What limits it: {}.", limit_sentence(fastest)));
   if (chosen.knee != chosen.fastest) {
     const double time = knee.figure("end") / fastest.figure("end");
     const double price = price_of(knee) / std::max(price_of(fastest), 1e-12);
-    answer.push_back(fmt::format(
-        "Worth its price (the knee of the {} machines that no other beats in price and time): {} a frame{} {} {:g}, "
-        "{:.2f} times the time of the fastest for {:.1f} % of its price: {}.",
-        chosen.front.size(), time_text(knee.figure("end")), speed_text(knee), unit, price_of(knee), time,
-        100.0 * price, place_text(sweep, knee)));
+    answer.push_back(
+        fmt::format("Worth its price (the knee of the {} machines that no other beats in price and time): {} "
+                    "a frame{} {} {:g}, "
+                    "{:.2f} times the time of the fastest for {:.1f} % of its price: {}.",
+                    chosen.front.size(), time_text(knee.figure("end")), speed_text(knee), unit,
+                    price_of(knee), time, 100.0 * price, place_text(sweep, knee)));
     answer.push_back(fmt::format("What limits that one: {}.", limit_sentence(knee)));
   }
   if (const std::string steps = advice(sweep, knee); !steps.empty()) {
     answer.push_back(fmt::format("What to change there, one step at a time: {}.", steps));
   }
   if (sweep.points.size() < sweep.planned) {
-    answer.push_back(fmt::format("{} of {} points have been timed so far; run `marti sweep` again for the rest.",
-                                 sweep.points.size(), sweep.planned));
+    answer.push_back(
+        fmt::format("{} of {} points have been timed so far; run `marti sweep` again for the rest.",
+                    sweep.points.size(), sweep.planned));
   }
   return answer;
 }

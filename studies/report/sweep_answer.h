@@ -17,8 +17,8 @@ struct Chosen {
   std::vector<std::size_t> front;  ///< that no other beats in price and frame time, ascending by price
 };
 
-/// The price is the cost by [prices], or the number of nodes where all costs are equal. The knee is the point of
-/// the front that lies farthest below the line from its first to its last, both in logarithms.
+/// The price is the cost by [prices], or the number of nodes where all costs are equal. The knee is the point
+/// of the front that lies farthest below the line from its first to its last, both in logarithms.
 [[nodiscard]] Chosen choose(const SweepPoints& sweep);
 
 /// "machine.nodes = 16, cache.size = 16 KiB".

@@ -12,7 +12,6 @@ namespace {
 
 constexpr int samples_a_step = 4;
 
-
 // Between neighbours, and from the outer values one step as long as the one beside it.
 std::vector<double> samples_of(const ReportAxis& axis) {
   std::vector<double> values;
@@ -133,7 +132,8 @@ std::vector<AxisModel> model_sweep(const SweepPoints& sweep, std::size_t most_sa
     std::map<std::string, LineModel> fitted;
     for (auto& [key, points] : lines) {
       if (points.size() >= 2) {
-        const LineModel& line = fitted.emplace(key, LineModel(std::move(points), axis.logarithmic)).first->second;
+        const LineModel& line =
+            fitted.emplace(key, LineModel(std::move(points), axis.logarithmic)).first->second;
         errors.add(line, axis.logarithmic);
       }
     }

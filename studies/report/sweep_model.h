@@ -1,5 +1,5 @@
-// The analytic model of a whole sweep: for every numeric axis a curve through each line of points that differ in
-// that axis only, with the error that was measured by leaving points out.
+// The analytic model of a whole sweep: for every numeric axis a curve through each line of points that differ
+// in that axis only, with the error that was measured by leaving points out.
 #pragma once
 
 #include <cstddef>

@@ -22,11 +22,31 @@ namespace {
 // What a browser can be given as one page, and a person as one chart.
 constexpr std::size_t most_points = 20'000;
 
-constexpr std::string_view counters[] = {
-    "end", "nodes", "clusters", "packets", "database_bytes", "events", "hits", "misses", "interconnect_reads",
-    "interconnect_busy", "interconnect_links", "interconnect_bytes", "banks", "bank_busy", "speed_up",
-    "efficiency", "times_faster", "hit_ratio", "l2_hit_ratio", "interconnect_utilisation", "bank_utilisation",
-    "network_utilisation", "mean_interconnect_wait", "mean_bank_wait", "finish_balance"};
+constexpr std::string_view counters[] = {"end",
+                                         "nodes",
+                                         "clusters",
+                                         "packets",
+                                         "database_bytes",
+                                         "events",
+                                         "hits",
+                                         "misses",
+                                         "interconnect_reads",
+                                         "interconnect_busy",
+                                         "interconnect_links",
+                                         "interconnect_bytes",
+                                         "banks",
+                                         "bank_busy",
+                                         "speed_up",
+                                         "efficiency",
+                                         "times_faster",
+                                         "hit_ratio",
+                                         "l2_hit_ratio",
+                                         "interconnect_utilisation",
+                                         "bank_utilisation",
+                                         "network_utilisation",
+                                         "mean_interconnect_wait",
+                                         "mean_bank_wait",
+                                         "finish_balance"};
 
 constexpr std::string_view kinds[] = {"node", "list", "primitive", "material"};
 constexpr std::string_view waits[] = {"interconnect_wait", "bank_wait"};
@@ -58,8 +78,8 @@ void add_hit_ratios(ReportPoint& point) {
 }
 
 void add_groups(ReportPoint& point) {
-  const std::array<double, cycle_groups> parts = group_cycles(
-      [&](std::string_view activity) { return point.figure("share_" + std::string(activity)); });
+  const std::array<double, cycle_groups> parts =
+      group_cycles([&](std::string_view activity) { return point.figure("share_" + std::string(activity)); });
   for (std::size_t i = 0; i < parts.size(); ++i) {
     point.figures["part_" + std::string(cycle_group_names[i])] = parts[i];
   }
@@ -134,18 +154,18 @@ std::string text_of(const Cell& cell, const sim::Key* key) {
     if (key != nullptr && key->type == sim::ValueType::boolean) {
       return *integer != 0 ? "true" : "false";
     }
-    const bool real = key != nullptr && (key->type == sim::ValueType::real ||
-                                         key->type == sim::ValueType::frequency ||
-                                         key->type == sim::ValueType::percentage);
+    const bool real =
+        key != nullptr && (key->type == sim::ValueType::real || key->type == sim::ValueType::frequency ||
+                           key->type == sim::ValueType::percentage);
     const sim::Value value = real ? sim::Value(static_cast<double>(*integer)) : sim::Value(*integer);
     std::string text = key == nullptr ? std::to_string(*integer) : sim::print_value(key->type, value);
     std::erase(text, '"');
     return text;
   }
   if (const auto* real = std::get_if<double>(&cell)) {
-    const bool printable = key != nullptr && (key->type == sim::ValueType::real ||
-                                              key->type == sim::ValueType::frequency ||
-                                              key->type == sim::ValueType::percentage);
+    const bool printable =
+        key != nullptr && (key->type == sim::ValueType::real || key->type == sim::ValueType::frequency ||
+                           key->type == sim::ValueType::percentage);
     std::string text = printable ? sim::print_value(key->type, sim::Value(*real)) : fmt::format("{}", *real);
     std::erase(text, '"');
     return text;
@@ -179,9 +199,9 @@ ReportAxis make_axis(const AxisColumn& column, const sim::Schema& schema) {
   const std::optional<std::size_t> at = schema.find(column.name);
   const sim::Key* key = at ? &schema.keys()[*at] : nullptr;
   axis.unit = unit_of(key);
-  axis.numeric = !is_boolean(key) && std::all_of(axis.values.begin(), axis.values.end(), [](const Cell& cell) {
-    return number_of(cell).has_value();
-  });
+  axis.numeric =
+      !is_boolean(key) && std::all_of(axis.values.begin(), axis.values.end(),
+                                      [](const Cell& cell) { return number_of(cell).has_value(); });
   for (const Cell& value : axis.values) {
     axis.texts.push_back(text_of(value, key));
   }
@@ -209,7 +229,8 @@ double ReportPoint::figure(std::string_view name) const {
 }
 
 std::optional<std::size_t> SweepPoints::axis(std::string_view name) const {
-  const auto at = std::find_if(axes.begin(), axes.end(), [&](const ReportAxis& each) { return each.name == name; });
+  const auto at =
+      std::find_if(axes.begin(), axes.end(), [&](const ReportAxis& each) { return each.name == name; });
   return at == axes.end() ? std::nullopt : std::optional(static_cast<std::size_t>(at - axes.begin()));
 }
 
@@ -226,10 +247,11 @@ SweepPoints read_sweep_points(const std::filesystem::path& store) {
       return;
     }
     if (sweep.points.size() == most_points) {
-      throw sim::UserError(fmt::format("{}: has more than {} timed points, too many for one page; time a part of "
-                                       "them (sweep.filter) in a directory of its own, or read the store with "
-                                       "sqlite3",
-                                       store.string(), most_points));
+      throw sim::UserError(
+          fmt::format("{}: has more than {} timed points, too many for one page; time a part of "
+                      "them (sweep.filter) in a directory of its own, or read the store with "
+                      "sqlite3",
+                      store.string(), most_points));
     }
     ReportPoint point;
     point.ordinal = stored.ordinal;
@@ -244,8 +266,9 @@ SweepPoints read_sweep_points(const std::filesystem::path& store) {
     values.push_back(stored.values);
   });
   if (sweep.points.empty()) {
-    throw sim::UserError(store.string() +
-                         ": no point of the sweep has been timed yet; run `marti sweep` with the same -o first");
+    throw sim::UserError(
+        store.string() +
+        ": no point of the sweep has been timed yet; run `marti sweep` with the same -o first");
   }
   for (ReportPoint& point : sweep.points) {
     add_hit_ratios(point);

@@ -32,10 +32,10 @@ struct ReportPoint {
   std::int64_t ordinal = 0;
   std::int64_t machine = 0;
   double cost = 0.0;
-  std::vector<std::size_t> place;  ///< for each axis the index of its value
+  std::vector<std::size_t> place;                      ///< for each axis the index of its value
   std::map<std::string, double, std::less<>> figures;  ///< those that the point has
-  bool links_are_queues = false;  ///< its interconnect is a bus or a crossbar
-  bool banks_are_queues = false;  ///< and is not held while a bank works
+  bool links_are_queues = false;                       ///< its interconnect is a bus or a crossbar
+  bool banks_are_queues = false;                       ///< and is not held while a bank works
 
   /// 0 when the point has none of this name.
   [[nodiscard]] double figure(std::string_view name) const;
@@ -47,7 +47,7 @@ struct SweepPoints {
   std::vector<ReportAxis> axes;
   std::vector<ReportPoint> points;  ///< that have been timed, in the order of the plan
   std::size_t planned = 0;
-  bool priced = false;  ///< costs differ
+  bool priced = false;                                        ///< costs differ
   std::vector<std::pair<std::string, std::string>> settings;  ///< that all timed points share, by key
   std::vector<std::pair<std::string, std::string>> provenance;
 
@@ -55,11 +55,11 @@ struct SweepPoints {
 };
 
 /// Figures of a point: the counters that reports use, what the store's view `summary` derives, and
-/// "hit_ratio_node", "hit_ratio_list", "hit_ratio_primitive", "hit_ratio_material", "interconnect_wait_p50" and the
-/// like (p50, p95, p99; ps) of "interconnect_wait" and "bank_wait",
-/// "part_traversal" and the like (cycle_groups.h; shares of the nodes' time) and "price" (the cost by [prices], or the
-/// number of nodes where all costs are equal). Throws UserError when the store cannot be read,
-/// holds no timed point, or more than a page can show.
+/// "hit_ratio_node", "hit_ratio_list", "hit_ratio_primitive", "hit_ratio_material", "interconnect_wait_p50"
+/// and the like (p50, p95, p99; ps) of "interconnect_wait" and "bank_wait", "part_traversal" and the like
+/// (cycle_groups.h; shares of the nodes' time) and "price" (the cost by [prices], or the number of nodes
+/// where all costs are equal). Throws UserError when the store cannot be read, holds no timed point, or more
+/// than a page can show.
 [[nodiscard]] SweepPoints read_sweep_points(const std::filesystem::path& store);
 
 }  // namespace marti::studies

@@ -30,24 +30,27 @@ struct SliceChart {
 
 std::vector<SliceChart> charts_over_nodes() {
   std::vector<std::string> parts;
-  for (const char* part :
-       {"traversal", "intersection", "shading_and_building", "cache_access_and_switching", "transfer_and_bank",
-        "interconnect_wait", "bank_wait", "other_waits", "idle"}) {
+  for (const char* part : {"traversal", "intersection", "shading_and_building", "cache_access_and_switching",
+                           "transfer_and_bank", "interconnect_wait", "bank_wait", "other_waits", "idle"}) {
     parts.push_back(std::string("part_") + part);
   }
-  return {{"efficiency", "Efficiency", "Speed-up by the number of nodes; 100 % is the dashed line.", {"efficiency"}},
-          {"cycles", "Where the cycles go", "All nodes' time from 0 to the end of the frame; it adds up to 100 %.",
-           parts},
-          {"utilisation",
-           "How busy the shared parts are",
-           "What comes near 100 % limits the machine.",
-           {"interconnect_utilisation", "bank_utilisation", "network_utilisation"}},
-          {"waits",
-           "How long nodes wait for shared parts",
-           "Means are exact; a percentile is the upper end of its bucket of the histogram, at most an eighth too "
-           "long.",
-           {"mean_interconnect_wait", "interconnect_wait_p50", "interconnect_wait_p95", "interconnect_wait_p99",
-            "mean_bank_wait", "bank_wait_p50", "bank_wait_p95", "bank_wait_p99"}}};
+  return {
+      {"efficiency",
+       "Efficiency",
+       "Speed-up by the number of nodes; 100 % is the dashed line.",
+       {"efficiency"}},
+      {"cycles", "Where the cycles go",
+       "All nodes' time from 0 to the end of the frame; it adds up to 100 %.", parts},
+      {"utilisation",
+       "How busy the shared parts are",
+       "What comes near 100 % limits the machine.",
+       {"interconnect_utilisation", "bank_utilisation", "network_utilisation"}},
+      {"waits",
+       "How long nodes wait for shared parts",
+       "Means are exact; a percentile is the upper end of its bucket of the histogram, at most an eighth too "
+       "long.",
+       {"mean_interconnect_wait", "interconnect_wait_p50", "interconnect_wait_p95", "interconnect_wait_p99",
+        "mean_bank_wait", "bank_wait_p50", "bank_wait_p95", "bank_wait_p99"}}};
 }
 
 const std::vector<std::string>& hit_ratios() {
@@ -78,7 +81,8 @@ class Charts {
 
   void add_explorer(const AxisModel* model, std::size_t axis) {
     const Table rows = explorer_rows(sweep_, model, axis, through_);
-    for (const auto& [name, title] : {std::pair("frame_time", "Frame time"), std::pair("speed_up", "Speed-up")}) {
+    for (const auto& [name, title] :
+         {std::pair("frame_time", "Frame time"), std::pair("speed_up", "Speed-up")}) {
       ReportChart chart = make_chart(name, rows, note_of(model));
       chart.name = name;
       chart.title = fmt::format("{} over {}", title, sweep_.axes[axis].name);
@@ -134,8 +138,8 @@ class Charts {
       const bool front = std::find(chosen.front.begin(), chosen.front.end(), i) != chosen.front.end();
       table.add_row({point.ordinal, point.figure("price"), point.figure("end") * 1e-9, std::int64_t{front}});
     }
-    ReportChart chart = make_chart("price", table,
-                                   "Every machine of the sweep; the line joins those that no other beats in both.");
+    ReportChart chart = make_chart(
+        "price", table, "Every machine of the sweep; the line joins those that no other beats in both.");
     chart.spec["encoding"]["x"]["title"] = sweep_.priced ? "price" : "nodes";
     const bool has_free = std::any_of(sweep_.points.begin(), sweep_.points.end(),
                                       [](const ReportPoint& point) { return point.figure("price") <= 0.0; });
@@ -155,10 +159,12 @@ class Charts {
       const ModelError& error = model->end[static_cast<std::size_t>(zone)];
       return error.points == 0
                  ? std::string()
-                 : fmt::format(" {}: {:.1f} % on average, 95 % of them below {:.1f} % ({} points left out once).",
-                               where, 100.0 * error.mean, 100.0 * error.p95, error.points);
+                 : fmt::format(
+                       " {}: {:.1f} % on average, 95 % of them below {:.1f} % ({} points left out once).",
+                       where, 100.0 * error.mean, 100.0 * error.p95, error.points);
     };
-    return "Points are simulated, the curve is modelled. Error of the model's frame times, measured on this sweep." +
+    return "Points are simulated, the curve is modelled. Error of the model's frame times, measured on this "
+           "sweep." +
            said(Zone::between, " Between points") + said(Zone::beyond, " One step beyond them");
   }
 
@@ -249,7 +255,8 @@ Table error_table(const SweepPoints& sweep, std::span<const AxisModel> models) {
                {"p95", ColumnType::real, "fraction", "95th percentile, the band that is shown"}});
   for (const AxisModel& model : models) {
     for (const Zone zone : {Zone::between, Zone::beyond}) {
-      for (const auto& [figure, errors] : {std::pair("frame time", model.end), std::pair("speed-up", model.speed_up)}) {
+      for (const auto& [figure, errors] :
+           {std::pair("frame time", model.end), std::pair("speed-up", model.speed_up)}) {
         const ModelError& error = errors[static_cast<std::size_t>(zone)];
         table.add_row({sweep.axes[model.axis].name, std::string(figure),
                        std::string(zone == Zone::between ? "between" : "beyond"),
@@ -263,7 +270,8 @@ Table error_table(const SweepPoints& sweep, std::span<const AxisModel> models) {
 
 // The axis that the page begins with: nodes, else the first of numbers.
 std::optional<std::size_t> first_axis(const SweepPoints& sweep) {
-  if (const std::optional<std::size_t> nodes = sweep.axis("machine.nodes"); nodes && sweep.axes[*nodes].numeric) {
+  if (const std::optional<std::size_t> nodes = sweep.axis("machine.nodes");
+      nodes && sweep.axes[*nodes].numeric) {
     return nodes;
   }
   for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
@@ -286,8 +294,8 @@ ReportData read_sweep_report(const std::filesystem::path& directory) {
   report.answer = answer_of(sweep, chosen);
   Charts charts(sweep, sweep.points[chosen.knee], report);
   if (const std::optional<std::size_t> axis = first_axis(sweep)) {
-    const auto model = std::find_if(models.begin(), models.end(),
-                                    [&](const AxisModel& each) { return each.axis == *axis; });
+    const auto model =
+        std::find_if(models.begin(), models.end(), [&](const AxisModel& each) { return each.axis == *axis; });
     charts.add_explorer(model == models.end() ? nullptr : &*model, *axis);
     for (const SliceChart& slice : charts_over_nodes()) {
       charts.add_slice(slice, *axis, std::string(slice.name));
@@ -296,8 +304,8 @@ ReportData read_sweep_report(const std::filesystem::path& directory) {
   }
   for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
     if (bears_on_caches(sweep.axes[i].name)) {
-      charts.add_slice({"hit_ratio", "Hit ratio", "Of all references of the first level, and by kind of record.",
-                        hit_ratios()},
+      charts.add_slice({"hit_ratio", "Hit ratio",
+                        "Of all references of the first level, and by kind of record.", hit_ratios()},
                        i, "hit_ratio_" + plain(sweep.axes[i].name));
     }
   }
