@@ -33,10 +33,6 @@ double factor_of(const ModelError* errors, Zone zone) {
   return 1.0 + errors[static_cast<std::size_t>(zone)].p95;
 }
 
-std::string zone_name(const Modelled& sample, double x, const ReportAxis& axis) {
-  return sample.zone == Zone::between ? "between" : x < axis.number(0) ? "below" : "above";
-}
-
 // Speed-up that is the number of nodes: how many of them a unit of the axis is.
 double ideal_of(const ReportPoint& point, const ReportAxis& axis, std::size_t place) {
   const double efficiency = point.figure("efficiency");
@@ -107,26 +103,37 @@ Table rows_table() {
            {"ideal", ColumnType::real, "1", "speed-up that is the number of nodes"}}};
 }
 
-void add_model_rows(Table& table, const SweepPoints& sweep, const AxisModel& model, const Curve& curve,
+void add_sample(Table& table, const AxisModel& model, const Modelled& sample, double x, Zone zone,
+                const std::string& zone_name, double ideal) {
+  const double ms = sample.end * ms_a_ps;
+  const double factor = factor_of(model.end, zone);
+  const bool has_speed_up =
+      sample.base_end > 0.0 && model.speed_up[static_cast<std::size_t>(zone)].points > 0;
+  const double speed_up = has_speed_up ? sample.base_end / sample.end : NAN;
+  const double speed_factor = factor_of(model.speed_up, zone);
+  table.add_row({"model", zone_name, x, Cell(), ms, ms / factor, ms * factor, sample.asymptote * ms_a_ps,
+                 cell_of(speed_up), cell_of(speed_up / speed_factor), cell_of(speed_up * speed_factor),
+                 cell_of(has_speed_up && sample.asymptote > 0.0 ? sample.base_end / sample.asymptote : NAN),
+                 ideal > 0.0 ? Cell(ideal * x) : Cell()});
+}
+
+// The outer points are in two zones, so that their curves meet.
+void add_model_rows(Table& table, const AxisModel& model, const Curve& curve, double first, double last,
                     double ideal) {
-  const ReportAxis& axis = sweep.axes[model.axis];
   for (std::size_t i = 0; i < model.x.size(); ++i) {
     if (!curve.samples[i]) {
       continue;
     }
-    const Modelled& sample = *curve.samples[i];
     const double x = model.x[i];
-    const double ms = sample.end * ms_a_ps;
-    const double factor = factor_of(model.end, sample.zone);
-    const bool has_speed_up =
-        sample.base_end > 0.0 && model.speed_up[static_cast<std::size_t>(sample.zone)].points > 0;
-    const double speed_up = has_speed_up ? sample.base_end / sample.end : NAN;
-    const double speed_factor = factor_of(model.speed_up, sample.zone);
-    table.add_row({"model", zone_name(sample, x, axis), x, Cell(), ms, ms / factor, ms * factor,
-                   sample.asymptote * ms_a_ps, cell_of(speed_up), cell_of(speed_up / speed_factor),
-                   cell_of(speed_up * speed_factor),
-                   cell_of(has_speed_up && sample.asymptote > 0.0 ? sample.base_end / sample.asymptote : NAN),
-                   ideal > 0.0 ? Cell(ideal * x) : Cell()});
+    if (x <= first && model.has_band(Zone::beyond)) {
+      add_sample(table, model, *curve.samples[i], x, Zone::beyond, "below", ideal);
+    }
+    if (x >= first && x <= last && model.has_band(Zone::between)) {
+      add_sample(table, model, *curve.samples[i], x, Zone::between, "between", ideal);
+    }
+    if (x >= last && model.has_band(Zone::beyond)) {
+      add_sample(table, model, *curve.samples[i], x, Zone::beyond, "above", ideal);
+    }
   }
 }
 
@@ -217,7 +224,7 @@ Table explorer_rows(const SweepPoints& sweep, const AxisModel* model, std::size_
   if (model != nullptr) {
     if (const auto curve = model->curves.find(key); curve != model->curves.end()) {
       add_zones(table, *model, curve->second, first, last);
-      add_model_rows(table, sweep, *model, curve->second, ideal);
+      add_model_rows(table, *model, curve->second, first, last, ideal);
     }
   }
   for (const ReportPoint* point : line) {

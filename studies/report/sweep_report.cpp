@@ -312,7 +312,8 @@ ReportData read_sweep_report(const std::filesystem::path& directory) {
   if (sweep.points.size() > 1) {
     charts.add_prices(chosen);
   }
-  report.tables.push_back({front_table(sweep, chosen), false});
+  constexpr std::size_t few = 12;
+  report.tables.push_back({front_table(sweep, chosen), chosen.front.size() > few});
   if (!models.empty()) {
     report.tables.push_back({error_table(sweep, models), true});
   }

@@ -44,7 +44,7 @@ marti.explorer = (() => {
       const speedUp = explorer.columns.speed_up && explorer.columns.speed_up[point];
       text += speedUp ? `, speed-up ${digits(speedUp)}.` : ".";
     } else {
-      const row = explorer.models[state.axis] ? marti.rows.sample(explorer, state.axis, state.place, state.x) : null;
+      const row = marti.rows.samples(explorer, state.axis, state.place, state.x)[0];
       if (!row) {
         text += "this machine was not timed, and the model has no measured error here.";
       } else {

@@ -14,26 +14,37 @@ marti.rows = (() => {
     return found.sort((a, b) => explorer.place[axis][a] - explorer.place[axis][b]);
   }
 
-  /** The model at sample `i` of a curve, with its band; null where there is none. */
-  function sample(explorer, axis, place, i) {
-    const model = explorer.models[axis];
-    const curve = model && model.curves[key(place, axis)];
-    if (!curve || curve.ms[i] === null || curve.ms[i] === undefined) return null;
-    const xs = line(explorer, axis, place).map((p) => explorer.axes[axis].values[explorer.place[axis][p]]);
-    const x = model.x[i];
-    const zone = x < xs[0] ? "below" : x > xs[xs.length - 1] ? "above" : "between";
+  /** What the model says at sample `i` of a curve, with the band of a zone: "below", "between" or "above". */
+  function banded(model, curve, i, zone) {
     const which = zone === "between" ? "between" : "beyond";
     const factor = 1 + model.error[which].p95;
     const base = Array.isArray(curve.base) ? curve.base[i] : curve.base;
-    const row = { kind: "model", zone, x, ms: curve.ms[i], ms_low: curve.ms[i] / factor, ms_high: curve.ms[i] * factor, ms_bound: curve.bound[i] };
+    const ms = curve.ms[i];
+    const row = { kind: "model", zone, x: model.x[i], ms, ms_low: ms / factor, ms_high: ms * factor, ms_bound: curve.bound[i] };
     if (base > 0 && model.speed_up_error[which].points > 0) {
       const speedFactor = 1 + model.speed_up_error[which].p95;
-      row.speed_up = base / curve.ms[i];
+      row.speed_up = base / ms;
       row.speed_up_low = row.speed_up / speedFactor;
       row.speed_up_high = row.speed_up * speedFactor;
       row.speed_up_bound = curve.bound[i] > 0 ? base / curve.bound[i] : null;
     }
     return row;
+  }
+
+  /** Rows of sample `i`: none where there is no curve or no measured error, two at the outer points. */
+  function samples(explorer, axis, place, i) {
+    const model = explorer.models[axis];
+    const curve = model && model.curves[key(place, axis)];
+    if (!curve || curve.ms[i] === null || curve.ms[i] === undefined) return [];
+    const xs = line(explorer, axis, place).map((p) => explorer.axes[axis].values[explorer.place[axis][p]]);
+    const first = xs[0];
+    const last = xs[xs.length - 1];
+    const x = model.x[i];
+    const zones = [];
+    if (x <= first && model.error.beyond.points > 0) zones.push("below");
+    if (x >= first && x <= last && model.error.between.points > 0) zones.push("between");
+    if (x >= last && model.error.beyond.points > 0) zones.push("above");
+    return zones.map((zone) => banded(model, curve, i, zone));
   }
 
   /** Speed-up that is the number of nodes, for a unit of the axis; 0 when it is no axis of nodes. */
@@ -56,13 +67,13 @@ marti.rows = (() => {
     const unit = ideal(explorer, axis, points);
     const rows = [];
     if (curve) {
-      const samples = model.x.map((_, i) => sample(explorer, axis, place, i)).filter((row) => row);
-      const low = Math.min(xs[0], ...samples.map((row) => row.x));
-      const high = Math.max(xs[xs.length - 1], ...samples.map((row) => row.x));
+      const modelled = model.x.flatMap((_, i) => samples(explorer, axis, place, i));
+      const low = Math.min(xs[0], ...modelled.map((row) => row.x));
+      const high = Math.max(xs[xs.length - 1], ...modelled.map((row) => row.x));
       if (low < xs[0]) rows.push({ kind: "zone", zone: "below", x: low, x2: xs[0] });
       if (high > xs[xs.length - 1]) rows.push({ kind: "zone", zone: "above", x: xs[xs.length - 1], x2: high });
       if (curve.saturation >= low && curve.saturation <= high) rows.push({ kind: "saturation", x: curve.saturation });
-      for (const row of samples) rows.push(unit > 0 ? { ...row, ideal: unit * row.x } : row);
+      for (const row of modelled) rows.push(unit > 0 ? { ...row, ideal: unit * row.x } : row);
     }
     points.forEach((p, i) => {
       const row = { kind: "exact", zone: "between", x: xs[i], ms: explorer.columns.end[p] };
@@ -94,5 +105,5 @@ marti.rows = (() => {
     }));
   }
 
-  return { line, sample, explore, slice, all };
+  return { line, samples, explore, slice, all };
 })();
