@@ -38,12 +38,12 @@ export function makeReports() {
   return reports;
 }
 
-/** A CSV text (RFC 4180) as objects by column; numbers are numbers, nothing is null. */
+/** A CSV text (RFC 4180) as objects by column; numbers are numbers, nothing and an empty text are null. */
 export function parseCsv(text) {
   const rows = [[]];
   for (const [, quoted, plain, end] of text.matchAll(/(?:"((?:[^"]|"")*)"|([^",\r\n]*))(,|\r?\n|$)/g)) {
     if (quoted === undefined && plain === "" && end === "" && rows.at(-1).length === 0) break;
-    rows.at(-1).push(quoted !== undefined ? quoted.replaceAll('""', '"') : cell(plain));
+    rows.at(-1).push(quoted ? quoted.replaceAll('""', '"') : cell(plain ?? ""));
     if (end === "") break;
     if (end !== ",") rows.push([]);
   }
