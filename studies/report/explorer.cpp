@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/report/cycle_groups.h"
+#include "studies/report/rounded.h"
 
 namespace marti::studies {
 
@@ -16,16 +17,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double ms_a_ps = 1e-9;
 constexpr double us_a_ps = 1e-6;
-
-// So many digits are enough for a curve, and short in the page.
-double rounded(double value, int digits) {
-  if (value == 0.0 || !std::isfinite(value)) {
-    return value;
-  }
-  return std::stod(fmt::format("{:.{}g}", value, digits));
-}
-
-constexpr int curve_digits = 5;
 
 Cell cell_of(double value) { return std::isfinite(value) ? Cell(value) : Cell(); }
 
@@ -45,9 +36,8 @@ Json error_json(const ModelError* errors) {
   Json json = Json::object();
   for (const Zone zone : {Zone::between, Zone::beyond}) {
     const ModelError& error = errors[static_cast<std::size_t>(zone)];
-    json[zone == Zone::between ? "between" : "beyond"] = {{"points", error.points},
-                                                          {"mean", rounded(error.mean, curve_digits)},
-                                                          {"p95", rounded(error.p95, curve_digits)}};
+    json[zone == Zone::between ? "between" : "beyond"] = {
+        {"points", error.points}, {"mean", error.mean}, {"p95", error.p95}};
   }
   return json;
 }
@@ -58,7 +48,7 @@ Json model_json(const AxisModel& model) {
                {"speed_up_error", error_json(model.speed_up)},
                {"curves", Json::object()}};
   for (const double x : model.x) {
-    json["x"].push_back(rounded(x, 9));
+    json["x"].push_back(x);
   }
   for (const auto& [key, curve] : model.curves) {
     Json ms = Json::array();
@@ -68,7 +58,7 @@ Json model_json(const AxisModel& model) {
     double first_base = -1.0;
     for (const std::optional<Modelled>& sample : curve.samples) {
       ms.push_back(sample ? Json(rounded(sample->end * ms_a_ps, curve_digits)) : Json());
-      base.push_back(sample ? Json(rounded(sample->base_end * ms_a_ps, curve_digits)) : Json());
+      base.push_back(sample ? Json(rounded(sample->base_end * ms_a_ps, place_digits)) : Json());
       bound.push_back(sample ? Json(rounded(sample->asymptote * ms_a_ps, curve_digits)) : Json());
       if (sample) {
         first_base = first_base < 0.0 ? sample->base_end : first_base;
@@ -76,9 +66,9 @@ Json model_json(const AxisModel& model) {
       }
     }
     Json each = {{"ms", ms}, {"bound", bound}};
-    each["base"] = one_base ? Json(rounded(std::max(first_base, 0.0) * ms_a_ps, 9)) : base;
+    each["base"] = one_base ? Json(rounded(std::max(first_base, 0.0) * ms_a_ps, place_digits)) : base;
     if (curve.saturation) {
-      each["saturation"] = rounded(*curve.saturation, curve_digits);
+      each["saturation"] = *curve.saturation;
     }
     json["curves"][key] = each;
   }
@@ -169,11 +159,19 @@ void add_zones(Table& table, const AxisModel& model, const Curve& curve, double 
 
 }  // namespace
 
+std::optional<double> shown(const ExplorerField& field, const ReportPoint& point) {
+  if (!point.has(field.name)) {
+    return std::nullopt;
+  }
+  const double value = point.figure(field.name) * field.scale;
+  return field.exact ? value : rounded(value, figure_digits);
+}
+
 std::vector<ExplorerField> explorer_fields(const SweepPoints& sweep) {
   std::vector<ExplorerField> fields = {
-      {"end", "ms", "frame time", ms_a_ps},
-      {"speed_up", "1", "speed-up over the base machine"},
-      {"efficiency", "fraction", "speed-up by the number of nodes"},
+      {"end", "ms", "frame time", ms_a_ps, true},
+      {"speed_up", "1", "speed-up over the base machine", 1.0, true},
+      {"efficiency", "fraction", "speed-up by the number of nodes", 1.0, true},
       {"times_faster", "1", "frame time of the machine of [sweep.compare] by this one's"},
       {"price", "1", sweep.priced ? "cost by [prices]" : "number of nodes"},
       {"hit_ratio", "fraction", "hits by all references"},
@@ -304,9 +302,8 @@ Json explorer_json(const SweepPoints& sweep, std::span<const AxisModel> models, 
         {{"name", field.name}, {"unit", field.unit}, {"description", field.description}});
     Json column = Json::array();
     for (const ReportPoint& point : sweep.points) {
-      const bool exact = field.name == "end" || field.name == "speed_up";
-      const double value = point.figure(field.name) * field.scale;
-      column.push_back(point.has(field.name) ? Json(exact ? value : rounded(value, 6)) : Json());
+      const std::optional<double> value = shown(field, point);
+      column.push_back(value ? Json(*value) : Json());
     }
     json["columns"][field.name] = std::move(column);
   }

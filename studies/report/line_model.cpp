@@ -6,6 +6,7 @@
 
 #include "processors/closed_network.h"
 #include "sim/error.h"
+#include "studies/report/rounded.h"
 
 namespace marti::studies {
 
@@ -146,8 +147,8 @@ ModelError LeaveOneOut::summary(std::vector<double> errors) {
   std::sort(errors.begin(), errors.end());
   const double mean = std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
   const auto rank = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(errors.size())));
-  error.mean = std::expm1(mean);
-  error.p95 = std::expm1(errors[rank - 1]);
+  error.mean = rounded(std::expm1(mean), curve_digits);
+  error.p95 = rounded(std::expm1(errors[rank - 1]), curve_digits);
   return error;
 }
 

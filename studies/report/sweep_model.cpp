@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "processors/accounting.h"
+#include "studies/report/rounded.h"
 
 namespace marti::studies {
 
@@ -21,7 +22,7 @@ std::vector<double> samples_of(const ReportAxis& axis) {
   const auto place = [&](double from, double to, double share) {
     const double x = axis.logarithmic ? std::exp(std::lerp(std::log(from), std::log(to), share))
                                       : std::lerp(from, to, share);
-    return axis.integer ? std::round(x) : x;
+    return axis.integer ? std::round(x) : rounded(x, place_digits);
   };
   std::vector<double> x = values;
   const std::size_t last = values.size() - 1;
@@ -62,12 +63,17 @@ Curve curve_of(const LineModel& line, const ReportAxis& axis, const AxisModel& m
       continue;
     }
     sample = line.at(x);
+    sample->end = rounded(sample->end, curve_digits);
+    sample->base_end = rounded(sample->base_end, place_digits);
+    sample->asymptote = rounded(sample->asymptote, curve_digits);
     if (!model.has_band(sample->zone) || !std::isfinite(sample->end)) {
       sample.reset();
     }
   }
   if (axis.name == "machine.nodes") {
-    curve.saturation = saturation_nodes(line.points().back());
+    if (const std::optional<double> nodes = saturation_nodes(line.points().back())) {
+      curve.saturation = rounded(*nodes, curve_digits);
+    }
   }
   return curve;
 }

@@ -116,7 +116,8 @@ class Charts {
     for (const ReportPoint* point : line_of(axis)) {
       std::vector<Cell> row = {along.texts[point->place[axis]]};
       for (const ExplorerField* field : present) {
-        row.push_back(point->has(field->name) ? Cell(point->figure(field->name) * field->scale) : Cell());
+        const std::optional<double> value = shown(*field, *point);
+        row.push_back(value ? Cell(*value) : Cell());
       }
       table.add_row(std::move(row));
     }

@@ -56,7 +56,7 @@ marti.rows = (() => {
       const x = explorer.axes[axis].values[explorer.place[axis][p]];
       if (efficiency > 0) most = Math.max(most, explorer.columns.speed_up[p] / efficiency / x);
     }
-    return Math.abs(most - Math.round(most)) < 1e-4 * most ? Math.round(most) : most;
+    return most;
   }
 
   function explore(explorer, axis, place) {
