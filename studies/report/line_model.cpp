@@ -104,9 +104,12 @@ Modelled LineModel::at(double x) const {
                                     : (x - a.x) / (b.x - a.x);
   const PointCounters counters = interpolate(a, b, share);
   Modelled modelled;
-  modelled.end = closed_network_end(counters) * interpolate(ratios_[right - 1], ratios_[right], share);
-  modelled.base_end = counters.base_end;
   modelled.asymptote = asymptotic_end(counters);
+  // Exact frames are never below their bound; the product of two interpolations may be.
+  modelled.end =
+      std::max(closed_network_end(counters) * interpolate(ratios_[right - 1], ratios_[right], share),
+               modelled.asymptote);
+  modelled.base_end = counters.base_end;
   modelled.zone = x < points_.front().x || x > points_.back().x ? Zone::beyond : Zone::between;
   return modelled;
 }
