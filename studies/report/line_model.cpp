@@ -106,10 +106,11 @@ Modelled LineModel::at(double x) const {
   const PointCounters counters = interpolate(a, b, share);
   Modelled modelled;
   modelled.asymptote = asymptotic_end(counters);
-  // Exact frames are never below their bound; the product of two interpolations may be.
-  modelled.end =
-      std::max(closed_network_end(counters) * interpolate(ratios_[right - 1], ratios_[right], share),
-               modelled.asymptote);
+  // Exact frames are never below their bound; the product of two interpolations may be. The ratio corrects
+  // the network, and what it corrects is not known beyond the points.
+  modelled.end = std::max(closed_network_end(counters) *
+                              interpolate(ratios_[right - 1], ratios_[right], std::clamp(share, 0.0, 1.0)),
+                          modelled.asymptote);
   modelled.base_end = counters.base_end;
   modelled.zone = x < points_.front().x || x > points_.back().x ? Zone::beyond : Zone::between;
   return modelled;

@@ -54,8 +54,8 @@ class LineModel {
   LineModel(std::vector<PointCounters> points, bool logarithmic);
 
   /// At the points it is the exact frame time; elsewhere counters are interpolated, and so is the ratio of
-  /// exact to closed_network_end(); but never below asymptotic_end(). Beyond the outer points everything goes
-  /// on as between the last two.
+  /// exact to closed_network_end(); but never below asymptotic_end(). Beyond the outer points counters go on
+  /// as between the last two, and the ratio stays as it is at the last.
   [[nodiscard]] Modelled at(double x) const;
 
   [[nodiscard]] std::span<const PointCounters> points() const { return points_; }
