@@ -37,7 +37,7 @@ Json error_json(const ModelError* errors) {
   for (const Zone zone : {Zone::between, Zone::beyond}) {
     const ModelError& error = errors[static_cast<std::size_t>(zone)];
     json[zone == Zone::between ? "between" : "beyond"] = {
-        {"points", error.points}, {"mean", error.mean}, {"p95", error.p95}};
+        {"points", error.points}, {"mean", error.mean}, {"p95", error.p95}, {"known", error.is_known()}};
   }
   return json;
 }
@@ -98,7 +98,7 @@ void add_sample(Table& table, const AxisModel& model, const Modelled& sample, do
   const double ms = sample.end * ms_a_ps;
   const double factor = factor_of(model.end, zone);
   const bool has_speed_up =
-      sample.base_end > 0.0 && model.speed_up[static_cast<std::size_t>(zone)].points > 0;
+      sample.base_end > 0.0 && model.speed_up[static_cast<std::size_t>(zone)].is_known();
   const double speed_up = has_speed_up ? sample.base_end / sample.end : NAN;
   const double speed_factor = factor_of(model.speed_up, zone);
   table.add_row({"model", zone_name, x, Cell(), ms, ms / factor, ms * factor, sample.asymptote * ms_a_ps,

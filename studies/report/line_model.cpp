@@ -116,6 +116,22 @@ Modelled LineModel::at(double x) const {
   return modelled;
 }
 
+namespace {
+
+// How far beyond `rest` x lies, in steps of the two points beside it; 0 between them.
+double steps_beyond(std::span<const PointCounters> rest, double x, bool logarithmic) {
+  const auto distance = [&](double a, double b) { return std::abs(logarithmic ? std::log(a / b) : a - b); };
+  const std::size_t last = rest.size() - 1;
+  if (x < rest[0].x) {
+    return distance(x, rest[0].x) / distance(rest[0].x, rest[1].x);
+  }
+  return x > rest[last].x ? distance(x, rest[last].x) / distance(rest[last].x, rest[last - 1].x) : 0.0;
+}
+
+constexpr double most_steps = 2.0 + 1e-6;  // places are rounded
+
+}  // namespace
+
 void LeaveOneOut::add(const LineModel& line, bool logarithmic) {
   const std::span<const PointCounters> points = line.points();
   if (points.size() < 3) {
@@ -129,6 +145,9 @@ void LeaveOneOut::add(const LineModel& line, bool logarithmic) {
       }
     }
     const PointCounters& exact = points[left_out];
+    if (steps_beyond(rest, exact.x, logarithmic) > most_steps) {
+      continue;
+    }
     const Modelled modelled = LineModel(std::move(rest), logarithmic).at(exact.x);
     const auto zone = static_cast<std::size_t>(modelled.zone);
     end_[zone].push_back(std::abs(std::log(modelled.end / exact.end)));

@@ -26,8 +26,7 @@ struct AxisModel {
   ModelError end[2];      ///< by Zone
   ModelError speed_up[2];
   std::map<std::string, Curve> curves;  ///< by line_key()
-  /// May a figure be shown? Not without a measured error.
-  [[nodiscard]] bool has_band(Zone zone) const { return end[static_cast<std::size_t>(zone)].points > 0; }
+  [[nodiscard]] bool has_band(Zone zone) const { return end[static_cast<std::size_t>(zone)].is_known(); }
 };
 
 /// The point's place on all axes but one, which is "*": "0,*,2".

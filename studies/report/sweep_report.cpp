@@ -154,15 +154,19 @@ class Charts {
  private:
   [[nodiscard]] std::string note_of(const AxisModel* model) const {
     if (model == nullptr) {
-      return "Exact points only: the model needs three points on a line to measure its error.";
+      return "Exact points only: the model needs three points on a line to measure its error, and one that "
+             "is not too large.";
     }
     const auto said = [&](Zone zone, const std::string& where) {
       const ModelError& error = model->end[static_cast<std::size_t>(zone)];
-      return error.points == 0
-                 ? std::string()
-                 : fmt::format(
-                       " {}: {:.1f} % on average, 95 % of them below {:.1f} % ({} points left out once).",
-                       where, 100.0 * error.mean, 100.0 * error.p95, error.points);
+      if (error.points == 0) {
+        return std::string();
+      }
+      if (!error.is_known()) {
+        return fmt::format(" {} it is not shown: it is off by more than a factor of 3.", where);
+      }
+      return fmt::format(" {}: {:.1f} % on average, 95 % of them below {:.1f} % ({} points left out once).",
+                         where, 100.0 * error.mean, 100.0 * error.p95, error.points);
     };
     return "Points are simulated, the curve is modelled. Error of the model's frame times, measured on this "
            "sweep." +

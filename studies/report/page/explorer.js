@@ -167,9 +167,9 @@ marti.explorer = (() => {
   }
 
   function noteOf(model) {
-    if (!model) return "Exact points only: the model needs three points on a line to measure its error.";
+    if (!model) return "Exact points only: the model needs three points on a line to measure its error, and one that is not too large.";
     const said = (error, where) =>
-      error.points ? ` ${where}: ${(100 * error.mean).toFixed(1)} % on average, 95 % of them below ${(100 * error.p95).toFixed(1)} % (${error.points} points left out once).` : "";
+      error.points && !error.known ? ` ${where} it is not shown: it is off by more than a factor of 3.` : error.points ? ` ${where}: ${(100 * error.mean).toFixed(1)} % on average, 95 % of them below ${(100 * error.p95).toFixed(1)} % (${error.points} points left out once).` : "";
     return "Points are simulated, the curve is modelled. Error of the model's frame times, measured on this sweep." + said(model.error.between, "Between points") + said(model.error.beyond, "One step beyond them");
   }
 
