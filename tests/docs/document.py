@@ -92,11 +92,12 @@ def commands_of(lines, kind):
     """The commands of one block. In blocks of kind sh each line is one; elsewhere those that begin with `$ `,
     with their output below, or in indented blocks those that begin with a known program."""
     commands = []
-    if kind == "sh" and not any(line.startswith("#!") for _, line in lines):
+    if kind == "sh":
+        script = "part of a script" if lines and lines[0][1].startswith("#!") else ""
         for number, line in joined(lines):
             text = re.sub(r"\s+#\s.*$", "", line).strip()
             if text and not text.startswith("#"):
-                commands.append(Command(number, text))
+                commands.append(Command(number, text, skip=script))
         return commands
     if kind == "indented" and lines and re.match(PROGRAMS + r"\s", lines[0][1]):
         return [Command(number, line.strip()) for number, line in joined(lines)]
