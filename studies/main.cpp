@@ -21,7 +21,9 @@
 #include "sim/files.h"
 #include "sim/schema.h"
 #include "sim/units.h"
+#include "studies/command_error.h"
 #include "studies/compare/compare.h"
+#include "studies/config_file.h"
 #include "studies/error/error.h"
 #include "studies/error/error_keys.h"
 #include "studies/frames/frames.h"
@@ -90,6 +92,7 @@ void run_within_command(const RunArguments& arguments, sim::Config& config) {
 
 void run_command(const RunArguments& arguments) {
   const studies::KeptItems keep(arguments.keep);
+  studies::require_config_file(arguments.config);
   sim::Config config = sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
   if (!arguments.within.empty()) {
     run_within_command(arguments, config);
@@ -134,6 +137,9 @@ std::string no_empty_directory(const std::string& name) {
 // everything is written.
 template <class Study>
 void run_study(const StudyArguments& arguments, const sim::Schema& schema, const Study& study) {
+  if (!arguments.config.empty()) {
+    studies::require_config_file(arguments.config);
+  }
   sim::Config config = arguments.config.empty()
                            ? sim::Config::from_text(schema, "", "defaults", arguments.assignments)
                            : sim::Config::from_file(schema, arguments.config, arguments.assignments);
@@ -259,6 +265,7 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
     } catch (const sim::UserError& error) {
       throw sim::UserError("--limit: " + std::string(error.what()));
     }
+    studies::require_config_file(arguments.config);
     sim::Config config =
         sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
     studies::prepare_output(arguments.directory);
@@ -439,8 +446,11 @@ int parse_and_run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // CLI11 prints help, version and its complaint; a complaint is the user's input being wrong.
-    return app.exit(error) == 0 ? done : wrong_input;
+    // CLI11 prints help and version; a complaint is the user's input being wrong.
+    if (error.get_exit_code() == 0) {
+      return app.exit(error);
+    }
+    throw sim::UserError(studies::command_error(app, error, words));
   }
   return done;
 }
