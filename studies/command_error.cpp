@@ -31,12 +31,12 @@ bool looks_like_a_file(std::string_view word) { return word.ends_with(".toml"); 
 // The command that was reached, the words that led to it and those behind them.
 struct Reached {
   const CLI::App* command = nullptr;
-  std::string name = "marti";
+  std::string name;  // as "scene info"
   std::span<const std::string> rest;
 };
 
 Reached reached_by(const CLI::App& app, std::span<const std::string> words) {
-  Reached reached{&app, "marti", words};
+  Reached reached{&app, "", words};
   while (!reached.rest.empty()) {
     const std::vector<const CLI::App*> commands = subcommands_of(*reached.command);
     const auto found = std::find_if(commands.begin(), commands.end(), [&](const CLI::App* command) {
@@ -46,7 +46,7 @@ Reached reached_by(const CLI::App& app, std::span<const std::string> words) {
       break;
     }
     reached.command = *found;
-    reached.name += " " + reached.rest.front();
+    reached.name += (reached.name.empty() ? "" : " ") + reached.rest.front();
     reached.rest = reached.rest.subspan(1);
   }
   return reached;
@@ -58,15 +58,15 @@ std::string no_subcommand(const Reached& reached) {
     names.push_back(command->get_name());
   }
   const std::string there_are = "there are " + listed(names);
+  const std::string where = reached.name.empty() ? "" : reached.name + ": ";
   if (reached.rest.empty()) {
-    return reached.name + ": which? " + there_are + "; --help says what they do";
+    return where + "which command? " + there_are + "; --help says what they do";
   }
   const std::string& word = reached.rest.front();
-  if (looks_like_a_file(word) && reached.name == "marti") {
+  if (looks_like_a_file(word) && reached.name.empty()) {
     return "there is no command \"" + word + "\"; a configuration is run by: marti run " + word;
   }
-  return reached.name + ": there is no command \"" + word + "\"" + sim::did_you_mean(word, names) + "; " +
-         there_are;
+  return where + "there is no command \"" + word + "\"" + sim::did_you_mean(word, names) + "; " + there_are;
 }
 
 // The required positional argument that is not there.
@@ -110,7 +110,7 @@ std::string unexpected(const Reached& reached, const std::string& word) {
     return text +
            "; a value with a space needs quotation marks, as in --set 'cache.size=16 KiB', and a key its '='";
   }
-  return text + "; " + reached.name + " --help says what it takes";
+  return text + "; marti " + reached.name + " --help says what it takes";
 }
 
 // Words that no option and no argument took, in the order in which they were given.

@@ -33,10 +33,6 @@ std::vector<std::string> names_in(const fs::path& directory, bool directories) {
 fs::path nearest_file(const fs::path& file) {
   std::error_code error;
   const fs::path parent = file.parent_path();
-  if (const std::string_view name = sim::nearest_name(file.filename().string(), names_in(parent, false));
-      !name.empty()) {
-    return parent / name;
-  }
   if (!parent.empty() && !fs::is_directory(parent, error)) {
     const std::vector<std::string> names = names_in(parent.parent_path(), true);
     const fs::path near = parent.parent_path() / sim::nearest_name(parent.filename().string(), names);
@@ -51,6 +47,10 @@ fs::path nearest_file(const fs::path& file) {
         return above / file;
       }
     }
+  }
+  if (const std::string_view name = sim::nearest_name(file.filename().string(), names_in(parent, false));
+      !name.empty()) {
+    return parent / name;
   }
   return {};
 }

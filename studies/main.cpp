@@ -284,7 +284,7 @@ void add_compare_command(CLI::App& app, CompareArguments& arguments) {
   compare->add_option("A", arguments.a, "directory of a run or sweep; DIR:N is point N of a sweep")
       ->type_name("RESULT")
       ->required();
-  compare->add_option("B", arguments.b, "likewise")->type_name("RESULT")->required();
+  compare->add_option("B", arguments.b, "what A is compared with, likewise")->type_name("RESULT")->required();
   compare->add_flag("--json", arguments.options.json, "print the differences as JSON");
   compare->add_flag("--all", arguments.options.all, "everything, what is equal too");
   compare->callback([&] { print(studies::compare_results(arguments.a, arguments.b, arguments.options)); });
