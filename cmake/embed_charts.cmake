@@ -1,5 +1,5 @@
-# cmake -DDIRECTORY=dir -DOUTPUT=file.cpp -P embed_charts.cmake: the chart specifications of a directory as
-# C++ source (studies/results/chart.h).
+# cmake -DDIRECTORY=dir -DFUNCTION=name -DHEADER=file.h -DOUTPUT=file.cpp -P embed_charts.cmake: the chart
+# specifications of a directory as C++ source: what FUNCTION, which HEADER declares, gives.
 cmake_minimum_required(VERSION 3.25)
 
 file(GLOB charts "${DIRECTORY}/*.vl.json")
@@ -20,10 +20,10 @@ foreach(chart IN LISTS charts)
   string(APPEND entries "    {\"${name}\", R\"chart(${text})chart\"},\n")
 endforeach()
 list(LENGTH charts count)
-file(WRITE "${OUTPUT}.new" "// Made by cmake/embed_charts.cmake from studies/charts.
+file(WRITE "${OUTPUT}.new" "// Made by cmake/embed_charts.cmake.
 #include <array>
 
-#include \"studies/results/chart.h\"
+#include \"${HEADER}\"
 
 namespace marti::studies {
 
@@ -32,7 +32,7 @@ constexpr std::array<ChartSpecification, ${count}> charts{{
 ${entries}}};
 }  // namespace
 
-std::span<const ChartSpecification> chart_specifications() { return charts; }
+std::span<const ChartSpecification> ${FUNCTION}() { return charts; }
 
 }  // namespace marti::studies
 ")

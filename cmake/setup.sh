@@ -11,19 +11,26 @@ die() {
   exit 1
 }
 
+# Is it installed? Node and npm may have come another way than as Debian's packages, with which they could not
+# be together then: what counts is their commands.
+is_there() {
+  case $1 in
+    nodejs) command -v node >/dev/null && return ;;
+    npm) command -v npm >/dev/null && return ;;
+  esac
+  [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
+}
+
 # The packages of the given sections of cmake/debian-packages.txt that are not installed.
 missing_packages() {
-  local section='' line package
+  local section='' line
   while read -r line; do
     case $line in
       '' | '#'*) continue ;;
       '['*']') section=${line:1:-1} && continue ;;
     esac
-    if [[ " $* " == *" $section "* ]]; then
-      package=$line
-      if [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" != installed ]; then
-        echo "$package"
-      fi
+    if [[ " $* " == *" $section "* ]] && ! is_there "$line"; then
+      echo "$line"
     fi
   done <cmake/debian-packages.txt
 }
@@ -53,6 +60,14 @@ need_packages() {
   fi
   "${apt[@]}" install -y --no-install-recommends "${missing[@]}" ||
     die "apt-get could not install ${missing[*]} (see above). Is this machine off line, or not Debian 12?"
+}
+
+# The same for what can be done without: says so and goes on when it cannot be installed.
+want_packages() {
+  local without=$1
+  shift
+  if ! command -v dpkg-query >/dev/null; then return; fi  # need_packages has said so
+  (need_packages "$@") || say "Going on without it: $without"
 }
 
 # Memory limits parallel compilation before the cores do on small machines: 1.5 GB for each compiler.

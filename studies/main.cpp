@@ -35,6 +35,7 @@
 #include "studies/paper/paper_keys.h"
 #include "studies/plan/verify_plan.h"
 #include "studies/ranks/ranks.h"
+#include "studies/report/report_command.h"
 #include "studies/run_result.h"
 #include "studies/schemes/schemes.h"
 #include "studies/schemes/schemes_keys.h"
@@ -290,6 +291,20 @@ void add_compare_command(CLI::App& app, CompareArguments& arguments) {
   compare->callback([&] { print(studies::compare_results(arguments.a, arguments.b, arguments.options)); });
 }
 
+void add_report_command(CLI::App& app, studies::ReportArguments& arguments) {
+  CLI::App* report = app.add_subcommand(
+      "report", "One HTML page from a run, a sweep or a study: the answer, charts, a what-if");
+  report->add_option("DIR", arguments.directory, "directory of a run, a sweep or a study")->required();
+  report->add_option("-o,--output", arguments.output, "the page; DIR/report.html if not given")
+      ->check([](const std::string& name) {
+        return name.empty() ? std::string("the name of a file must not be empty") : std::string();
+      });
+  report->add_option("--plots", arguments.plots, "directory for every chart as SVG and CSV")
+      ->check(no_empty_directory);
+  report->add_flag("--pdf", arguments.pdf, "the plots also as PDF");
+  report->callback([&] { studies::report_command(arguments, print); });
+}
+
 void list_scenes() {
   std::string text;
   for (const scenes::ProceduralScene& scene : scenes::procedural_scenes()) {
@@ -430,6 +445,9 @@ int parse_and_run(int argc, char** argv) {
 
   CompareArguments compare_arguments;
   add_compare_command(app, compare_arguments);
+
+  studies::ReportArguments report_arguments;
+  add_report_command(app, report_arguments);
 
   bool markdown = false;
   add_reference_commands(app, markdown);

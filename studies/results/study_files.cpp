@@ -1,49 +1,17 @@
 #include "studies/results/study_files.h"
 
-#include <deque>
-#include <string_view>
-#include <utility>
+#include <string>
 
-#include "sim/error.h"
-#include "sim/files.h"
 #include "studies/image_file.h"
 #include "studies/results/chart.h"
 #include "studies/results/csv.h"
+#include "studies/results/pending_files.h"
 #include "studies/results/sqlite.h"
 #include "studies/signals_held.h"
 
 namespace marti::studies {
 
-namespace {
-
 namespace fs = std::filesystem;
-
-/// Files that get their names together.
-class PendingFiles {
- public:
-  explicit PendingFiles(fs::path directory) : directory_(std::move(directory)) {}
-
-  /// The name under which to write `name`.
-  const fs::path& add(const std::string& name) {
-    names_.push_back(directory_ / name);
-    return pending_.emplace_back(names_.back()).temporary();
-  }
-  void write(const std::string& name, std::string_view content) { sim::write_file(add(name), content); }
-
-  std::vector<fs::path> commit() {
-    for (sim::PendingFile& file : pending_) {
-      file.commit();
-    }
-    return names_;
-  }
-
- private:
-  fs::path directory_;
-  std::deque<sim::PendingFile> pending_;  // a PendingFile does not move
-  std::vector<fs::path> names_;
-};
-
-}  // namespace
 
 std::vector<fs::path> write_study(const StudyOutput& output, const fs::path& directory) {
   const SignalsHeld held;

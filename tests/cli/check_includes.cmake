@@ -32,6 +32,7 @@ allow("^nlohmann/json[.]hpp$" "^((scenes|studies)/[a-z_/]+[.]cpp|studies/json_pa
 allow("^fmt/" "^(scenes|processors|studies)/[a-z_/]+[.]cpp$")
 allow("^sqlite3[.]h$" "^studies/(results/sqlite_connection|sweep/sweep_filter)[.]cpp$")
 allow("^mpi[.]h$" "^studies/ranks/mpi_ranks[.]cpp$")
+allow("^(poll|signal|spawn)[.]h$" "^studies/report/child_process[.]cpp$")
 allow("^sched[.]h$" "^studies/ranks/rank_threads[.]cpp$")
 allow("^zstd[.]h$" "^studies/sweep/zstd_block[.]cpp$")
 allow("^CLI/" "^studies/[a-z_]+[.]cpp$")

@@ -16,11 +16,12 @@ ninja_missing='case ${!#} in ninja-build) exit 1 ;; libgtest-dev) echo config-fi
 record="echo \"\$(basename \"\$0\") \$*\" >>$work/calls"
 
 # check <what> <expected status> <pattern of the output> <pattern of the calls> <sections...>
+# With $function instead of need_packages when that is set.
 check() {
   local what=$1 expected=$2 output=$3 calls=$4 status=0
   shift 4
   : >"$work/calls"
-  PATH="$work/bin" bash -c 'set -euo pipefail; source cmake/setup.sh; need_packages "$@"' setup "$@" \
+  PATH="$work/bin" bash -c 'set -euo pipefail; source cmake/setup.sh; "$@"' setup "${function:-need_packages}" "$@" \
     >"$work/output" 2>&1 || status=$?
   if [ "$status" -ne "$expected" ] || ! [[ $(<"$work/output") =~ $output ]] || ! [[ $(<"$work/calls") =~ $calls ]]; then
     printf 'FAILED: %s\nstatus %s, output:\n%s\ncalls:\n%s\n' "$what" "$status" "$(<"$work/output")" \
@@ -40,7 +41,21 @@ check 'one package is missing' 0 'Installing Debian packages: ninja-build$' ' up
 check 'one of each section' 0 'ninja-build libgtest-dev$' 'ninja-build libgtest-dev$' build test
 check 'only the sections asked for' 0 'packages: libgtest-dev$' 'libgtest-dev$' test
 
+# Node and npm that did not come as Debian's packages are not installed again.
+# shellcheck disable=SC2016  # the script is to expand it
+node_missing='case ${!#} in nodejs|npm) exit 1 ;; *) echo installed ;; esac'
+stub dpkg-query "$node_missing"
+check 'node and npm are missing' 0 'packages: nodejs npm$' ' install .* --no-install-recommends nodejs npm$' report
+stub node ''
+check 'node is there' 0 'packages: npm$' ' --no-install-recommends npm$' report
+stub npm ''
+check 'node and npm are there' 0 '^$' '^$' report
+rm "$work/bin/node" "$work/bin/npm"
 stub apt-get "$record; [[ \$* != *install* ]]"
+function=want_packages check 'what can be done without cannot be installed' 0 \
+  'could not install nodejs npm .*Going on without it: no pictures' 'install' 'no pictures' report
+stub dpkg-query "$ninja_missing"
+
 check 'apt-get fails' 1 'could not install ninja-build .*off line' 'install' build
 
 stub apt-get "$record; [[ \$* == *install* ]]"

@@ -1,0 +1,25 @@
+// The axes of a sweep, found in the values of its points: keys that change together are one axis.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "studies/results/table.h"
+
+namespace marti::studies {
+
+struct AxisColumn {
+  std::string name;
+  std::vector<std::string> followers;  ///< names whose value is always the same for a value of this one
+  std::vector<Cell> values;            ///< different ones: numbers ascending, then texts as they first occur
+  std::vector<std::size_t> index;      ///< of each point's value among them
+};
+
+/// `points[i][j]` is point i's value of `names[j]`. A name whose value follows from another's belongs to that
+/// one; of two that follow from each other the earlier leads. Names with a single value are no axes.
+[[nodiscard]] std::vector<AxisColumn> order_axes(std::span<const std::string> names,
+                                                 std::span<const std::vector<Cell>> points);
+
+}  // namespace marti::studies

@@ -1,0 +1,62 @@
+// Draws charts in node, after the scripts of vega_bundle.h and without a page: reads marti_charts, an array of
+// {name, spec}, and writes the SVG texts to standard output as a JSON array. Text is measured by estimate, so
+// that the same charts give the same bytes wherever they are drawn.
+"use strict";
+
+/** A chart holds its data: nothing is fetched, and no link leads out of a drawing. Vega goes on without what it
+ *  is refused, so that the refusals are kept too. */
+function refusing(errors) {
+  const refuse = async (uri) => {
+    errors.push(`it refers to ${uri}, but must hold all that it shows`);
+    throw new Error("refused");
+  };
+  return { load: refuse, sanitize: refuse, http: refuse, file: refuse };
+}
+
+/** On paper there is nothing whose width could be taken. */
+function sized(spec) {
+  return {
+    ...spec,
+    ...(spec.width === "container" && { width: 520 }),
+    ...(spec.height === "container" && { height: 320 }),
+  };
+}
+
+/** A logger for Vega that keeps errors, which it would print and go on. */
+function keeping(errors) {
+  const logger = { level: () => logger, warn: () => logger, info: () => logger, debug: () => logger };
+  logger.error = (...parts) => {
+    errors.push(parts.map((part) => part?.message ?? String(part)).join(" "));
+    return logger;
+  };
+  return logger;
+}
+
+async function draw(spec) {
+  const errors = [];
+  const logger = keeping(errors);
+  const loader = refusing(errors);
+  const compiled = vegaLite.compile(sized(spec), { logger }).spec;
+  const runtime = vega.parse(compiled, null, { ast: true });
+  const view = new vega.View(runtime, { renderer: "none", expr: vega.expressionInterpreter, loader, logger });
+  view.background("white");
+  const svg = await view.toSVG();
+  view.finalize();
+  if (errors.length > 0) throw new Error(errors.join("; "));
+  return `${svg}\n`;
+}
+
+(async () => {
+  const drawings = [];
+  for (const { name, spec } of marti_charts) {
+    try {
+      drawings.push(await draw(spec));
+    } catch (error) {
+      throw new Error(`chart ${name} cannot be drawn: ${error.message}`);
+    }
+  }
+  process.stdout.write(JSON.stringify(drawings));
+})().catch((error) => {
+  process.stderr.write(`${error.message}\n`);
+  process.exitCode = 1;
+});

@@ -1,0 +1,154 @@
+#include "studies/report/line_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "processors/closed_network.h"
+#include "sim/error.h"
+
+namespace marti::studies {
+
+namespace {
+
+// The largest number of customers times queues for which mean values are worked out exactly. A page has
+// thousands of them.
+constexpr std::uint64_t most_exact_work = 1U << 16U;
+
+processors::ClosedNetwork network_of(const PointCounters& counters) {
+  processors::ClosedNetwork network;
+  const double nodes = counters.packets > 0.0 ? std::min(counters.nodes, counters.packets) : counters.nodes;
+  const double customers = std::round(nodes / std::max(1.0, counters.clusters));
+  network.customers = static_cast<std::uint64_t>(std::clamp(customers, 1.0, 1e9));
+  const double around = counters.reads > 0.0 ? counters.reads : 1.0;
+  if (counters.reads > 0.0) {
+    const auto queues = [&](double count, double busy) {
+      const auto each = static_cast<std::size_t>(std::round(count / std::max(1.0, counters.clusters)));
+      if (each > 0 && busy > 0.0) {
+        network.demands.insert(network.demands.end(), each, busy / around / static_cast<double>(each));
+      }
+    };
+    queues(counters.links, counters.link_busy);
+    queues(counters.banks, counters.bank_busy);
+  }
+  network.think = std::max(0.0, (counters.work + counters.delays) / around - network.demand());
+  return network;
+}
+
+// Cycles of a cluster: reads, or with none one for all of its work.
+double cycles_of(const PointCounters& counters) {
+  return (counters.reads > 0.0 ? counters.reads : 1.0) / std::max(1.0, counters.clusters);
+}
+
+// Straight in the logarithms where both are above 0.
+double interpolate(double a, double b, double share) {
+  if (a > 0.0 && b > 0.0) {
+    return a == b ? a : std::exp(std::lerp(std::log(a), std::log(b), share));
+  }
+  return std::max(0.0, std::lerp(a, b, share));
+}
+
+PointCounters interpolate(const PointCounters& a, const PointCounters& b, double share) {
+  PointCounters c;
+  for (double PointCounters::*const member :
+       {&PointCounters::end, &PointCounters::base_end, &PointCounters::nodes, &PointCounters::clusters,
+        &PointCounters::packets, &PointCounters::work, &PointCounters::delays, &PointCounters::reads,
+        &PointCounters::links, &PointCounters::link_busy, &PointCounters::banks, &PointCounters::bank_busy}) {
+    c.*member = interpolate(a.*member, b.*member, share);
+  }
+  return c;
+}
+
+}  // namespace
+
+double closed_network_end(const PointCounters& counters) {
+  const processors::ClosedNetwork network = network_of(counters);
+  if (network.think + network.demand() <= 0.0) {
+    return counters.end;
+  }
+  return cycles_of(counters) / processors::mean_values(network, most_exact_work).throughput;
+}
+
+double asymptotic_end(const PointCounters& counters) {
+  const processors::ClosedNetwork network = network_of(counters);
+  const double cycles = cycles_of(counters);
+  return std::max(counters.work / std::max(1.0, counters.clusters) / static_cast<double>(network.customers),
+                  network.largest() * cycles);
+}
+
+std::optional<double> saturation_nodes(const PointCounters& counters) {
+  return network_of(counters).saturation();
+}
+
+LineModel::LineModel(std::vector<PointCounters> points, bool logarithmic)
+    : points_(std::move(points)), logarithmic_(logarithmic) {
+  std::sort(points_.begin(), points_.end(),
+            [](const PointCounters& a, const PointCounters& b) { return a.x < b.x; });
+  sim::ensure(points_.size() >= 2, "a line model needs two points");
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    sim::ensure(points_[i].end > 0.0 && (i == 0 || points_[i - 1].x < points_[i].x) &&
+                    (!logarithmic || points_[i].x > 0.0),
+                "the points of a line model need frame times and places of their own");
+    ratios_.push_back(points_[i].end / closed_network_end(points_[i]));
+  }
+}
+
+Modelled LineModel::at(double x) const {
+  const auto above =
+      std::lower_bound(points_.begin() + 1, points_.end() - 1, x,
+                       [](const PointCounters& point, double place) { return point.x < place; });
+  const auto right = static_cast<std::size_t>(above - points_.begin());
+  const PointCounters& a = points_[right - 1];
+  const PointCounters& b = points_[right];
+  const double share = logarithmic_ ? (std::log(x) - std::log(a.x)) / (std::log(b.x) - std::log(a.x))
+                                    : (x - a.x) / (b.x - a.x);
+  const PointCounters counters = interpolate(a, b, share);
+  Modelled modelled;
+  modelled.asymptote = asymptotic_end(counters);
+  // Exact frames are never below their bound; the product of two interpolations may be.
+  modelled.end =
+      std::max(closed_network_end(counters) * interpolate(ratios_[right - 1], ratios_[right], share),
+               modelled.asymptote);
+  modelled.base_end = counters.base_end;
+  modelled.zone = x < points_.front().x || x > points_.back().x ? Zone::beyond : Zone::between;
+  return modelled;
+}
+
+void LeaveOneOut::add(const LineModel& line, bool logarithmic) {
+  const std::span<const PointCounters> points = line.points();
+  if (points.size() < 3) {
+    return;
+  }
+  for (std::size_t left_out = 0; left_out < points.size(); ++left_out) {
+    std::vector<PointCounters> rest;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (i != left_out) {
+        rest.push_back(points[i]);
+      }
+    }
+    const PointCounters& exact = points[left_out];
+    const Modelled modelled = LineModel(std::move(rest), logarithmic).at(exact.x);
+    const auto zone = static_cast<std::size_t>(modelled.zone);
+    end_[zone].push_back(std::abs(std::log(modelled.end / exact.end)));
+    if (exact.base_end > 0.0 && modelled.base_end > 0.0) {
+      speed_up_[zone].push_back(
+          std::abs(std::log(modelled.base_end / modelled.end / (exact.base_end / exact.end))));
+    }
+  }
+}
+
+ModelError LeaveOneOut::summary(std::vector<double> errors) {
+  ModelError error;
+  error.points = errors.size();
+  if (errors.empty()) {
+    return error;
+  }
+  std::sort(errors.begin(), errors.end());
+  const double mean = std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
+  const auto rank = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(errors.size())));
+  error.mean = std::expm1(mean);
+  error.p95 = std::expm1(errors[rank - 1]);
+  return error;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,94 @@
+// An analytic model of a frame, fitted to exact points that differ in one axis: the machine as a closed
+// network whose demands are read off the points' counters and interpolated between them. docs/report.md has
+// the equations.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace marti::studies {
+
+/// What the counters of an exact point say; sums over a machine of any number of clusters. Times in ps.
+struct PointCounters {
+  double x = 0.0;         ///< the point's place on the axis
+  double end = 0.0;       ///< frame time, above 0
+  double base_end = 0.0;  ///< of the machine that its speed-up is measured against; 0: not there
+  double nodes = 1.0;
+  double clusters = 1.0;
+  double packets = 1.0;    ///< of the frame: no more nodes can have work; 0: not known
+  double work = 0.0;       ///< time of all nodes without waits and idling
+  double delays = 0.0;     ///< of all nodes for locks, messages and packets
+  double reads = 0.0;      ///< of the interconnect
+  double links = 1.0;      ///< of the interconnect that are queues: 1 of a bus, 0 when it is none
+  double link_busy = 0.0;  ///< of all queues of the interconnect
+  double banks = 0.0;      ///< that are queues
+  double bank_busy = 0.0;  ///< of all banks
+};
+
+/// The frame of such a machine by mean value analysis (processors/closed_network.h), ps: `customers` nodes of
+/// a cluster go round between computing, links and banks. Without reads there is no queue. Needs work above
+/// 0.
+[[nodiscard]] double closed_network_end(const PointCounters& counters);
+
+/// No frame is shorter: the work shared by all nodes, the busiest link, the busiest bank.
+[[nodiscard]] double asymptotic_end(const PointCounters& counters);
+
+/// The number of nodes of a cluster from which on the busiest queue limits; nothing when there is no queue.
+[[nodiscard]] std::optional<double> saturation_nodes(const PointCounters& counters);
+
+enum class Zone : std::uint8_t { between, beyond };
+
+struct Modelled {
+  double end = 0.0;        ///< ps
+  double base_end = 0.0;   ///< ps; 0: not there
+  double asymptote = 0.0;  ///< ps, asymptotic_end() of the interpolated counters
+  Zone zone = Zone::between;
+};
+
+class LineModel {
+ public:
+  /// `points`: at least two, of different x. `logarithmic`: the axis is interpolated in log x; all x are
+  /// above 0 then.
+  LineModel(std::vector<PointCounters> points, bool logarithmic);
+
+  /// At the points it is the exact frame time; elsewhere counters are interpolated, and so is the ratio of
+  /// exact to closed_network_end(); but never below asymptotic_end(). Beyond the outer points everything goes
+  /// on as between the last two.
+  [[nodiscard]] Modelled at(double x) const;
+
+  [[nodiscard]] std::span<const PointCounters> points() const { return points_; }
+
+ private:
+  std::vector<PointCounters> points_;  // ascending by x
+  std::vector<double> ratios_;
+  bool logarithmic_;
+};
+
+/// How far the model is off: |ln(model / exact)| of points that were left out of it.
+struct ModelError {
+  std::size_t points = 0;
+  double mean = 0.0;  ///< as a share: exp of the mean, less 1
+  double p95 = 0.0;   ///< the 95th percentile by nearest rank, likewise
+};
+
+/// Errors of points left out, as gathered over lines.
+class LeaveOneOut {
+ public:
+  /// Leaves every point of the line out once; of lines with fewer than three points nothing can be left out.
+  void add(const LineModel& line, bool logarithmic);
+  /// Of frame times between other points, and beyond them, one step of the axis away.
+  [[nodiscard]] ModelError of_end(Zone zone) const { return summary(end_[static_cast<std::size_t>(zone)]); }
+  [[nodiscard]] ModelError of_speed_up(Zone zone) const {
+    return summary(speed_up_[static_cast<std::size_t>(zone)]);
+  }
+
+ private:
+  [[nodiscard]] static ModelError summary(std::vector<double> errors);
+
+  std::vector<double> end_[2];
+  std::vector<double> speed_up_[2];
+};
+
+}  // namespace marti::studies

@@ -1,0 +1,117 @@
+// Draws the charts, and saves them and their rows as files. A view is at marti.views[NAME].
+"use strict";
+
+marti.charts = (() => {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const charts = new Map(data.charts.map((chart) => [chart.name, chart]));
+
+  /** Vega without eval: expressions are interpreted, as the page's policy wants it. */
+  function makeView(spec, dark, options) {
+    const compiled = vegaLite.compile(spec, { config: marti.theme.config(dark), logger: vega.logger(vega.Error) });
+    const runtime = vega.parse(compiled.spec, null, { ast: true });
+    return new vega.View(runtime, { expr: vega.expressionInterpreter, logLevel: vega.Error, ...options });
+  }
+
+  const isPlain = (spec) => !("facet" in spec || "concat" in spec || "hconcat" in spec || "vconcat" in spec || "repeat" in spec);
+
+  /** As wide as there is room; the page has the title already. */
+  function fitted(spec, room) {
+    const copy = { ...spec };
+    delete copy.title;
+    if (isPlain(copy)) {
+      copy.width = Math.max(200, Math.min(room, 900));
+      copy.autosize = { type: "fit-x", contains: "padding" };
+    }
+    return copy;
+  }
+
+  async function draw(name) {
+    const chart = charts.get(name);
+    const place = document.getElementById(`chart-${name}`);
+    const old = marti.views[name];
+    if (old) old.finalize();
+    const spec = fitted(chart.spec, place.clientWidth || 560);
+    const view = makeView(spec, marti.theme.isDark(), { renderer: "svg", container: place, hover: true });
+    view.description(chart.title);
+    marti.views[name] = view;
+    await view.runAsync();
+  }
+
+  /** Other rows for a chart that stays otherwise as it is. */
+  async function change(name, rows) {
+    const chart = charts.get(name);
+    if (!chart) return;
+    chart.spec.data.values = rows;
+    const view = marti.views[name];
+    if (!view) return;
+    view.data("rows", vega.ingest ? rows.map((row) => vega.ingest({ ...row })) : rows);
+    await view.runAsync();
+  }
+
+  function save(name, type, text) {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([text], { type }));
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  }
+
+  function csvCell(value) {
+    if (value === null || value === undefined) return "";
+    const text = String(value);
+    return text === "" || /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+  }
+
+  /** RFC 4180: the names of all rows, then the rows. */
+  function csv(rows) {
+    const names = [...new Set(rows.flatMap((row) => Object.keys(row)))];
+    const lines = [names, ...rows.map((row) => names.map((name) => row[name]))];
+    return lines.map((line) => line.map(csvCell).join(",") + "\r\n").join("");
+  }
+
+  async function saveSvg(chart) {
+    const view = makeView({ ...chart.spec, background: "white" }, false, { renderer: "none" });
+    const svg = await view.toSVG();
+    view.finalize();
+    save(`${chart.name}.svg`, "image/svg+xml", svg);
+  }
+
+  document.addEventListener("click", (event) => {
+    const link = event.target.closest("a[data-save]");
+    if (!link) return;
+    event.preventDefault();
+    const chart = charts.get(link.dataset.chart);
+    if (link.dataset.save === "csv") save(`${chart.name}.csv`, "text/csv", csv(chart.spec.data.values));
+    else saveSvg(chart);
+  });
+
+  /** One after the other, so that the first is there soon. */
+  async function drawAll() {
+    for (const name of charts.keys()) {
+      try {
+        await draw(name);
+      } catch (error) {
+        document.getElementById(`chart-${name}`).textContent = `This chart could not be drawn: ${error.message}`;
+        console.error(name, error);
+      }
+      if (!("firstChart" in marti)) marti.firstChart = performance.now();
+      await new Promise((resolve) => setTimeout(resolve, 0));
+    }
+  }
+
+  let busy = Promise.resolve();
+  const redraw = () => (busy = busy.then(drawAll));
+  marti.theme.changed(redraw);
+  let width = window.innerWidth;
+  let timer = 0;
+  window.addEventListener("resize", () => {
+    clearTimeout(timer);
+    timer = setTimeout(() => {
+      if (window.innerWidth !== width) {
+        width = window.innerWidth;
+        redraw();
+      }
+    }, 200);
+  });
+  return { data, charts, draw, change, redraw, csv, save };
+})();

@@ -1,0 +1,114 @@
+#include "studies/report/plots.h"
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "sim/error.h"
+#include "sim/files.h"
+#include "studies/report/child_process.h"
+#include "studies/report/vega_bundle.h"
+#include "studies/results/pending_files.h"
+#include "studies/signals_held.h"
+
+namespace marti::studies {
+
+// Of studies/report/draw.js, by cmake/embed_text.cmake.
+std::string_view draw_script();
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+// A chart takes some hundredths of a second.
+constexpr std::chrono::seconds limit(120);
+
+void check_names(std::span<const ReportChart> charts) {
+  for (const ReportChart& chart : charts) {
+    const bool plain = std::none_of(chart.name.begin(), chart.name.end(), [](char c) {
+      return c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+    });
+    if (!plain || chart.name.empty() || chart.name.front() == '.' || chart.name.size() > 200) {
+      throw sim::UserError("chart \"" + chart.name + "\": this cannot be the name of a file");
+    }
+  }
+}
+
+void refuse_results(const fs::path& directory) {
+  for (const char* const file : {"result.json", "results.sqlite"}) {
+    std::error_code ignored;
+    if (fs::exists(directory / file, ignored)) {
+      throw sim::UserError(directory.string() + " holds results (" + file +
+                           "), which plots must not replace: give the plots a directory of their own");
+    }
+  }
+}
+
+/// The scripts as a page would load them, the charts, and what draws them: a program for node.
+std::string drawing_program(std::span<const ReportChart> charts) {
+  // Without these two the scripts take node for a browser, and define globals.
+  std::string program = "var exports, module; exports = module = undefined;\n";
+  for (const Script& script : vega_scripts()) {
+    program += script.text;
+    program += "\n";
+  }
+  Json all = Json::array();
+  for (const ReportChart& chart : charts) {
+    all.push_back({{"name", chart.name}, {"spec", chart.spec}});
+  }
+  // As a text to be parsed: in an object written out, "__proto__" would be more than a name.
+  const std::string text = all.dump(-1, ' ', true, Json::error_handler_t::replace);
+  program += "const marti_charts = JSON.parse(" + Json(text).dump() + ");\n";
+  program += draw_script();
+  return program;
+}
+
+std::vector<std::string> draw(std::span<const ReportChart> charts) {
+  const ChildProcess node{{"node", "-"}, "nodejs", {"TZ=UTC", "NODE_OPTIONS="}, limit};
+  const Json drawings =
+      Json::parse(run_child(node, drawing_program(charts)), nullptr, /*allow_exceptions=*/false);
+  if (!drawings.is_array() || drawings.size() != charts.size()) {
+    throw sim::UserError("node did not draw the charts: it gave something else");
+  }
+  return drawings.get<std::vector<std::string>>();
+}
+
+std::string pdf_of(const std::string& svg) {
+  // The date of the file would differ from time to time.
+  const ChildProcess convert{
+      {"rsvg-convert", "--format=pdf"}, "librsvg2-bin", {"SOURCE_DATE_EPOCH=0"}, limit};
+  return run_child(convert, svg);
+}
+
+}  // namespace
+
+std::vector<fs::path> write_plots(std::span<const ReportChart> charts, const fs::path& directory, bool pdf) {
+  check_names(charts);
+  refuse_results(directory);
+  if (!have_vega_scripts()) {
+    throw sim::UserError(no_vega_scripts);
+  }
+  const std::vector<std::string> drawings = draw(charts);
+  std::vector<std::string> pages;
+  for (const std::string& svg : drawings) {
+    if (pdf) {
+      pages.push_back(pdf_of(svg));
+    }
+  }
+  sim::make_directory(directory);
+  const SignalsHeld held;
+  PendingFiles files(directory);
+  for (std::size_t i = 0; i < charts.size(); ++i) {
+    files.write(charts[i].name + ".svg", drawings[i]);
+    files.write(charts[i].name + ".csv", charts[i].csv);
+    if (pdf) {
+      files.write(charts[i].name + ".pdf", pages[i]);
+    }
+  }
+  return files.commit();
+}
+
+}  // namespace marti::studies

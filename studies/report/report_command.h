@@ -1,0 +1,20 @@
+// `marti report DIR`.
+#pragma once
+
+#include <string>
+
+namespace marti::studies {
+
+struct ReportArguments {
+  std::string directory;  ///< of a run, a sweep or a study
+  std::string output;     ///< the page; empty: report.html in `directory`
+  std::string plots;      ///< directory for the charts as files; empty: none
+  bool pdf = false;       ///< plots also as PDF
+};
+
+/// Writes the page, and with `plots` the charts, and prints which files. Throws UserError for a directory
+/// that is no result, a program that was built without the scripts of the page, and files that cannot be
+/// written; an older page stays as it was then.
+void report_command(const ReportArguments& arguments, void (*print)(const std::string&));
+
+}  // namespace marti::studies

@@ -1,0 +1,65 @@
+#include <filesystem>
+
+#include "sim/error.h"
+#include "studies/report/report_charts.h"
+#include "studies/report/report_files.h"
+#include "studies/report/report_kinds.h"
+#include "studies/results/sqlite_connection.h"
+#include "studies/sweep/store_schema.h"
+
+namespace marti::studies {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view expected =
+    "; expected is the directory of `marti run CONFIG -o DIR`, `marti sweep CONFIG -o DIR` or `marti study "
+    "... -o "
+    "DIR`";
+
+// Both have a results.sqlite, with other columns in the table that describes the others. Whoever reads the
+// file says what else is wrong with it.
+bool is_study(const fs::path& file) {
+  check_store_file(file);
+  std::error_code ignored;
+  const bool has_log = fs::exists(file.string() + "-wal", ignored);
+  SqliteConnection connection(
+      file, has_log ? SqliteConnection::Access::read : SqliteConnection::Access::read_alone);
+  return connection.integer("SELECT count(*) FROM pragma_table_info('columns') WHERE name = 'table_name'") >
+         0;
+}
+
+}  // namespace
+
+ReportData read_report(const fs::path& directory) {
+  std::error_code error;
+  const fs::file_status status = fs::status(directory, error);
+  if (status.type() == fs::file_type::not_found) {
+    throw sim::UserError(directory.string() + ": there is no such directory" + std::string(expected));
+  }
+  if (error) {
+    throw sim::UserError(directory.string() + ": cannot be read: " + error.message());
+  }
+  if (!fs::is_directory(status)) {
+    throw sim::UserError(directory.string() + ": is no directory" + std::string(expected));
+  }
+  const fs::path run = directory / "result.json";
+  const fs::path database = directory / "results.sqlite";
+  if (is_there(run) && is_there(database)) {
+    throw sim::UserError(
+        directory.string() +
+        ": holds both a run (result.json) and a sweep or study (results.sqlite); move one of them "
+        "to a directory of its own");
+  }
+  if (is_there(run)) {
+    return read_run_report(directory);
+  }
+  if (!is_there(database)) {
+    throw sim::UserError(directory.string() + ": holds neither result.json nor results.sqlite" +
+                         std::string(expected));
+  }
+  return is_study(database) ? read_study_report(directory) : read_sweep_report(directory);
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,111 @@
+#include "studies/report/report_page.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+#include "sim/base64.h"
+#include "sim/error.h"
+#include "sim/sha256.h"
+#include "studies/report/html_text.h"
+#include "studies/report/page_files.h"
+#include "studies/report/page_sections.h"
+#include "studies/version.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string source_of(std::string_view text) {
+  const auto digest = sim::sha256(text);
+  return " 'sha256-" + sim::base64(std::string(digest.begin(), digest.end())) + "'";
+}
+
+std::vector<std::string_view> page_scripts(std::span<const Script> scripts) {
+  std::vector<std::string_view> all;
+  for (const Script& script : scripts) {
+    all.push_back(script.text);
+  }
+  for (const std::string_view own : {report_theme_js(), report_charts_js(), report_explorer_rows_js(),
+                                     report_explorer_js(), report_main_js()}) {
+    all.push_back(own);
+  }
+  for (const std::string_view text : all) {
+    if (text.find("</script") != std::string_view::npos || text.find("<!--") != std::string_view::npos) {
+      throw sim::InternalError("a script of the report's page cannot stand in HTML");
+    }
+  }
+  return all;
+}
+
+// Rows of charts that the explorer fills stand in its columns already.
+Json data_of(const ReportData& report) {
+  Json data = {{"kind", report.kind}, {"charts", Json::array()}};
+  for (const ReportChart& chart : report.charts) {
+    Json& each =
+        data["charts"].emplace_back(Json{{"name", chart.name}, {"title", chart.title}, {"spec", chart.spec}});
+    // By this name rows are exchanged.
+    each["spec"]["data"]["name"] = "rows";
+    if (chart.live.is_object() && report.explorer.is_object()) {
+      each["live"] = chart.live;
+      each["spec"]["data"]["values"] = Json::array();
+    }
+  }
+  if (report.explorer.is_object()) {
+    data["explorer"] = report.explorer;
+  }
+  return data;
+}
+
+// Puts texts in the place of {{names}}; what is put in is not looked at again.
+std::string fill(std::string_view page, const std::map<std::string_view, std::string>& parts) {
+  std::string filled;
+  while (!page.empty()) {
+    const std::size_t begin = page.find("{{");
+    filled += page.substr(0, begin);
+    if (begin == std::string_view::npos) {
+      break;
+    }
+    const std::size_t end = page.find("}}", begin);
+    const auto part =
+        end == std::string_view::npos ? parts.end() : parts.find(page.substr(begin + 2, end - begin - 2));
+    sim::ensure(part != parts.end(), "the report's page asks for a part that there is not");
+    filled += part->second;
+    page.remove_prefix(end + 2);
+  }
+  return filled;
+}
+
+}  // namespace
+
+std::string report_page(const ReportData& report, std::span<const Script> scripts) {
+  std::string policy = "default-src 'none'; img-src data:; base-uri 'none'; form-action 'none'; style-src" +
+                       source_of(report_page_css()) + "; script-src";
+  std::string script_elements;
+  for (const std::string_view text : page_scripts(scripts)) {
+    policy += source_of(text);
+    script_elements += "<script>";
+    script_elements += text;
+    script_elements += "</script>\n";
+  }
+  std::string contents;
+  std::string sections;
+  for (const PageSection& section : page_sections(report)) {
+    contents += "<li><a href=\"#" + section.id + "\">" + section.title + "</a></li>\n";
+    sections += "<section id=\"" + section.id + "\" aria-labelledby=\"title-of-" + section.id +
+                "\"><h2 id=\"title-of-" + section.id + "\">" + section.title + "</h2>\n" + section.html +
+                "</section>\n";
+  }
+  return fill(report_page_html(), {{"policy", policy},
+                                   {"version", html_text(version)},
+                                   {"title", html_text(report.title)},
+                                   {"style", std::string(report_page_css())},
+                                   {"contents", contents},
+                                   {"sections", sections},
+                                   {"data", script_json(data_of(report))},
+                                   {"scripts", script_elements}});
+}
+
+}  // namespace marti::studies

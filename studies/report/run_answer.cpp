@@ -1,0 +1,111 @@
+#include "studies/report/run_answer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "studies/text_units.h"
+
+namespace marti::studies {
+
+namespace {
+
+std::string time_text(double ps) {
+  constexpr double longest = 9e18;  // of 64 bits
+  return seconds(static_cast<sim::Ticks>(std::llround(std::min(std::max(ps, 0.0), longest))));
+}
+
+std::string words(std::string name) {
+  for (char& c : name) {
+    c = c == '_' ? ' ' : c;
+  }
+  return name;
+}
+
+std::string with_capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') {
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  }
+  return text;
+}
+
+// Where most of the lost speed-up went.
+std::string largest_loss(const RunJson& run) {
+  std::pair<std::string, double> largest = {"", 0.0};
+  const auto& lost = run.find("machine.speed_up_loss.lost_speed_up");
+  if (!lost.is_object()) {
+    return {};
+  }
+  double all = 0.0;
+  for (const auto& [name, value] : lost.items()) {
+    if (value.is_number()) {
+      all += value.get<double>();
+      if (value.get<double>() > largest.second) {
+        largest = {name, value.get<double>()};
+      }
+    }
+  }
+  if (largest.first.empty() || all <= 0.0) {
+    return {};
+  }
+  return fmt::format("Of the ideal speed-up {:.2f} are lost, most of it ({:.2f}) to {}.", all, largest.second,
+                     words(largest.first));
+}
+
+std::string bound_sentence(const RunJson& run) {
+  const std::optional<double> least = run.number("machine.bounds.frame_time_at_least_ps");
+  const std::optional<double> end = run.number("machine.frame_time_ps");
+  if (!least || !end || *end <= 0.0) {
+    return {};
+  }
+  return fmt::format(
+      "No machine with this work can be faster than {} ({}): better waiting and balance could gain {:.1f} % "
+      "at most.",
+      time_text(*least), words(run.text("machine.bounds.by")), 100.0 * std::max(0.0, 1.0 - *least / *end));
+}
+
+std::string saturation_sentence(const RunJson& run) {
+  const std::optional<double> nodes = run.number("machine.bounds.prediction.saturation_nodes");
+  const std::optional<double> error = run.number("machine.bounds.prediction.mean_value_error");
+  if (!nodes) {
+    return {};
+  }
+  std::string text = fmt::format("The busiest queue of a cluster is full from {:.1f} nodes on", *nodes);
+  if (error) {
+    text += fmt::format(" (by queueing theory, which is {:+.1f} % off for this frame)", 100.0 * *error);
+  }
+  return text + ".";
+}
+
+}  // namespace
+
+std::string machine_text(const RunJson& run) {
+  const double clusters = run.count("machine.clusters");
+  const double nodes = run.count("machine.nodes");
+  const std::string each = fmt::format("{:.0f} node{}", nodes, nodes == 1.0 ? "" : "s");
+  return clusters > 1.0 ? fmt::format("{:.0f} clusters of {}", clusters, each) : each;
+}
+
+std::vector<std::string> answer_of(const RunJson& run) {
+  std::vector<std::string> answer;
+  std::string first =
+      fmt::format("A frame takes {} on {}", time_text(run.count("machine.frame_time_ps")), machine_text(run));
+  if (const std::optional<double> speed_up = run.number("machine.speed_up")) {
+    first += fmt::format(": {:.2f} times as fast as one node, an efficiency of {:.1f} %", *speed_up,
+                         100.0 * run.count("machine.efficiency"));
+  }
+  answer.push_back(first + ".");
+  if (const std::string limit = run.text("machine.limit.sentence"); !limit.empty()) {
+    answer.push_back(with_capital("what limits it, and what to change: " + limit + "."));
+  }
+  for (const std::string& sentence : {largest_loss(run), bound_sentence(run), saturation_sentence(run)}) {
+    if (!sentence.empty()) {
+      answer.push_back(sentence);
+    }
+  }
+  return answer;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,129 @@
+#include "studies/report/run_json.h"
+
+#include <cmath>
+
+#include "sim/error.h"
+#include "sim/files.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::int64_t most_bytes = std::int64_t{256} << 20U;
+constexpr int schema = 1;
+constexpr int deepest = 32;  // a result is not nearly as deep
+
+const Json none;
+
+[[noreturn]] void refuse(const std::string& file, const std::string& reason) {
+  throw sim::UserError(file + ": " + reason +
+                       "; expected is the result.json of `marti run CONFIG -o DIR`: run it again");
+}
+
+// Whoever walks a result may do so by recursion.
+void check_depth(const std::string& file, const std::string& text) {
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      i += c == '\\' ? 1 : 0;
+      quoted = c != '"';
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > deepest) {
+        refuse(file, "is nested too deeply for a result");
+      }
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+}
+
+}  // namespace
+
+const Json& RunJson::find(std::string_view path) const {
+  const Json* part = &json_;
+  while (!path.empty()) {
+    const std::size_t dot = path.find('.');
+    const std::string name(path.substr(0, dot));
+    path = dot == std::string_view::npos ? std::string_view() : path.substr(dot + 1);
+    if (!part->is_object()) {
+      return none;
+    }
+    const auto at = part->find(name);
+    if (at == part->end()) {
+      return none;
+    }
+    part = &*at;
+  }
+  return *part;
+}
+
+const Json& RunJson::at(std::string_view path) const {
+  const Json& part = find(path);
+  if (!part.is_object()) {
+    refuse(file_, "has no object \"" + std::string(path) + "\"");
+  }
+  return part;
+}
+
+std::optional<double> RunJson::number(std::string_view path) const {
+  const Json& value = find(path);
+  if (!value.is_number()) {
+    return std::nullopt;
+  }
+  const double number = value.get<double>();
+  return std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+std::string RunJson::text(std::string_view path) const {
+  const Json& value = find(path);
+  return value.is_string() ? value.get<std::string>() : std::string();
+}
+
+bool RunJson::boolean(std::string_view path) const {
+  const Json& value = find(path);
+  return value.is_boolean() && value.get<bool>();
+}
+
+std::vector<RunJson> RunJson::list(std::string_view path) const {
+  std::vector<RunJson> parts;
+  const Json& value = find(path);
+  if (value.is_array()) {
+    for (const Json& part : value) {
+      if (part.is_object()) {
+        parts.emplace_back(part, file_);
+      }
+    }
+  }
+  return parts;
+}
+
+RunJson read_run_json(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  const std::string text = sim::read_file(path, most_bytes);
+  check_depth(file, text);
+  RunJson run(Json::parse(text, nullptr, false), file);
+  if (run.json().is_discarded()) {
+    refuse(file, "is not JSON");
+  }
+  const Json& found = run.find("marti.schema");
+  if (!found.is_number_integer()) {
+    refuse(file, "has no number \"marti.schema\"");
+  }
+  if (found != schema) {
+    throw sim::UserError(file + ": is a result of schema " + found.dump() +
+                         ", but this program reads schema " + std::to_string(schema) +
+                         "; report it with the program that wrote it");
+  }
+  for (const char* part : {"config.keys", "scene", "structure", "image", "work_log", "plan", "machine"}) {
+    (void)run.at(part);
+  }
+  return run;
+}
+
+}  // namespace marti::studies

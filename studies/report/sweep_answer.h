@@ -1,0 +1,33 @@
+// What a sweep says in sentences: the fastest machine, the one that is worth its price, what limits them, and
+// which axis to turn.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "studies/report/sweep_points.h"
+
+namespace marti::studies {
+
+/// Indices into SweepPoints::points.
+struct Chosen {
+  std::size_t fastest = 0;         ///< the shortest frame; of equal ones the cheapest, then the first
+  std::size_t knee = 0;            ///< of the front, the machine where more money begins to buy less
+  std::vector<std::size_t> front;  ///< that no other beats in price and frame time, ascending by price
+};
+
+/// The price is the cost by [prices], or the number of nodes where all costs are equal. The knee is the point
+/// of the front that lies farthest below the line from its first to its last, both in logarithms.
+[[nodiscard]] Chosen choose(const SweepPoints& sweep);
+
+/// "machine.nodes = 16, cache.size = 16 KiB".
+[[nodiscard]] std::string place_text(const SweepPoints& sweep, const ReportPoint& point);
+
+/// What takes most of the nodes' time, as a sentence without its first capital and full stop; by the rule of
+/// docs/model.md, "What limits the machine".
+[[nodiscard]] std::string limit_sentence(const ReportPoint& point);
+
+[[nodiscard]] std::vector<std::string> answer_of(const SweepPoints& sweep, const Chosen& chosen);
+
+}  // namespace marti::studies

@@ -1,0 +1,162 @@
+#include "studies/report/sweep_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "processors/accounting.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr int samples_a_step = 4;
+
+// Between neighbours, and from the outer values one step as long as the one beside it.
+std::vector<double> samples_of(const ReportAxis& axis) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < axis.values.size(); ++i) {
+    values.push_back(axis.number(i));
+  }
+  const auto place = [&](double from, double to, double share) {
+    const double x = axis.logarithmic ? std::exp(std::lerp(std::log(from), std::log(to), share))
+                                      : std::lerp(from, to, share);
+    return axis.integer ? std::round(x) : x;
+  };
+  std::vector<double> x = values;
+  const std::size_t last = values.size() - 1;
+  for (int i = 1; i <= samples_a_step; ++i) {
+    const double share = static_cast<double>(i) / samples_a_step;
+    for (std::size_t step = 0; step < last; ++step) {
+      if (i < samples_a_step) {
+        x.push_back(place(values[step], values[step + 1], share));
+      }
+    }
+    x.push_back(place(values[0], values[1], -share));
+    x.push_back(place(values[last - 1], values[last], 1.0 + share));
+  }
+  std::sort(x.begin(), x.end());
+  x.erase(std::unique(x.begin(), x.end()), x.end());
+  // Nothing that is counted or measured is below what the whole numbers begin with.
+  const double least = values.front() > 0.0 ? (axis.integer ? 1.0 : 0.0) : values.front();
+  std::erase_if(x, [&](double each) { return each < least || (axis.logarithmic && each <= 0.0); });
+  return x;
+}
+
+// How far a line's own model may go: one step of its own points beyond them.
+std::pair<double, double> reach(const LineModel& line, bool logarithmic) {
+  const std::span<const PointCounters> points = line.points();
+  const auto beyond = [&](double from, double to) { return logarithmic ? to * to / from : 2.0 * to - from; };
+  const double low = beyond(points[1].x, points[0].x);
+  const double high = beyond(points[points.size() - 2].x, points.back().x);
+  constexpr double rounding = 1e-9;
+  return {low - std::abs(low) * rounding, high + std::abs(high) * rounding};
+}
+
+Curve curve_of(const LineModel& line, const ReportAxis& axis, const AxisModel& model) {
+  Curve curve;
+  const auto [low, high] = reach(line, axis.logarithmic);
+  for (const double x : model.x) {
+    std::optional<Modelled>& sample = curve.samples.emplace_back();
+    if (x < low || x > high) {
+      continue;
+    }
+    sample = line.at(x);
+    if (!model.has_band(sample->zone) || !std::isfinite(sample->end)) {
+      sample.reset();
+    }
+  }
+  if (axis.name == "machine.nodes") {
+    curve.saturation = saturation_nodes(line.points().back());
+  }
+  return curve;
+}
+
+}  // namespace
+
+std::string line_key(const ReportPoint& point, std::size_t axis) {
+  std::string key;
+  for (std::size_t i = 0; i < point.place.size(); ++i) {
+    key += (i == 0 ? "" : ",") + (i == axis ? std::string("*") : std::to_string(point.place[i]));
+  }
+  return key;
+}
+
+PointCounters counters_of(const ReportPoint& point, double x) {
+  using processors::Activity;
+  const auto sum = [&](std::initializer_list<Activity> activities) {
+    return std::accumulate(activities.begin(), activities.end(), 0.0, [&](double all, Activity activity) {
+      const std::string name(processors::activity_names[static_cast<std::size_t>(activity)]);
+      return all + point.figure("time_" + name);
+    });
+  };
+  PointCounters counters;
+  counters.x = x;
+  counters.end = point.figure("end");
+  counters.base_end = counters.end * point.figure("speed_up");
+  counters.nodes = std::max(1.0, point.figure("nodes"));
+  counters.clusters = std::max(1.0, point.figure("clusters"));
+  counters.packets = point.figure("packets");
+  counters.work = sum({Activity::traversal, Activity::intersection, Activity::shading, Activity::building,
+                       Activity::cache_access, Activity::switching, Activity::messaging, Activity::transfer,
+                       Activity::bank_access});
+  counters.delays = sum({Activity::lock_wait, Activity::message_wait, Activity::dispatch_wait});
+  counters.links = 0.0;
+  if (point.links_are_queues) {
+    counters.reads = point.figure("interconnect_reads");
+    counters.links = point.figure("interconnect_links");
+    counters.link_busy = point.figure("interconnect_busy");
+  }
+  if (point.banks_are_queues) {
+    counters.banks = point.figure("banks");
+    counters.bank_busy = point.figure("bank_busy");
+  }
+  return counters;
+}
+
+std::vector<AxisModel> model_sweep(const SweepPoints& sweep, std::size_t most_samples) {
+  std::vector<AxisModel> models;
+  std::size_t samples = 0;
+  for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
+    const ReportAxis& axis = sweep.axes[i];
+    if (!axis.numeric) {
+      continue;
+    }
+    std::map<std::string, std::vector<PointCounters>> lines;
+    for (const ReportPoint& point : sweep.points) {
+      if (point.figure("end") > 0.0) {
+        lines[line_key(point, i)].push_back(counters_of(point, axis.number(point.place[i])));
+      }
+    }
+    LeaveOneOut errors;
+    std::map<std::string, LineModel> fitted;
+    for (auto& [key, points] : lines) {
+      if (points.size() >= 2) {
+        const LineModel& line =
+            fitted.emplace(key, LineModel(std::move(points), axis.logarithmic)).first->second;
+        errors.add(line, axis.logarithmic);
+      }
+    }
+    AxisModel model;
+    model.axis = i;
+    for (const Zone zone : {Zone::between, Zone::beyond}) {
+      model.end[static_cast<std::size_t>(zone)] = errors.of_end(zone);
+      model.speed_up[static_cast<std::size_t>(zone)] = errors.of_speed_up(zone);
+    }
+    if (!model.has_band(Zone::between) && !model.has_band(Zone::beyond)) {
+      continue;
+    }
+    model.x = samples_of(axis);
+    samples += model.x.size() * fitted.size();
+    if (samples > most_samples) {
+      break;
+    }
+    for (const auto& [key, line] : fitted) {
+      model.curves.emplace(key, curve_of(line, axis, model));
+    }
+    models.push_back(std::move(model));
+  }
+  return models;
+}
+
+}  // namespace marti::studies

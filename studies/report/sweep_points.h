@@ -1,0 +1,65 @@
+// The timed points of a sweep's store, as a report needs them: axes with their values in order, and figures.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "studies/results/table.h"
+
+namespace marti::studies {
+
+/// Something that the sweep varies: a key, with the keys that change together with it.
+struct ReportAxis {
+  std::string name;                    ///< of the key; "point" for named points
+  std::vector<std::string> followers;  ///< keys whose values follow from this one's
+  std::vector<Cell> values;            ///< ascending, or of texts in the order of the points
+  std::vector<std::string> texts;      ///< the values for people: "16 KiB"
+  bool numeric = false;
+  bool logarithmic = false;  ///< all above 0, and further apart at the upper end
+  bool integer = false;      ///< all are whole numbers
+  std::string unit;          ///< of a numeric axis: "byte", "Hz", "ps", ...; may be empty
+
+  [[nodiscard]] double number(std::size_t value) const;  ///< of a numeric axis
+};
+
+struct ReportPoint {
+  std::int64_t ordinal = 0;
+  std::int64_t machine = 0;
+  double cost = 0.0;
+  std::vector<std::size_t> place;                      ///< for each axis the index of its value
+  std::map<std::string, double, std::less<>> figures;  ///< those that the point has
+  bool links_are_queues = false;                       ///< its interconnect is a bus or a crossbar
+  bool banks_are_queues = false;                       ///< and is not held while a bank works
+
+  /// 0 when the point has none of this name.
+  [[nodiscard]] double figure(std::string_view name) const;
+  [[nodiscard]] bool has(std::string_view name) const { return figures.find(name) != figures.end(); }
+};
+
+struct SweepPoints {
+  std::string version;  ///< of the program that timed them
+  std::vector<ReportAxis> axes;
+  std::vector<ReportPoint> points;  ///< that have been timed, in the order of the plan
+  std::size_t planned = 0;
+  bool priced = false;                                        ///< costs differ
+  std::vector<std::pair<std::string, std::string>> settings;  ///< that all timed points share, by key
+  std::vector<std::pair<std::string, std::string>> provenance;
+
+  [[nodiscard]] std::optional<std::size_t> axis(std::string_view name) const;
+};
+
+/// Figures of a point: the counters that reports use, what the store's view `summary` derives, and
+/// "hit_ratio_node", "hit_ratio_list", "hit_ratio_primitive", "hit_ratio_material", "interconnect_wait_p50"
+/// and the like (p50, p95, p99; ps) of "interconnect_wait" and "bank_wait", "part_traversal" and the like
+/// (cycle_groups.h; shares of the nodes' time) and "price" (the cost by [prices], or the number of nodes
+/// where all costs are equal). Throws UserError when the store cannot be read, holds no timed point, or more
+/// than a page can show.
+[[nodiscard]] SweepPoints read_sweep_points(const std::filesystem::path& store);
+
+}  // namespace marti::studies

@@ -1,0 +1,34 @@
+// A set of files that appears whole or not at all.
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/files.h"
+
+namespace marti::studies {
+
+/// Files of one directory that get their names together. To be used while a SignalsHeld lives; what is not
+/// committed is removed.
+class PendingFiles {
+ public:
+  explicit PendingFiles(std::filesystem::path directory);
+
+  /// The name under which to write `name`.
+  const std::filesystem::path& add(const std::string& name);
+  /// Throws UserError with the reason, as sim::write_file does.
+  void write(const std::string& name, std::string_view content);
+
+  /// Renames them all and returns their names, in the order in which they were added. Throws UserError.
+  std::vector<std::filesystem::path> commit();
+
+ private:
+  std::filesystem::path directory_;
+  std::deque<sim::PendingFile> pending_;  // a PendingFile does not move
+  std::vector<std::filesystem::path> names_;
+};
+
+}  // namespace marti::studies

@@ -1,0 +1,61 @@
+// Results to look at, made by the program itself: a run, a sweep and a study, each small, and their reports.
+import { execFileSync } from "node:child_process";
+import { readFileSync, rmSync, mkdirSync } from "node:fs";
+import { join } from "node:path";
+
+const program = process.env.MARTI_PROGRAM;
+const configs = join(process.env.MARTI_SOURCE, "configs");
+const work = process.env.MARTI_WORK;
+
+export function marti(...args) {
+  return execFileSync(program, args, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
+}
+
+const set = (settings) => settings.flatMap((setting) => ["--set", setting]);
+
+const commands = {
+  run: ["run", join(configs, "marti.toml"), ...set(["scene.source=teapot:4", "image.width=96", "image.height=72"])],
+  sweep: ["sweep", join(configs, "sweep-small.toml")],
+  study: [
+    ...["study", "schemes", join(configs, "schemes.toml")],
+    ...set(["scene.source=tetra:3", "image.width=24", "image.height=16", "schemes.nodes=[1,4,9]"]),
+    ...set(["schemes.cell_levels=[2,4,6]", "schemes.stage_nodes=6"]),
+  ],
+};
+
+/** Maps "run", "sweep" and "study" to the directory of the results, the page and the directory of the plots. */
+export function makeReports() {
+  rmSync(work, { recursive: true, force: true });
+  mkdirSync(work, { recursive: true });
+  const reports = {};
+  for (const [kind, command] of Object.entries(commands)) {
+    const directory = join(work, kind);
+    const plots = join(work, `${kind}-plots`);
+    marti(...command, "-o", directory);
+    marti("report", directory, "--plots", plots);
+    reports[kind] = { directory, page: join(directory, "report.html"), plots };
+  }
+  return reports;
+}
+
+/** A CSV text (RFC 4180) as objects by column; numbers are numbers, nothing and an empty text are null. */
+export function parseCsv(text) {
+  const rows = [[]];
+  for (const [, quoted, plain, end] of text.matchAll(/(?:"((?:[^"]|"")*)"|([^",\r\n]*))(,|\r?\n|$)/g)) {
+    if (quoted === undefined && plain === "" && end === "" && rows.at(-1).length === 0) break;
+    rows.at(-1).push(quoted ? quoted.replaceAll('""', '"') : cell(plain ?? ""));
+    if (end === "") break;
+    if (end !== ",") rows.push([]);
+  }
+  if (rows.at(-1).length === 0) rows.pop();
+  const [header, ...body] = rows;
+  return body.map((row) => Object.fromEntries(header.map((name, i) => [name, row[i]])));
+}
+
+function cell(text) {
+  if (text === "") return null;
+  return Number.isNaN(Number(text)) ? text : Number(text);
+}
+
+export const readCsv = (path) => parseCsv(readFileSync(path, "utf8"));
+export const readJson = (path) => JSON.parse(readFileSync(path, "utf8"));

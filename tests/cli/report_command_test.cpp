@@ -1,0 +1,263 @@
+// `marti report` as its user runs it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "studies/report/vega_bundle.h"
+#include "tests/cli/shell.h"
+#include "tests/support/temporary_directory.h"
+
+namespace marti::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+const std::string small = quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") +
+                          " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
+
+const std::string sweep_text = R"([scene]
+source = "teapot:2"
+[image]
+width = 20
+height = 20
+[costs]
+preset = "unit"
+[sweep.axes]
+machine.nodes = [1, 2, 4, 8]
+cache.size = ["1 KiB", "2 KiB", "4 KiB"]
+"interconnect.kind" = ["bus", "crossbar"]
+[prices]
+node = 1
+cache_kib = 0.25
+)";
+
+// What the page gives to its scripts.
+json data_of(const fs::path& file) {
+  const std::string page = read(file);
+  const std::string begin = "id=\"data\">";
+  const std::size_t from = page.find(begin) + begin.size();
+  return json::parse(page.substr(from, page.find("</script>", from) - from), nullptr, false);
+}
+
+bool has_chart(const json& data, const std::string& name) {
+  for (const json& chart : data["charts"]) {
+    if (chart["name"] == name) {
+      return true;
+    }
+  }
+  return false;
+}
+
+class ReportCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!studies::have_vega_scripts()) {
+      GTEST_SKIP() << "built without the scripts of the report";
+    }
+  }
+  [[nodiscard]] fs::path place(const std::string& name) const { return directory_.path() / name; }
+
+  [[nodiscard]] fs::path made_run(const std::string& more = "") const {
+    EXPECT_EQ(marti("run " + small + more + " -o " + quoted(place("run"))).status, 0);
+    return place("run");
+  }
+  [[nodiscard]] fs::path made_sweep() const {
+    write(place("sweep.toml"), sweep_text);
+    const Outcome made =
+        marti("sweep " + quoted(place("sweep.toml")) + " --quiet -o " + quoted(place("sweep")));
+    EXPECT_EQ(made.status, 0) << made.output;
+    return place("sweep");
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(ReportCommand, ReportsARun) {
+  const fs::path run =
+      made_run(" --set count.attribution=true --set count.working_set=true --set record.heat_maps=true");
+  const Outcome made = marti("report " + quoted(run));
+  ASSERT_EQ(made.status, 0) << made.output;
+  const json result = json::parse(read(run / "result.json"));
+  const std::string page = read(run / "report.html");
+  EXPECT_NE(made.output.find("wrote " + (run / "report.html").string()), std::string::npos) << made.output;
+  EXPECT_NE(page.find(result["machine"]["limit"]["sentence"].get<std::string>()), std::string::npos);
+  EXPECT_NE(page.find("<img alt=\"The image\" src=\"data:image/png;base64,"), std::string::npos);
+  EXPECT_NE(page.find("Heat map: misses"), std::string::npos);
+  const json data = data_of(run / "report.html");
+  for (const char* name :
+       {"run_cycles", "run_loss", "run_nodes", "run_references", "run_level_accesses", "run_level_hit_ratio",
+        "run_waits", "run_tree", "run_level_memory", "run_memory", "working_set"}) {
+    EXPECT_TRUE(has_chart(data, name)) << name;
+    EXPECT_NE(page.find("id=\"chart-" + std::string(name) + "\""), std::string::npos) << name;
+  }
+  std::int64_t shown = 0;
+  for (const json& row : data["charts"][0]["spec"]["data"]["values"]) {
+    shown += row["ps"].get<std::int64_t>();
+  }
+  const json& machine = result["machine"];
+  EXPECT_EQ(shown, machine["frame_time_ps"].get<std::int64_t>() * machine["nodes"].get<std::int64_t>());
+}
+
+TEST_F(ReportCommand, ReportsASweepWithItsModel) {
+  const fs::path sweep = made_sweep();
+  const Outcome made = marti("report " + quoted(sweep) + " -o " + quoted(place("page.html")));
+  ASSERT_EQ(made.status, 0) << made.output;
+  EXPECT_NE(made.output.find("The fastest of 24 machines"), std::string::npos) << made.output;
+  const json data = data_of(place("page.html"));
+  for (const char* name : {"frame_time", "speed_up", "efficiency", "cycles", "utilisation", "waits",
+                           "hit_ratio_cache_size", "price"}) {
+    EXPECT_TRUE(has_chart(data, name)) << name;
+  }
+  const json& explorer = data["explorer"];
+  ASSERT_EQ(explorer["axes"].size(), 3U);
+  EXPECT_EQ(explorer["ordinal"].size(), 24U);
+  EXPECT_EQ(explorer["axes"][explorer["axis"].get<std::size_t>()]["name"], "machine.nodes");
+  // Of every modelled curve the error is there, and at exact points it is exact.
+  const json& model = explorer["models"]["0"];
+  EXPECT_EQ(model["error"]["between"]["points"], 12);
+  EXPECT_EQ(model["error"]["beyond"]["points"], 12);
+  EXPECT_GE(model["error"]["beyond"]["p95"], 0.0);
+  for (std::size_t point = 0; point < 24; ++point) {
+    const std::string key =
+        "*," + explorer["place"][1][point].dump() + "," + explorer["place"][2][point].dump();
+    const double nodes = explorer["axes"][0]["values"][explorer["place"][0][point].get<std::size_t>()];
+    for (std::size_t i = 0; i < model["x"].size(); ++i) {
+      if (model["x"][i] == nodes) {
+        const double exact = explorer["columns"]["end"][point];
+        EXPECT_NEAR(model["curves"][key]["ms"][i].get<double>(), exact, 1e-4 * exact)
+            << key << " at " << nodes;
+      }
+    }
+  }
+}
+
+TEST_F(ReportCommand, ReportsAStudy) {
+  const std::string study = quoted(place("study"));
+  ASSERT_EQ(marti("study schemes " + quoted(fs::path(MARTI_SOURCE) / "configs" / "schemes.toml") +
+                  " --set image.width=8 --set image.height=8 -o " + study)
+                .status,
+            0);
+  const Outcome made = marti("report " + study);
+  ASSERT_EQ(made.status, 0) << made.output;
+  const json data = data_of(place("study") / "report.html");
+  EXPECT_EQ(data["kind"], "study");
+  EXPECT_TRUE(has_chart(data, "schemes"));
+  write(place("study") / "schemes.vl.json",
+        R"({"$schema": "vega-lite", "data": {"url": "http://example.org"}})");
+  const Outcome hostile = marti("report " + study);
+  EXPECT_EQ(hostile.status, 2);
+  EXPECT_NE(hostile.output.find("schemes.vl.json"), std::string::npos) << hostile.output;
+}
+
+TEST_F(ReportCommand, GivesTheSameBytesTwice) {
+  const fs::path sweep = made_sweep();
+  ASSERT_EQ(marti("report " + quoted(sweep) + " -o " + quoted(place("a.html"))).status, 0);
+  ASSERT_EQ(marti("report " + quoted(sweep) + " -o " + quoted(place("b.html"))).status, 0);
+  EXPECT_EQ(read(place("a.html")), read(place("b.html")));
+}
+
+TEST_F(ReportCommand, ReportsWhereNothingMayBeWritten) {
+  const fs::path sweep = made_sweep();
+  const std::string page = quoted(place("page.html"));
+  const Outcome made =
+      shell("chmod a-w " + quoted(sweep) + " && " + quoted(MARTI_PROGRAM) + " report " + quoted(sweep) +
+            " -o " + page + "; status=$?; chmod u+w " + quoted(sweep) + "; exit $status");
+  EXPECT_EQ(made.status, 0) << made.output;
+  EXPECT_GT(fs::file_size(place("page.html")), 500'000U);
+}
+
+TEST_F(ReportCommand, RefusesWhatIsNoResultAndLeavesThePageAlone) {
+  const fs::path run = made_run();
+  ASSERT_EQ(marti("report " + quoted(run)).status, 0);
+  const std::string before = read(run / "report.html");
+  const std::string result = read(run / "result.json");
+  const auto refused = [&](const std::string& text, const std::string& complaint) {
+    write(run / "result.json", text);
+    const Outcome outcome = marti("report " + quoted(run));
+    EXPECT_EQ(outcome.status, 2) << outcome.output;
+    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find("result.json"), std::string::npos) << outcome.output;
+    EXPECT_EQ(read(run / "report.html"), before);
+  };
+  refused(result.substr(0, result.size() / 2), "is not JSON");
+  refused("{\"marti\": {\"schema\": 9}}", "schema 9");
+  refused("{\"marti\": {\"schema\": 1}}", "has no object");
+  write(run / "result.json", result);
+  write(run / "image.png", "no image");
+  const Outcome image = marti("report " + quoted(run));
+  EXPECT_EQ(image.status, 2);
+  EXPECT_NE(image.output.find("image.png"), std::string::npos) << image.output;
+  EXPECT_EQ(read(run / "report.html"), before);
+}
+
+TEST_F(ReportCommand, RefusesDirectoriesThatHoldNoResults) {
+  const auto refused = [&](const fs::path& what, const std::string& complaint) {
+    const Outcome outcome = marti("report " + quoted(what));
+    EXPECT_EQ(outcome.status, 2) << outcome.output;
+    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
+    EXPECT_EQ(outcome.output.find("internal"), std::string::npos) << outcome.output;
+  };
+  refused(place("none"), "there is no such directory");
+  write(place("file"), "");
+  refused(place("file"), "is no directory");
+  fs::create_directory(place("empty"));
+  refused(place("empty"), "holds neither");
+  write(place("empty") / "results.sqlite", "SQLite format 4");
+  refused(place("empty"), "results.sqlite");
+  write(place("empty") / "results.sqlite", "");
+  refused(place("empty"), "results.sqlite");
+  write(place("empty") / "result.json", "{}");
+  refused(place("empty"), "holds both");
+}
+
+TEST_F(ReportCommand, RefusesADamagedStore) {
+  const fs::path sweep = made_sweep();
+  const std::string store = read(sweep / "results.sqlite");
+  std::string damaged = store;
+  for (std::size_t i = 4096; i < damaged.size(); i += 3) {
+    damaged[i] = static_cast<char>(i);
+  }
+  for (const std::string& bytes : {damaged, store.substr(0, store.size() / 2)}) {
+    write(sweep / "results.sqlite", bytes);
+    const Outcome outcome = marti("report " + quoted(sweep));
+    EXPECT_EQ(outcome.status, 2) << outcome.output;
+    EXPECT_NE(outcome.output.find("results.sqlite"), std::string::npos) << outcome.output;
+    EXPECT_FALSE(fs::exists(sweep / "report.html"));
+  }
+}
+
+TEST_F(ReportCommand, EscapesWhatASceneIsCalled) {
+  const fs::path run = made_run();
+  json result = json::parse(read(run / "result.json"));
+  result["scene"]["name"] = "</script><script>alert(1)</script>";
+  result["machine"]["limit"]["sentence"] = "<img src=x onerror=alert(1)>";
+  write(run / "result.json", result.dump());
+  ASSERT_EQ(marti("report " + quoted(run)).status, 0);
+  const std::string page = read(run / "report.html");
+  EXPECT_EQ(page.find("<script>alert"), std::string::npos);
+  EXPECT_EQ(page.find("<img src=x"), std::string::npos);
+}
+
+TEST_F(ReportCommand, SaysWhatPdfNeeds) {
+  const Outcome outcome = marti("report " + quoted(made_run()) + " --pdf");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.output.find("--plots"), std::string::npos) << outcome.output;
+}
+
+TEST(ReportWithoutScripts, SaysHowToBuildWithThem) {
+  if (studies::have_vega_scripts()) {
+    GTEST_SKIP() << "built with the scripts of the report";
+  }
+  const TemporaryDirectory directory;
+  const std::string run = quoted(directory.path() / "run");
+  ASSERT_EQ(marti("run " + small + " -o " + run).status, 0);
+  const Outcome outcome = marti("report " + run);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.output.find("-DMARTI_REPORT=ON"), std::string::npos) << outcome.output;
+}
+
+}  // namespace
+}  // namespace marti::test

@@ -1,0 +1,177 @@
+// The charts of a report as files, drawn by node and rsvg-convert; programs that fail in every way there is.
+#include "studies/report/plots.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/error.h"
+#include "sim/files.h"
+#include "studies/report/child_process.h"
+#include "studies/report/vega_bundle.h"
+
+namespace marti::studies {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using namespace std::chrono_literals;
+
+ChildProcess shell(const std::string& script, std::chrono::seconds limit = 20s) {
+  return {{"sh", "-c", script}, "dash", {}, limit};
+}
+
+/// What it is told instead of a result.
+template <typename Function>
+std::string refusal(Function function) {
+  try {
+    function();
+  } catch (const sim::UserError& error) {
+    return error.what();
+  }
+  return "no refusal";
+}
+
+TEST(ChildProcess, GivesItsOutputForItsInput) {
+  std::string much;
+  for (int i = 0; i < 500'000; ++i) {
+    much += std::to_string(i) + "\n";
+  }
+  EXPECT_EQ(run_child({{"cat"}, "coreutils", {}, 20s}, much), much);
+  EXPECT_EQ(run_child({{"true"}, "coreutils", {}, 20s}, much), "");  // reads nothing of it
+  EXPECT_EQ(run_child({{"cat"}, "coreutils", {}, 20s}, ""), "");
+}
+
+TEST(ChildProcess, HasTheEnvironmentWithWhatIsAdded) {
+  ChildProcess child = shell("echo \"$MARTI_ADDED,${PATH:+path}\"");
+  child.environment = {"MARTI_ADDED=new"};
+  EXPECT_EQ(run_child(child, ""), "new,path\n");
+}
+
+TEST(ChildProcess, HearsSignals) {
+  EXPECT_THAT(refusal([] { run_child(shell("kill -INT $$; sleep 20"), ""); }),
+              HasSubstr("sh was ended by signal 2"));
+}
+
+TEST(ChildProcess, ThatFailsSaysWhy) {
+  EXPECT_EQ(refusal([] { run_child(shell("echo out; echo bad luck >&2; exit 3"), ""); }),
+            "sh failed with status 3: bad luck");
+  EXPECT_THAT(refusal([] { run_child(shell("exit 3"), ""); }), HasSubstr("says nothing"));
+  EXPECT_EQ(
+      refusal([] {
+        run_child({{"marti-no-such-program"}, "some-package", {}, 20s}, "");
+      }),
+      "marti-no-such-program is needed for this and cannot be started: No such file or directory (Debian "
+      "package: some-package)");
+}
+
+TEST(ChildProcess, IsEndedWhenItTakesTooLongOrWritesTooMuch) {
+  EXPECT_THAT(refusal([] { run_child(shell("exec sleep 60", 1s), ""); }), HasSubstr("longer than 1 seconds"));
+  EXPECT_THAT(refusal([] { run_child(shell("exec >&- 2>&-; exec sleep 60", 1s), ""); }),
+              HasSubstr("longer than 1 seconds"));
+  EXPECT_THAT(refusal([] {
+                run_child({{"yes"}, "coreutils", {}, 20s}, "", 1000);
+              }),
+              HasSubstr("wrote more than"));
+}
+
+ReportChart chart(const std::string& name) {
+  ReportChart made;
+  made.name = name;
+  made.spec = {{"data", {{"values", {{{"nodes", 1}, {"speedup", 1.0}}, {{"nodes", 64}, {"speedup", 48.5}}}}}},
+               {"width", "container"},
+               {"mark", {{"type", "line"}, {"point", true}}},
+               {"encoding",
+                {{"x", {{"field", "nodes"}, {"type", "quantitative"}}},
+                 {"y", {{"field", "speedup"}, {"type", "quantitative"}}}}}};
+  made.csv = "nodes,speedup\r\n1,1\r\n64,48.5\r\n";
+  return made;
+}
+
+class Plots : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!have_vega_scripts()) {
+      GTEST_SKIP() << "built without the scripts that draw";
+    }
+    directory_ = fs::path(testing::TempDir()) /
+                 ("plots_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(directory_);
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  [[nodiscard]] std::string read(const std::string& name) const {
+    return sim::read_file(directory_ / name, 10'000'000);
+  }
+  [[nodiscard]] std::string write(const std::vector<ReportChart>& charts, bool pdf = false) const {
+    return refusal([&] { static_cast<void>(write_plots(charts, directory_, pdf)); });
+  }
+
+  fs::path directory_;
+};
+
+TEST_F(Plots, AreWrittenWithTheirData) {
+  const std::vector<fs::path> files =
+      write_plots(std::vector{chart("speedup"), chart("other")}, directory_, /*pdf=*/true);
+  EXPECT_THAT(files, testing::ElementsAre(directory_ / "speedup.svg", directory_ / "speedup.csv",
+                                          directory_ / "speedup.pdf", directory_ / "other.svg",
+                                          directory_ / "other.csv", directory_ / "other.pdf"));
+  EXPECT_THAT(read("speedup.svg"), testing::StartsWith("<svg "));
+  EXPECT_THAT(read("speedup.svg"), HasSubstr("nodes: 64; speedup: 48.5"));  // the mark's accessible name
+  EXPECT_EQ(read("speedup.csv"), chart("").csv);
+  EXPECT_THAT(read("speedup.pdf"), testing::StartsWith("%PDF-"));
+}
+
+TEST_F(Plots, AreTheSameBytesAgain) {
+  static_cast<void>(write_plots(std::vector{chart("speedup")}, directory_, /*pdf=*/true));
+  const std::string svg = read("speedup.svg");
+  const std::string pdf = read("speedup.pdf");
+  fs::remove_all(directory_);
+  static_cast<void>(write_plots(std::vector{chart("speedup")}, directory_, /*pdf=*/true));
+  EXPECT_EQ(read("speedup.svg"), svg);
+  EXPECT_EQ(read("speedup.pdf"), pdf);
+}
+
+TEST_F(Plots, OfAChartThatCannotBeDrawnLeaveEverythingAsItWas) {
+  static_cast<void>(write_plots(std::vector{chart("speedup")}, directory_, /*pdf=*/false));
+  const std::string svg = read("speedup.svg");
+  ReportChart bad = chart("bad");
+  bad.spec["mark"] = "no such mark";
+  EXPECT_THAT(write({chart("speedup"), bad}), HasSubstr("chart bad cannot be drawn: "));
+  EXPECT_EQ(read("speedup.svg"), svg);
+  EXPECT_FALSE(fs::exists(directory_ / "bad.svg"));
+}
+
+TEST_F(Plots, HoldNothingFromElsewhere) {
+  const std::string secret = (fs::path(testing::TempDir()) / "secret.json").string();
+  sim::write_file(secret, "[{\"nodes\": 77, \"speedup\": 1}]");
+  for (const std::string& url : {secret, "file://" + secret, std::string("http://127.0.0.1:9/x.json")}) {
+    ReportChart bad = chart("bad");
+    bad.spec["data"] = {{"url", url}};
+    EXPECT_THAT(write({bad}), HasSubstr("it refers to " + url)) << url;
+  }
+  ReportChart image = chart("image");
+  image.spec["mark"] = {{"type", "image"}, {"url", "http://127.0.0.1:9/x.png"}};
+  EXPECT_THAT(write({image}), HasSubstr("it refers to http://127.0.0.1:9/x.png"));
+  fs::remove(secret);
+}
+
+TEST_F(Plots, NeverReplaceResults) {
+  fs::create_directories(directory_);
+  sim::write_file(directory_ / "results.sqlite", "");
+  EXPECT_THAT(write({chart("speedup")}), HasSubstr("holds results (results.sqlite)"));
+}
+
+TEST_F(Plots, RefuseNamesThatAreNoFiles) {
+  for (const char* const name : {"", ".", "..", "a/b", "../x", ".hidden", "new\nline"}) {
+    EXPECT_THAT(write({chart(name)}), HasSubstr("cannot be the name of a file")) << name;
+  }
+  EXPECT_FALSE(fs::exists(directory_));
+}
+
+}  // namespace
+}  // namespace marti::studies

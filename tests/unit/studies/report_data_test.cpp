@@ -1,0 +1,187 @@
+// What a report is gathered from, and how texts of any origin become parts of a page.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "sim/error.h"
+#include "studies/report/axis_order.h"
+#include "studies/report/chart_library.h"
+#include "studies/report/cycle_groups.h"
+#include "studies/report/html_text.h"
+#include "studies/report/report_files.h"
+#include "studies/report/report_page.h"
+#include "studies/report/rows_csv.h"
+#include "studies/report/run_json.h"
+#include "studies/report/sweep_answer.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/support/user_error.h"
+
+namespace marti::studies {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using test::TemporaryDirectory;
+using test::user_error_of;
+
+void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+
+TEST(HtmlText, LeavesNoMarkup) {
+  EXPECT_EQ(html_text("<b a=\"1\" c='2'>&"), "&lt;b a=&quot;1&quot; c=&#39;2&#39;&gt;&amp;");
+  EXPECT_EQ(html_text(std::string("a\0b\x1b", 4)),
+            "a\xef\xbf\xbd"
+            "b\xef\xbf\xbd");
+  EXPECT_EQ(html_text("\xff"), "\xef\xbf\xbd");
+}
+
+TEST(ScriptJson, CannotEndItsElement) {
+  const Json json = {{"</script><!--", "<script>&"}, {"bad", "\xff"}};
+  const std::string text = script_json(json);
+  EXPECT_EQ(text.find('<'), std::string::npos);
+  EXPECT_EQ(Json::parse(text).begin().key(), "</script><!--");
+  EXPECT_EQ(Json::parse(text)["bad"], "\xef\xbf\xbd");
+}
+
+TEST(ReportPage, EscapesWhatAResultSays) {
+  ReportData report;
+  report.kind = "run";
+  report.title = "</title><script>alert(1)</script>{{data}}";
+  report.answer = {"<img src=x>"};
+  report.configuration = "scene.source = \"</pre>\"\n";
+  Table table("t", "<i>", {{"c", ColumnType::text, "", "\"><b>"}});
+  table.add_row({std::string("</table>")});
+  report.tables.push_back({table, false});
+  report.images.push_back({"x", "\" onerror=\"", "\x89PNG"});
+  const std::string page = report_page(report, {});
+  for (const char* bad : {"<script>alert", "<img src=x", "</pre>\"", "<i>", "<b>", "\" onerror"}) {
+    EXPECT_EQ(page.find(bad), std::string::npos) << bad;
+  }
+  EXPECT_NE(page.find("{{data}}</title>"), std::string::npos) << "what is put in is not looked at again";
+  EXPECT_EQ(page, report_page(report, {}));
+}
+
+TEST(ReportPage, AllowsItsOwnScriptsOnly) {
+  const Script script{"x", "1", "abc"};
+  const std::string page = report_page({}, {&script, 1});
+  // printf abc | openssl dgst -sha256 -binary | base64
+  EXPECT_NE(page.find("script-src 'sha256-ungWv48Bz+pBQUDeXa4iI7ADYaOWF3qctBD/YfIAFa0='"), std::string::npos);
+  EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
+  EXPECT_EQ(page.find("unsafe"), std::string::npos);
+  const Script bad{"x", "1", "'</script>'"};
+  EXPECT_THROW((void)report_page({}, {&bad, 1}), sim::InternalError);
+}
+
+TEST(OrderAxes, JoinsKeysThatChangeTogether) {
+  const std::vector<std::string> names = {"point", "kind", "nodes", "size", "ways", "fixed"};
+  std::vector<std::vector<Cell>> points;
+  for (const auto& [point, kind] : {std::pair("b", "bus"), std::pair("a", "bus"), std::pair("c", "ideal")}) {
+    for (const std::int64_t nodes : {4, 1}) {
+      for (const std::int64_t size : {1024, 4096}) {
+        points.push_back({std::string(point), std::string(kind), nodes, size, size / 1024, std::int64_t{7}});
+      }
+    }
+  }
+  const std::vector<AxisColumn> axes = order_axes(names, points);
+  ASSERT_EQ(axes.size(), 3U);
+  EXPECT_EQ(axes[0].name, "point");
+  EXPECT_EQ(axes[0].followers, std::vector<std::string>{"kind"});
+  EXPECT_EQ(axes[0].values, (std::vector<Cell>{std::string("b"), std::string("a"), std::string("c")}));
+  EXPECT_EQ(axes[1].name, "nodes");
+  EXPECT_EQ(axes[1].values, (std::vector<Cell>{std::int64_t{1}, std::int64_t{4}}));
+  EXPECT_EQ(axes[1].index[0], 1U);
+  EXPECT_EQ(axes[2].followers, std::vector<std::string>{"ways"});
+}
+
+TEST(Choose, FindsTheFastestTheFrontAndItsKnee) {
+  SweepPoints sweep;
+  const std::vector<std::pair<double, double>> offers = {{1, 100}, {2, 50},  {4, 26},
+                                                         {8, 25},  {16, 24}, {8, 60}};
+  for (const auto& [price, end] : offers) {
+    ReportPoint point;
+    point.figures = {{"price", price}, {"end", end}};
+    sweep.points.push_back(point);
+  }
+  const Chosen chosen = choose(sweep);
+  EXPECT_EQ(chosen.front, (std::vector<std::size_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(chosen.fastest, 4U);
+  EXPECT_EQ(chosen.knee, 2U);
+}
+
+TEST(CycleGroups, AddUpToAllActivities) {
+  double next = 0.0;
+  double all = 0.0;
+  const auto parts = group_cycles([&](std::string_view) { return all += ++next, next; });
+  double sum = 0.0;
+  for (const double part : parts) {
+    sum += part;
+  }
+  EXPECT_DOUBLE_EQ(sum, all);
+}
+
+TEST(RowsCsv, QuotesWhatItHasTo) {
+  const Json rows = Json::parse(R"([{"a": 1, "b": "x,\"y\""}, {"a": null, "c": ""}])");
+  EXPECT_EQ(csv_of_rows(rows), "a,b,c\r\n1,\"x,\"\"y\"\"\",\r\n,,\"\"\r\n");
+}
+
+TEST(ReportCharts, AllSpecificationsAreWhole) {
+  Table table("t", "A title", {{"x", ColumnType::integer, "1", ""}});
+  table.add_row({std::int64_t{1}});
+  EXPECT_FALSE(report_chart_specifications().empty());
+  for (const ChartSpecification& each : report_chart_specifications()) {
+    const ReportChart chart = make_chart(each.name, table);
+    EXPECT_NE(chart.spec["$schema"].get<std::string>().find("vega-lite"), std::string::npos) << each.name;
+    EXPECT_EQ(chart.spec["data"]["values"][0]["x"], 1) << each.name;
+    EXPECT_EQ(chart.title, "A title");
+  }
+  EXPECT_THROW((void)make_chart("none", table), sim::InternalError);
+}
+
+TEST(ReadChart, TakesRowsThatStandInTheFile) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "some.thing.vl.json";
+  const std::string begin =
+      R"({"$schema": "https://vega.github.io/schema/vega-lite/v6.json", "title": "T", )";
+  write(file, begin + R"("data": {"values": [{"a": 1}]}, "mark": "bar"})");
+  const ReportChart chart = read_chart(file);
+  EXPECT_EQ(chart.name, "some_thing");
+  EXPECT_EQ(chart.title, "T");
+  EXPECT_EQ(chart.csv, "a\r\n1\r\n");
+  for (const char* rest :
+       {R"("mark": "bar"})", R"("data": {"url": "http://x"}})", R"("data": {"values": [1]}})", R"("data": {)",
+        R"("data": {"values": []}, "layer": [{"data": {"url": "x"}}]})"}) {
+    write(file, begin + rest);
+    const std::string error = user_error_of([&] { (void)read_chart(file); });
+    EXPECT_NE(error.find("some.thing.vl.json"), std::string::npos) << rest << error;
+  }
+}
+
+TEST(ReadImage, TakesPngOnly) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "image.png";
+  write(file, "GIF89a");
+  EXPECT_NE(user_error_of([&] { (void)read_image(file, ""); }).find("no PNG"), std::string::npos);
+}
+
+TEST(RunJson, IsReadWithCare) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "result.json";
+  const auto error = [&](const std::string& text) {
+    write(file, text);
+    return user_error_of([&] { (void)read_run_json(file); });
+  };
+  EXPECT_NE(error("{").find("is not JSON"), std::string::npos);
+  EXPECT_NE(error("[]").find("marti.schema"), std::string::npos);
+  EXPECT_NE(error(R"({"marti": {"schema": 2}})").find("schema 2"), std::string::npos);
+  EXPECT_NE(error(R"({"marti": {"schema": 1}})").find("config.keys"), std::string::npos);
+  EXPECT_NE(error(std::string(100'000, '[')).find("nested too deeply"), std::string::npos);
+  const RunJson run(Json::parse(R"({"a": {"b": 2, "c": "x", "d": [{"e": 1}, 3]}})"), "f");
+  EXPECT_EQ(run.number("a.b"), 2.0);
+  EXPECT_FALSE(run.number("a.c").has_value());
+  EXPECT_EQ(run.text("a.b"), "");
+  EXPECT_EQ(run.list("a.d").size(), 1U);
+  EXPECT_TRUE(run.find("a.x.y").is_null());
+}
+
+}  // namespace
+}  // namespace marti::studies
