@@ -19,7 +19,6 @@
 #include "scenes/tessellate.h"
 #include "sim/error.h"
 #include "sim/files.h"
-#include "sim/schema.h"
 #include "sim/units.h"
 #include "studies/command_error.h"
 #include "studies/compare/compare.h"
@@ -28,13 +27,13 @@
 #include "studies/error/error_keys.h"
 #include "studies/frames/frames.h"
 #include "studies/image_file.h"
-#include "studies/man_page.h"
 #include "studies/operations/operations.h"
 #include "studies/output.h"
 #include "studies/paper/paper.h"
 #include "studies/paper/paper_keys.h"
 #include "studies/plan/verify_plan.h"
 #include "studies/ranks/ranks.h"
+#include "studies/reference_commands.h"
 #include "studies/report/report_command.h"
 #include "studies/run_result.h"
 #include "studies/schemes/schemes.h"
@@ -43,7 +42,6 @@
 #include "studies/signals_held.h"
 #include "studies/stability/stability.h"
 #include "studies/stability/stability_keys.h"
-#include "studies/sweep/sweep_keys.h"
 #include "studies/sweep_command.h"
 #include "studies/trace/trace.h"
 #include "studies/version.h"
@@ -215,6 +213,7 @@ void add_sweep_command(CLI::App& app, studies::SweepArguments& arguments) {
       ->type_name("DIR")
       ->check(no_empty_directory);
   sweep->add_option("--threads", arguments.threads, "machines timed at a time; 0: as many as there are cores")
+      ->type_name("N")
       ->check(CLI::Range(0, 4096));
   sweep
       ->add_option("--keep-logs", arguments.keep_logs,
@@ -294,12 +293,16 @@ void add_compare_command(CLI::App& app, CompareArguments& arguments) {
 void add_report_command(CLI::App& app, studies::ReportArguments& arguments) {
   CLI::App* report = app.add_subcommand(
       "report", "One HTML page from a run, a sweep or a study: the answer, charts, a what-if");
-  report->add_option("DIR", arguments.directory, "directory of a run, a sweep or a study")->required();
+  report->add_option("DIR", arguments.directory, "directory of a run, a sweep or a study")
+      ->type_name("DIR")
+      ->required();
   report->add_option("-o,--output", arguments.output, "the page; DIR/report.html if not given")
+      ->type_name("FILE.html")
       ->check([](const std::string& name) {
         return name.empty() ? std::string("the name of a file must not be empty") : std::string();
       });
   report->add_option("--plots", arguments.plots, "directory for every chart as SVG and CSV")
+      ->type_name("DIR")
       ->check(no_empty_directory);
   report->add_flag("--pdf", arguments.pdf, "the plots also as PDF");
   report->callback([&] { studies::report_command(arguments, print); });
@@ -370,38 +373,6 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
   });
 }
 
-// Every key of every command.
-sim::Schema all_keys() {
-  sim::Schema schema = studies::run_schema();
-  studies::declare_paper_keys(schema);
-  studies::declare_schemes_keys(schema);
-  studies::declare_error_keys(schema);
-  studies::declare_rendering_error_keys(schema);
-  studies::declare_stability_keys(schema);
-  studies::declare_sweep_keys(schema);
-  return schema;
-}
-
-// What tells people and shells about the program itself.
-void add_reference_commands(CLI::App& app, bool& markdown) {
-  CLI::App* config = app.add_subcommand("config", "Prints every configuration key");
-  config->add_flag("--markdown", markdown, "as Markdown, as in docs/configuration.md");
-  config->callback([&markdown] {
-    print(markdown ? sim::list_keys_as_markdown(all_keys()) : sim::list_keys_as_text(all_keys()));
-  });
-  CLI::App* completion =
-      app.add_subcommand("completion", "Prints the script that completes commands in a shell");
-  completion->require_subcommand(1);
-  for (const char* shell : {"bash", "zsh"}) {
-    completion->add_subcommand(shell, "for " + std::string(shell))->callback([shell] {
-      print(std::string(studies::completion_script(shell)));
-    });
-  }
-  app.add_subcommand("man", "Prints the manual page, for man(1)")->callback([&app] {
-    print(studies::man_page(app));
-  });
-}
-
 int parse_and_run(int argc, char** argv) {
   CLI::App app("marti: simulates multiprocessor ray-tracing machines");
   app.set_version_flag("--version", std::string(studies::version));
@@ -450,7 +421,7 @@ int parse_and_run(int argc, char** argv) {
   add_report_command(app, report_arguments);
 
   bool markdown = false;
-  add_reference_commands(app, markdown);
+  studies::add_reference_commands(app, markdown, print);
 
   SceneArguments scene_arguments;
   add_scene_commands(app, scene_arguments);
@@ -458,7 +429,7 @@ int parse_and_run(int argc, char** argv) {
   // The scripts of the shells ask so; an option among their words must not be taken for one of this call.
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words.front() == "__complete") {
-    print(studies::completions(app, all_keys(), std::span(words).subspan(1)));
+    print(studies::completions(app, studies::all_keys(), std::span(words).subspan(1)));
     return done;
   }
   try {
