@@ -350,11 +350,16 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
     command->add_option("SOURCE", arguments.source, "name:size, or a .gltf or .glb file")
         ->type_name("SCENE")
         ->required();
-    command->add_option("--scene", arguments.gltf.scene, "scene of the file, by index or name");
-    command->add_option("--camera", arguments.gltf.camera, "camera of the file, by index or name");
-    command->add_option("--animation", arguments.gltf.animation,
-                        "animation of the file, by index or name; none: the static pose");
-    command->add_option("--time", arguments.gltf.time, "the pose at this many seconds of the animation");
+    command->add_option("--scene", arguments.gltf.scene, "scene of the file, by index or name")
+        ->type_name("NAME");
+    command->add_option("--camera", arguments.gltf.camera, "camera of the file, by index or name")
+        ->type_name("NAME");
+    command
+        ->add_option("--animation", arguments.gltf.animation,
+                     "animation of the file, by index or name; none: the static pose")
+        ->type_name("NAME");
+    command->add_option("--time", arguments.gltf.time, "the pose at this many seconds of the animation")
+        ->type_name("SECONDS");
   }
   save->add_option("FILE", arguments.target, "the .glb file to write")->type_name("FILE.glb")->required();
   info->callback([&] { print(scene_info(arguments)); });
