@@ -147,6 +147,31 @@ void check_free(const DocumentValue& value, const std::string& name, std::string
 
 }  // namespace
 
+/// What to write where a value that is a text lacks its quotation marks, the commonest fault of all; else
+/// nothing.
+std::string missing_quotes(std::string_view text, std::size_t line) {
+  for (std::size_t i = 1; i < line; ++i) {
+    text.remove_prefix(std::min(text.size(), text.find('\n') + 1));
+  }
+  text = text.substr(0, text.find('\n'));
+  text = text.substr(0, text.find('#'));
+  const std::size_t equals = text.find('=');
+  if (equals == std::string_view::npos || text.find_first_of("\"'[]{}") != std::string_view::npos) {
+    return "";
+  }
+  const auto trimmed = [](std::string_view part) {
+    const std::size_t begin = part.find_first_not_of(" \t\r");
+    return begin == std::string_view::npos
+               ? std::string()
+               : std::string(part.substr(begin, part.find_last_not_of(" \t\r") - begin + 1));
+  };
+  const std::string value = trimmed(text.substr(equals + 1));
+  return value.empty()
+             ? "; the value is missing"
+             : "; texts and values with a unit stand in quotation marks: " + trimmed(text.substr(0, equals)) +
+                   " = \"" + value + "\"";
+}
+
 /// Builds one Config. Everything wrong is thrown at once, in the order of the text.
 class ConfigReader {
  public:
@@ -187,7 +212,8 @@ class ConfigReader {
     } catch (const toml::parse_error& error) {
       const toml::source_position at = error.source().begin;
       std::ostringstream message;
-      message << config_.name_ << ":" << at.line << ":" << at.column << ": " << error.description();
+      message << config_.name_ << ":" << at.line << ":" << at.column << ": " << error.description()
+              << missing_quotes(text, at.line);
       throw UserError(message.str());
     }
   }
@@ -280,6 +306,10 @@ class ConfigReader {
       const std::string keys = keys_below(key);
       fail_at(origin,
               "is a section and has no value of its own" + (keys.empty() ? "" : "; its keys are " + keys));
+    }
+    if (const std::string_view command = schema.elsewhere_of(key); !command.empty()) {
+      fail_at(origin,
+              "this command does not read it; the configuration is one for `" + std::string(command) + "`");
     }
     const bool is_table = value != nullptr && value->table() != nullptr;
     fail_at(origin, std::string(is_table ? "unknown section" : "unknown key") + suggestion(key) +

@@ -336,6 +336,20 @@ bool Schema::is_free_section(std::string_view name) const {
   return std::find(free_sections_.begin(), free_sections_.end(), name) != free_sections_.end();
 }
 
+void Schema::elsewhere(std::string_view section, std::string_view command) {
+  elsewhere_.emplace_back(section, command);
+}
+
+std::string_view Schema::elsewhere_of(std::string_view name) const {
+  const std::string_view section = name.substr(0, name.find('.'));
+  if (is_section(section)) {
+    return {};
+  }
+  const auto found = std::find_if(elsewhere_.begin(), elsewhere_.end(),
+                                  [&](const auto& one) { return one.first == section; });
+  return found == elsewhere_.end() ? std::string_view() : std::string_view(found->second);
+}
+
 bool Schema::is_section(std::string_view name) const {
   return prefixes_.contains(name) || is_free_section(name);
 }

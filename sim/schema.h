@@ -12,6 +12,7 @@
 #include <string_view>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -76,6 +77,10 @@ class Schema {
   /// the keys that are declared there (Config::free_section).
   void free_section(std::string_view name, std::string_view meaning);
 
+  /// What a file writes below this section is read by `command` and by no other: an error message says so.
+  /// For sections of which this schema declares no key.
+  void elsewhere(std::string_view section, std::string_view command);
+
   // A declaration throws InternalError when the name was declared before, is not made of lower-case
   // letters, digits, '_' and '.', or the default lies outside the range. Ranges and defaults of sizes,
   // frequencies, durations and percentages are written with their units.
@@ -110,6 +115,8 @@ class Schema {
   /// Index into keys(), if the key is declared.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
   [[nodiscard]] bool is_free_section(std::string_view name) const;
+  /// The command that reads this key, when it is not that of this schema; empty if that is not known.
+  [[nodiscard]] std::string_view elsewhere_of(std::string_view name) const;
   /// Is `name` a proper prefix of declared keys ("cache" of "cache.size"), or a free section?
   [[nodiscard]] bool is_section(std::string_view name) const;
 
@@ -118,6 +125,7 @@ class Schema {
   std::vector<std::string> names_;
   std::vector<Section> sections_;
   std::vector<std::string> free_sections_;
+  std::vector<std::pair<std::string, std::string>> elsewhere_;  // section and command
   // Looked up for every key of every machine of a sweep: without a copy of the name.
   std::unordered_map<std::string, std::size_t, NameHash, std::equal_to<>> index_;
   std::unordered_set<std::string, NameHash, std::equal_to<>> prefixes_;

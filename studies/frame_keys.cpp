@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <limits>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace marti::studies {
@@ -126,6 +128,15 @@ FrameConfig read_frame(sim::Config& config) {
   frame.scene = config.text("scene.source");
   if (!config.where("scene.source").starts_with("--set")) {
     frame.open.base_directory = std::filesystem::path(config.name()).parent_path();
+  }
+  if (scenes::names_a_file(frame.scene)) {
+    const std::filesystem::path file = frame.open.base_directory / frame.scene;
+    if (std::error_code error; !std::filesystem::exists(file, error)) {
+      config.fail("scene.source",
+                  "there is no file " + file.string() +
+                      "; one that a configuration names is looked for beside it, one given with "
+                      "--set in the current directory");
+    }
   }
   frame.open.gltf.scene = config.text("scene.scene");
   frame.open.gltf.camera = config.text("scene.camera");

@@ -28,6 +28,16 @@ inline void clock(sim::Schema& schema, std::string_view name, std::string_view m
   schema.frequency(name, "33 MHz", {"1 Hz", "1 THz"}, meaning);
 }
 
+/// Says which command reads the sections that this schema does not declare: a file is often given to the
+/// wrong one.
+inline void declare_sections_of_other_commands(sim::Schema& schema) {
+  for (const std::string_view study : {"paper", "schemes", "error", "stability"}) {
+    schema.elsewhere(study, "marti study " + std::string(study));
+  }
+  schema.elsewhere("sweep", "marti sweep");
+  schema.elsewhere("prices", "marti sweep");
+}
+
 /// The choices of a key, from the names of an enumeration.
 template <std::size_t N>
 std::vector<std::string> names(const std::array<std::string_view, N>& list) {

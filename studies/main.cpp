@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,9 +19,10 @@
 #include "scenes/tessellate.h"
 #include "sim/error.h"
 #include "sim/files.h"
-#include "sim/schema.h"
 #include "sim/units.h"
+#include "studies/command_error.h"
 #include "studies/compare/compare.h"
+#include "studies/config_file.h"
 #include "studies/error/error.h"
 #include "studies/error/error_keys.h"
 #include "studies/frames/frames.h"
@@ -30,14 +33,15 @@
 #include "studies/paper/paper_keys.h"
 #include "studies/plan/verify_plan.h"
 #include "studies/ranks/ranks.h"
+#include "studies/reference_commands.h"
 #include "studies/report/report_command.h"
 #include "studies/run_result.h"
 #include "studies/schemes/schemes.h"
 #include "studies/schemes/schemes_keys.h"
+#include "studies/shell_completion.h"
 #include "studies/signals_held.h"
 #include "studies/stability/stability.h"
 #include "studies/stability/stability_keys.h"
-#include "studies/sweep/sweep_keys.h"
 #include "studies/sweep_command.h"
 #include "studies/trace/trace.h"
 #include "studies/version.h"
@@ -87,6 +91,7 @@ void run_within_command(const RunArguments& arguments, sim::Config& config) {
 
 void run_command(const RunArguments& arguments) {
   const studies::KeptItems keep(arguments.keep);
+  studies::require_config_file(arguments.config);
   sim::Config config = sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
   if (!arguments.within.empty()) {
     run_within_command(arguments, config);
@@ -131,6 +136,9 @@ std::string no_empty_directory(const std::string& name) {
 // everything is written.
 template <class Study>
 void run_study(const StudyArguments& arguments, const sim::Schema& schema, const Study& study) {
+  if (!arguments.config.empty()) {
+    studies::require_config_file(arguments.config);
+  }
   sim::Config config = arguments.config.empty()
                            ? sim::Config::from_text(schema, "", "defaults", arguments.assignments)
                            : sim::Config::from_file(schema, arguments.config, arguments.assignments);
@@ -169,13 +177,16 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
   CLI::App* stability = study->add_subcommand(
       "stability", "Stiff and extreme cases, each against an oracle; exit 1 if one fails");
   for (CLI::App* command : {operations, paper, frames, schemes, error, stability}) {
-    CLI::Option* config = command->add_option("CONFIG", arguments.config, "configuration file (TOML)");
+    CLI::Option* config =
+        command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->type_name("FILE.toml");
     CLI::Option* directory =
         command->add_option("-o,--output", arguments.directory, "directory for tables, charts and report")
+            ->type_name("DIR")
             ->check(no_empty_directory);
     config->required(command != operations && command != stability);
     directory->required(command != operations && command != stability);
     command->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
+        ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
   }
   operations->callback([&] { run_study(arguments, studies::run_schema(), studies::run_operations); });
@@ -192,20 +203,29 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
 void add_sweep_command(CLI::App& app, studies::SweepArguments& arguments) {
   CLI::App* sweep =
       app.add_subcommand("sweep", "Times every machine of a configuration's [sweep]; goes on where it was");
-  sweep->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
+  sweep->add_option("CONFIG", arguments.config, "configuration file (TOML)")
+      ->type_name("FILE.toml")
+      ->required();
   sweep->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
+      ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   sweep->add_option("-o,--output", arguments.directory, "directory for results.sqlite and points.csv")
+      ->type_name("DIR")
       ->check(no_empty_directory);
   sweep->add_option("--threads", arguments.threads, "machines timed at a time; 0: as many as there are cores")
+      ->type_name("N")
       ->check(CLI::Range(0, 4096));
   sweep
       ->add_option("--keep-logs", arguments.keep_logs,
                    "directory where work logs are kept, for the next sweep of the same frames")
+      ->type_name("DIR")
       ->check(no_empty_directory);
-  sweep->add_option("--best", arguments.best,
-                    "the best machines by this metric and their cost: end, speed_up, efficiency, ...");
-  sweep->add_option("--within", arguments.within, "the cost that the best machine may have, by [prices]");
+  sweep
+      ->add_option("--best", arguments.best,
+                   "the best machines by this metric and their cost: end, speed_up, efficiency, ...")
+      ->type_name("METRIC");
+  sweep->add_option("--within", arguments.within, "the cost that the best machine may have, by [prices]")
+      ->type_name("COST");
   sweep->add_flag("--plan", arguments.plan_only, "only say what would be run");
   sweep->add_flag("--quiet", arguments.quiet, "no progress");
   sweep->add_flag("--json", arguments.json, "print the points, or the best ones, as JSON");
@@ -223,22 +243,29 @@ struct TraceArguments {
 
 void add_trace_command(CLI::App& app, TraceArguments& arguments) {
   CLI::App* trace = app.add_subcommand("trace", "Writes each node's references, for other cache simulators");
-  trace->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
+  trace->add_option("CONFIG", arguments.config, "configuration file (TOML)")
+      ->type_name("FILE.toml")
+      ->required();
   trace->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
+      ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   trace->add_option("-o,--output", arguments.directory, "directory for node-00000.din and so on")
+      ->type_name("DIR")
       ->check(no_empty_directory)
       ->required();
   trace->add_option("--format", arguments.format, "din: label and address, as Dinero reads them")
       ->check(CLI::IsMember({"din"}));
-  trace->add_option("--nodes", arguments.options.nodes, "which nodes, as 0-3 or 0,2,8-9; all if not given");
-  trace->add_option("--limit", arguments.limit, "refuse to write more than this, as \"4 GiB\"");
+  trace->add_option("--nodes", arguments.options.nodes, "which nodes, as 0-3 or 0,2,8-9; all if not given")
+      ->type_name("NODES");
+  trace->add_option("--limit", arguments.limit, "refuse to write more than this, as \"4 GiB\"")
+      ->type_name("SIZE");
   trace->callback([&] {
     try {
       arguments.options.most_bytes = static_cast<std::uint64_t>(sim::parse_size(arguments.limit));
     } catch (const sim::UserError& error) {
       throw sim::UserError("--limit: " + std::string(error.what()));
     }
+    studies::require_config_file(arguments.config);
     sim::Config config =
         sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
     studies::prepare_output(arguments.directory);
@@ -255,8 +282,9 @@ struct CompareArguments {
 void add_compare_command(CLI::App& app, CompareArguments& arguments) {
   CLI::App* compare = app.add_subcommand("compare", "What differs between two runs, points or sweeps");
   compare->add_option("A", arguments.a, "directory of a run or sweep; DIR:N is point N of a sweep")
+      ->type_name("RESULT")
       ->required();
-  compare->add_option("B", arguments.b, "likewise")->required();
+  compare->add_option("B", arguments.b, "what A is compared with, likewise")->type_name("RESULT")->required();
   compare->add_flag("--json", arguments.options.json, "print the differences as JSON");
   compare->add_flag("--all", arguments.options.all, "everything, what is equal too");
   compare->callback([&] { print(studies::compare_results(arguments.a, arguments.b, arguments.options)); });
@@ -265,12 +293,16 @@ void add_compare_command(CLI::App& app, CompareArguments& arguments) {
 void add_report_command(CLI::App& app, studies::ReportArguments& arguments) {
   CLI::App* report = app.add_subcommand(
       "report", "One HTML page from a run, a sweep or a study: the answer, charts, a what-if");
-  report->add_option("DIR", arguments.directory, "directory of a run, a sweep or a study")->required();
+  report->add_option("DIR", arguments.directory, "directory of a run, a sweep or a study")
+      ->type_name("DIR")
+      ->required();
   report->add_option("-o,--output", arguments.output, "the page; DIR/report.html if not given")
+      ->type_name("FILE.html")
       ->check([](const std::string& name) {
         return name.empty() ? std::string("the name of a file must not be empty") : std::string();
       });
   report->add_option("--plots", arguments.plots, "directory for every chart as SVG and CSV")
+      ->type_name("DIR")
       ->check(no_empty_directory);
   report->add_flag("--pdf", arguments.pdf, "the plots also as PDF");
   report->callback([&] { studies::report_command(arguments, print); });
@@ -315,14 +347,21 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
   CLI::App* info = scene->add_subcommand("info", "Describes a scene");
   CLI::App* save = scene->add_subcommand("export", "Writes a scene, in one pose, as binary glTF");
   for (CLI::App* command : {info, save}) {
-    command->add_option("SOURCE", arguments.source, "name:size, or a .gltf or .glb file")->required();
-    command->add_option("--scene", arguments.gltf.scene, "scene of the file, by index or name");
-    command->add_option("--camera", arguments.gltf.camera, "camera of the file, by index or name");
-    command->add_option("--animation", arguments.gltf.animation,
-                        "animation of the file, by index or name; none: the static pose");
-    command->add_option("--time", arguments.gltf.time, "the pose at this many seconds of the animation");
+    command->add_option("SOURCE", arguments.source, "name:size, or a .gltf or .glb file")
+        ->type_name("SCENE")
+        ->required();
+    command->add_option("--scene", arguments.gltf.scene, "scene of the file, by index or name")
+        ->type_name("NAME");
+    command->add_option("--camera", arguments.gltf.camera, "camera of the file, by index or name")
+        ->type_name("NAME");
+    command
+        ->add_option("--animation", arguments.gltf.animation,
+                     "animation of the file, by index or name; none: the static pose")
+        ->type_name("NAME");
+    command->add_option("--time", arguments.gltf.time, "the pose at this many seconds of the animation")
+        ->type_name("SECONDS");
   }
-  save->add_option("FILE", arguments.target, "the .glb file to write")->required();
+  save->add_option("FILE", arguments.target, "the .glb file to write")->type_name("FILE.glb")->required();
   info->callback([&] { print(scene_info(arguments)); });
   save->callback([&] {
     if (!arguments.target.ends_with(".glb")) {
@@ -346,20 +385,26 @@ int parse_and_run(int argc, char** argv) {
 
   RunArguments run_arguments;
   CLI::App* run = app.add_subcommand("run", "Runs one machine: image, statistics, summary");
-  run->add_option("CONFIG", run_arguments.config, "configuration file (TOML)")->required();
+  run->add_option("CONFIG", run_arguments.config, "configuration file (TOML)")
+      ->type_name("FILE.toml")
+      ->required();
   run->add_option("--set", run_arguments.assignments, "key=value, overrides the file; may be repeated")
+      ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   run->add_option("-o,--output", run_arguments.directory,
                   "directory for image.exr, image.png, result.json and what is recorded")
+      ->type_name("DIR")
       ->check(no_empty_directory);
   run->add_flag("--json", run_arguments.json, "print the result as JSON instead of the summary");
   run->add_option("--within", run_arguments.within,
                   "an estimate is enough whose measured error is at most so much, as \"2 %\"")
+      ->type_name("PERCENTAGE")
       ->check([](const std::string& text) {
         return text.empty() ? std::string("must be a percentage, such as \"2 %\"") : std::string();
       });
   run->add_option("--keep", run_arguments.keep,
                   "does not leave this item of the plan out, or \"all\"; may be repeated")
+      ->type_name("ITEM")
       ->allow_extra_args(false);
   run->add_flag("--verify-plan", run_arguments.verify_plan,
                 "runs once more for each item that is left out, and proves that nothing else differs");
@@ -381,27 +426,25 @@ int parse_and_run(int argc, char** argv) {
   add_report_command(app, report_arguments);
 
   bool markdown = false;
-  CLI::App* config = app.add_subcommand("config", "Prints every configuration key");
-  config->add_flag("--markdown", markdown, "as Markdown, as in docs/configuration.md");
-  config->callback([&] {
-    sim::Schema schema = studies::run_schema();
-    studies::declare_paper_keys(schema);
-    studies::declare_schemes_keys(schema);
-    studies::declare_error_keys(schema);
-    studies::declare_rendering_error_keys(schema);
-    studies::declare_stability_keys(schema);
-    studies::declare_sweep_keys(schema);
-    print(markdown ? sim::list_keys_as_markdown(schema) : sim::list_keys_as_text(schema));
-  });
+  studies::add_reference_commands(app, markdown, print);
 
   SceneArguments scene_arguments;
   add_scene_commands(app, scene_arguments);
 
+  // The scripts of the shells ask so; an option among their words must not be taken for one of this call.
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (!words.empty() && words.front() == "__complete") {
+    print(studies::completions(app, studies::all_keys(), std::span(words).subspan(1)));
+    return done;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // CLI11 prints help, version and its complaint; a complaint is the user's input being wrong.
-    return app.exit(error) == 0 ? done : wrong_input;
+    // CLI11 prints help and version; a complaint is the user's input being wrong.
+    if (error.get_exit_code() == 0) {
+      return app.exit(error);
+    }
+    throw sim::UserError(studies::command_error(app, error, words));
   }
   return done;
 }

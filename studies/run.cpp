@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "sim/units.h"
+#include "studies/key_parts.h"
 #include "studies/machine_keys.h"
 #include "studies/plan/machine_plan.h"
 #include "studies/record/observers.h"
@@ -114,6 +115,7 @@ sim::Schema run_schema() {
   declare_machine_keys(schema);
   declare_record_keys(schema);
   declare_sweep_sections(schema);
+  declare_sections_of_other_commands(schema);
   return schema;
 }
 

@@ -9,6 +9,7 @@
 
 #include "sim/error.h"
 #include "sim/files.h"
+#include "studies/config_file.h"
 #include "studies/ranks/join_sweep.h"
 #include "studies/ranks/launch.h"
 #include "studies/ranks/ranks.h"
@@ -74,6 +75,7 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
       return;
     }
   }
+  require_config_file(arguments.config);
   SweepOptions options = options_of(arguments);
   options.ranks = ranks ? &*ranks : nullptr;
   if (ranks) {

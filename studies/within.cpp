@@ -131,7 +131,8 @@ double parse_tolerance(std::string_view text) {
     }
   }
   if (!(value >= 0.0 && value <= 1.0)) {
-    throw sim::UserError("\"" + std::string(text) + "\": a tolerance is from 0 to 100 %");
+    throw sim::UserError("\"" + std::string(text) +
+                         "\": a tolerance is from 0 to 100 %, such as \"2 %\" or 0.02");
   }
   return value;
 }

@@ -9,6 +9,7 @@
 #include "sim/units.h"
 #include "studies/error/simulator_methods.h"
 #include "studies/image_file.h"
+#include "studies/key_parts.h"
 #include "studies/machine_keys.h"
 #include "studies/run_result.h"
 
@@ -104,6 +105,7 @@ sim::Schema error_schema() {
   declare_machine_keys(schema);
   declare_error_keys(schema);
   declare_rendering_error_keys(schema);
+  declare_sections_of_other_commands(schema);
   return schema;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/units.h"
+#include "studies/key_parts.h"
 #include "studies/machine_keys.h"
 #include "studies/run_result.h"
 
@@ -85,6 +86,7 @@ sim::Schema schemes_schema() {
   sim::Schema schema;
   declare_frame_keys(schema);
   declare_schemes_keys(schema);
+  declare_sections_of_other_commands(schema);
   return schema;
 }
 

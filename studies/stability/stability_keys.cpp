@@ -4,6 +4,7 @@
 #include <string>
 
 #include "sim/nearest.h"
+#include "studies/key_parts.h"
 
 namespace marti::studies {
 
@@ -19,6 +20,7 @@ void declare_stability_keys(sim::Schema& schema) {
 sim::Schema stability_schema() {
   sim::Schema schema;
   declare_stability_keys(schema);
+  declare_sections_of_other_commands(schema);
   return schema;
 }
 

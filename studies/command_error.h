@@ -1,0 +1,19 @@
+// What is said of a command line that is wrong: CLI11 finds the fault, this names the remedy.
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace CLI {
+class App;
+class ParseError;
+}  // namespace CLI
+
+namespace marti::studies {
+
+/// One line without a line break: the command, what is wrong with it, and what would be right. `words` are
+/// the arguments of the program.
+[[nodiscard]] std::string command_error(const CLI::App& app, const CLI::ParseError& error,
+                                        std::span<const std::string> words);
+
+}  // namespace marti::studies
