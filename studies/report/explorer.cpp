@@ -43,7 +43,8 @@ Json error_json(const ModelError* errors) {
 }
 
 Json model_json(const AxisModel& model) {
-  Json json = {{"x", Json::array()},
+  Json json = {{"note", error_note(&model)},
+               {"x", Json::array()},
                {"error", error_json(model.end)},
                {"speed_up_error", error_json(model.speed_up)},
                {"curves", Json::object()}};
@@ -263,7 +264,8 @@ Json channel_of(const ReportAxis& axis) {
 
 Json explorer_json(const SweepPoints& sweep, std::span<const AxisModel> models, const Chosen& chosen,
                    std::size_t axis) {
-  Json json = {{"axis", axis}, {"start", chosen.knee}, {"fastest", chosen.fastest}};
+  Json json = {
+      {"axis", axis}, {"start", chosen.knee}, {"fastest", chosen.fastest}, {"no_model", error_note(nullptr)}};
   json["axes"] = Json::array();
   json["place"] = Json::array();
   for (std::size_t i = 0; i < sweep.axes.size(); ++i) {

@@ -1,5 +1,7 @@
 #include "studies/report/sweep_model.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -86,6 +88,28 @@ std::string line_key(const ReportPoint& point, std::size_t axis) {
     key += (i == 0 ? "" : ",") + (i == axis ? std::string("*") : std::to_string(point.place[i]));
   }
   return key;
+}
+
+std::string error_note(const AxisModel* model) {
+  if (model == nullptr) {
+    return "Exact points only: the model needs three points on a line to measure its error, and one that is "
+           "not too "
+           "large.";
+  }
+  const auto said = [&](Zone zone, const std::string& where) {
+    const ModelError& error = model->end[static_cast<std::size_t>(zone)];
+    if (error.points == 0) {
+      return std::string();
+    }
+    if (!error.is_known()) {
+      return fmt::format(" {} it is not shown: it is off by more than a factor of 3.", where);
+    }
+    return fmt::format(" {}: {:.1f} % on average, 95 % of them below {:.1f} % ({} points left out once).",
+                       where, 100.0 * error.mean, 100.0 * error.p95, error.points);
+  };
+  return "Points are simulated, the curve is modelled. Error of the model's frame times, measured on this "
+         "sweep." +
+         said(Zone::between, " Between points") + said(Zone::beyond, " One step beyond them");
 }
 
 PointCounters counters_of(const ReportPoint& point, double x) {

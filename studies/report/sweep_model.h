@@ -32,6 +32,9 @@ struct AxisModel {
 /// The point's place on all axes but one, which is "*": "0,*,2".
 [[nodiscard]] std::string line_key(const ReportPoint& point, std::size_t axis);
 
+/// For people: what the curve is worth. `model` may be null: there is no curve.
+[[nodiscard]] std::string error_note(const AxisModel* model);
+
 /// What the model takes from a point's counters.
 [[nodiscard]] PointCounters counters_of(const ReportPoint& point, double x);
 

@@ -83,7 +83,7 @@ class Charts {
     const Table rows = explorer_rows(sweep_, model, axis, through_);
     for (const auto& [name, title] :
          {std::pair("frame_time", "Frame time"), std::pair("speed_up", "Speed-up")}) {
-      ReportChart chart = make_chart(name, rows, note_of(model));
+      ReportChart chart = make_chart(name, rows, error_note(model));
       chart.name = name;
       chart.title = fmt::format("{} over {}", title, sweep_.axes[axis].name);
       chart.spec["title"] = chart.title;
@@ -152,27 +152,6 @@ class Charts {
   }
 
  private:
-  [[nodiscard]] std::string note_of(const AxisModel* model) const {
-    if (model == nullptr) {
-      return "Exact points only: the model needs three points on a line to measure its error, and one that "
-             "is not too large.";
-    }
-    const auto said = [&](Zone zone, const std::string& where) {
-      const ModelError& error = model->end[static_cast<std::size_t>(zone)];
-      if (error.points == 0) {
-        return std::string();
-      }
-      if (!error.is_known()) {
-        return fmt::format(" {} it is not shown: it is off by more than a factor of 3.", where);
-      }
-      return fmt::format(" {}: {:.1f} % on average, 95 % of them below {:.1f} % ({} points left out once).",
-                         where, 100.0 * error.mean, 100.0 * error.p95, error.points);
-    };
-    return "Points are simulated, the curve is modelled. Error of the model's frame times, measured on this "
-           "sweep." +
-           said(Zone::between, " Between points") + said(Zone::beyond, " One step beyond them");
-  }
-
   [[nodiscard]] std::vector<const ReportPoint*> line_of(std::size_t axis) const {
     std::vector<const ReportPoint*> line;
     for (const ReportPoint& point : sweep_.points) {

@@ -12,7 +12,7 @@ marti.charts = (() => {
     return new vega.View(runtime, { expr: vega.expressionInterpreter, logLevel: vega.Error, ...options });
   }
 
-  const isPlain = (spec) => !("facet" in spec || "concat" in spec || "hconcat" in spec || "vconcat" in spec || "repeat" in spec);
+  const isPlain = (spec) => !["facet", "concat", "hconcat", "vconcat", "repeat"].some((part) => part in spec);
 
   /** As wide as there is room; the page has the title already. */
   function fitted(spec, room) {

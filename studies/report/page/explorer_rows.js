@@ -20,7 +20,8 @@ marti.rows = (() => {
     const factor = 1 + model.error[which].p95;
     const base = Array.isArray(curve.base) ? curve.base[i] : curve.base;
     const ms = curve.ms[i];
-    const row = { kind: "model", zone, x: model.x[i], ms, ms_low: ms / factor, ms_high: ms * factor, ms_bound: curve.bound[i] };
+    const row = { kind: "model", zone, x: model.x[i], ms, ms_low: ms / factor, ms_high: ms * factor };
+    row.ms_bound = curve.bound[i];
     if (base > 0 && model.speed_up_error[which].known) {
       const speedFactor = 1 + model.speed_up_error[which].p95;
       row.speed_up = base / ms;
