@@ -72,7 +72,7 @@ RC_GTEST_PROP(StackDistance, MissesAreThoseOfEverySizeSimulated, (std::uint64_t 
     RC_ASSERT(found.misses(size) == simulate(stream, 1, size));
     const std::uint64_t smallest = found.lines_for(found.misses(size));
     RC_ASSERT(smallest <= size && found.misses(smallest) == found.misses(size));
-    RC_ASSERT(smallest == 0 || found.misses(smallest - 1) > found.misses(size));
+    RC_ASSERT((smallest == 0 || found.misses(smallest - 1) > found.misses(size)));
   }
 }
 

@@ -171,6 +171,19 @@ TEST(Config, MalformedTomlIsNamedWithLineAndColumn) {
   EXPECT_EQ(error_of("nodes = 3\nnodes 4").rfind("a.toml:2:", 0), 0U);
 }
 
+// toml++ asserts that a name begins where a name must.
+TEST(Config, WhatBeginsNoNameIsNamed) {
+  const struct {
+    const char* text;
+    const char* place;
+  } wrong[] = {{"[#]\n", "a.toml:1:2: "},      {"[[=]]\n", "a.toml:1:3: "}, {"[ ", "a.toml:1:"},
+               {"[a.#]\n", "a.toml:1:4: "},    {"a.= 1\n", "a.toml:1:3: "}, {"=1\n", "a.toml:1:1: "},
+               {"a = {=1}\n", "a.toml:1:6: "}, {"\n[", "a.toml:2:"}};
+  for (const auto& [text, place] : wrong) {
+    EXPECT_EQ(error_of(text).rfind(place, 0), 0U) << text << error_of(text);
+  }
+}
+
 TEST(Config, HostileDepthIsRefused) {
   std::string dotted = "a";
   for (int i = 0; i < 200'000; ++i) {
