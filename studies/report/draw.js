@@ -1,4 +1,4 @@
-// Draws charts in node, after the scripts of vega_bundle.h and without a page: reads marti_charts, an array of
+// Draws charts in node, after the scripts of vega_bundle.h and page/chart_style.js, without a page: reads marti_charts, an array of
 // {name, spec}, and writes the SVG texts to standard output as a JSON array. Text is measured by estimate, so
 // that the same charts give the same bytes wherever they are drawn.
 "use strict";
@@ -32,14 +32,15 @@ function keeping(errors) {
   return logger;
 }
 
+const style = { ...martiChartStyle("#333333", "#dddddd"), background: "white", font: "sans-serif" };
+
 async function draw(spec) {
   const errors = [];
   const logger = keeping(errors);
   const loader = refusing(errors);
-  const compiled = vegaLite.compile(sized(spec), { logger }).spec;
+  const compiled = vegaLite.compile(sized(spec), { config: style, logger }).spec;
   const runtime = vega.parse(compiled, null, { ast: true });
   const view = new vega.View(runtime, { renderer: "none", expr: vega.expressionInterpreter, loader, logger });
-  view.background("white");
   const svg = await view.toSVG();
   view.finalize();
   if (errors.length > 0) throw new Error(errors.join("; "));

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/report/cycle_groups.h"
+#include "studies/report/rounded.h"
 
 namespace marti::studies {
 
@@ -16,16 +17,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double ms_a_ps = 1e-9;
 constexpr double us_a_ps = 1e-6;
-
-// So many digits are enough for a curve, and short in the page.
-double rounded(double value, int digits) {
-  if (value == 0.0 || !std::isfinite(value)) {
-    return value;
-  }
-  return std::stod(fmt::format("{:.{}g}", value, digits));
-}
-
-constexpr int curve_digits = 5;
 
 Cell cell_of(double value) { return std::isfinite(value) ? Cell(value) : Cell(); }
 
@@ -45,20 +36,20 @@ Json error_json(const ModelError* errors) {
   Json json = Json::object();
   for (const Zone zone : {Zone::between, Zone::beyond}) {
     const ModelError& error = errors[static_cast<std::size_t>(zone)];
-    json[zone == Zone::between ? "between" : "beyond"] = {{"points", error.points},
-                                                          {"mean", rounded(error.mean, curve_digits)},
-                                                          {"p95", rounded(error.p95, curve_digits)}};
+    json[zone == Zone::between ? "between" : "beyond"] = {
+        {"points", error.points}, {"mean", error.mean}, {"p95", error.p95}, {"known", error.is_known()}};
   }
   return json;
 }
 
 Json model_json(const AxisModel& model) {
-  Json json = {{"x", Json::array()},
+  Json json = {{"note", error_note(&model)},
+               {"x", Json::array()},
                {"error", error_json(model.end)},
                {"speed_up_error", error_json(model.speed_up)},
                {"curves", Json::object()}};
   for (const double x : model.x) {
-    json["x"].push_back(rounded(x, 9));
+    json["x"].push_back(x);
   }
   for (const auto& [key, curve] : model.curves) {
     Json ms = Json::array();
@@ -68,7 +59,7 @@ Json model_json(const AxisModel& model) {
     double first_base = -1.0;
     for (const std::optional<Modelled>& sample : curve.samples) {
       ms.push_back(sample ? Json(rounded(sample->end * ms_a_ps, curve_digits)) : Json());
-      base.push_back(sample ? Json(rounded(sample->base_end * ms_a_ps, curve_digits)) : Json());
+      base.push_back(sample ? Json(rounded(sample->base_end * ms_a_ps, place_digits)) : Json());
       bound.push_back(sample ? Json(rounded(sample->asymptote * ms_a_ps, curve_digits)) : Json());
       if (sample) {
         first_base = first_base < 0.0 ? sample->base_end : first_base;
@@ -76,9 +67,9 @@ Json model_json(const AxisModel& model) {
       }
     }
     Json each = {{"ms", ms}, {"bound", bound}};
-    each["base"] = one_base ? Json(rounded(std::max(first_base, 0.0) * ms_a_ps, 9)) : base;
+    each["base"] = one_base ? Json(rounded(std::max(first_base, 0.0) * ms_a_ps, place_digits)) : base;
     if (curve.saturation) {
-      each["saturation"] = rounded(*curve.saturation, curve_digits);
+      each["saturation"] = *curve.saturation;
     }
     json["curves"][key] = each;
   }
@@ -108,7 +99,7 @@ void add_sample(Table& table, const AxisModel& model, const Modelled& sample, do
   const double ms = sample.end * ms_a_ps;
   const double factor = factor_of(model.end, zone);
   const bool has_speed_up =
-      sample.base_end > 0.0 && model.speed_up[static_cast<std::size_t>(zone)].points > 0;
+      sample.base_end > 0.0 && model.speed_up[static_cast<std::size_t>(zone)].is_known();
   const double speed_up = has_speed_up ? sample.base_end / sample.end : NAN;
   const double speed_factor = factor_of(model.speed_up, zone);
   table.add_row({"model", zone_name, x, Cell(), ms, ms / factor, ms * factor, sample.asymptote * ms_a_ps,
@@ -169,11 +160,19 @@ void add_zones(Table& table, const AxisModel& model, const Curve& curve, double 
 
 }  // namespace
 
+std::optional<double> shown(const ExplorerField& field, const ReportPoint& point) {
+  if (!point.has(field.name)) {
+    return std::nullopt;
+  }
+  const double value = point.figure(field.name) * field.scale;
+  return field.exact ? value : rounded(value, figure_digits);
+}
+
 std::vector<ExplorerField> explorer_fields(const SweepPoints& sweep) {
   std::vector<ExplorerField> fields = {
-      {"end", "ms", "frame time", ms_a_ps},
-      {"speed_up", "1", "speed-up over the base machine"},
-      {"efficiency", "fraction", "speed-up by the number of nodes"},
+      {"end", "ms", "frame time", ms_a_ps, true},
+      {"speed_up", "1", "speed-up over the base machine", 1.0, true},
+      {"efficiency", "fraction", "speed-up by the number of nodes", 1.0, true},
       {"times_faster", "1", "frame time of the machine of [sweep.compare] by this one's"},
       {"price", "1", sweep.priced ? "cost by [prices]" : "number of nodes"},
       {"hit_ratio", "fraction", "hits by all references"},
@@ -265,7 +264,8 @@ Json channel_of(const ReportAxis& axis) {
 
 Json explorer_json(const SweepPoints& sweep, std::span<const AxisModel> models, const Chosen& chosen,
                    std::size_t axis) {
-  Json json = {{"axis", axis}, {"start", chosen.knee}, {"fastest", chosen.fastest}};
+  Json json = {
+      {"axis", axis}, {"start", chosen.knee}, {"fastest", chosen.fastest}, {"no_model", error_note(nullptr)}};
   json["axes"] = Json::array();
   json["place"] = Json::array();
   for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
@@ -304,9 +304,8 @@ Json explorer_json(const SweepPoints& sweep, std::span<const AxisModel> models, 
         {{"name", field.name}, {"unit", field.unit}, {"description", field.description}});
     Json column = Json::array();
     for (const ReportPoint& point : sweep.points) {
-      const bool exact = field.name == "end" || field.name == "speed_up";
-      const double value = point.figure(field.name) * field.scale;
-      column.push_back(point.has(field.name) ? Json(exact ? value : rounded(value, 6)) : Json());
+      const std::optional<double> value = shown(field, point);
+      column.push_back(value ? Json(*value) : Json());
     }
     json["columns"][field.name] = std::move(column);
   }

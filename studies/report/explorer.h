@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,7 +19,11 @@ struct ExplorerField {
   std::string unit;  ///< as shown
   std::string description;
   double scale = 1.0;  ///< shown is the figure times this
+  bool exact = false;  ///< all its digits are shown
 };
+
+/// The figure as it is shown; nothing where the point has none.
+[[nodiscard]] std::optional<double> shown(const ExplorerField& field, const ReportPoint& point);
 
 /// Those that at least one point has.
 [[nodiscard]] std::vector<ExplorerField> explorer_fields(const SweepPoints& sweep);

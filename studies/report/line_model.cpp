@@ -6,6 +6,7 @@
 
 #include "processors/closed_network.h"
 #include "sim/error.h"
+#include "studies/report/rounded.h"
 
 namespace marti::studies {
 
@@ -105,14 +106,31 @@ Modelled LineModel::at(double x) const {
   const PointCounters counters = interpolate(a, b, share);
   Modelled modelled;
   modelled.asymptote = asymptotic_end(counters);
-  // Exact frames are never below their bound; the product of two interpolations may be.
-  modelled.end =
-      std::max(closed_network_end(counters) * interpolate(ratios_[right - 1], ratios_[right], share),
-               modelled.asymptote);
+  // Exact frames are never below their bound; the product of two interpolations may be. The ratio corrects
+  // the network, and what it corrects is not known beyond the points.
+  modelled.end = std::max(closed_network_end(counters) *
+                              interpolate(ratios_[right - 1], ratios_[right], std::clamp(share, 0.0, 1.0)),
+                          modelled.asymptote);
   modelled.base_end = counters.base_end;
   modelled.zone = x < points_.front().x || x > points_.back().x ? Zone::beyond : Zone::between;
   return modelled;
 }
+
+namespace {
+
+// How far beyond `rest` x lies, in steps of the two points beside it; 0 between them.
+double steps_beyond(std::span<const PointCounters> rest, double x, bool logarithmic) {
+  const auto distance = [&](double a, double b) { return std::abs(logarithmic ? std::log(a / b) : a - b); };
+  const std::size_t last = rest.size() - 1;
+  if (x < rest[0].x) {
+    return distance(x, rest[0].x) / distance(rest[0].x, rest[1].x);
+  }
+  return x > rest[last].x ? distance(x, rest[last].x) / distance(rest[last].x, rest[last - 1].x) : 0.0;
+}
+
+constexpr double most_steps = 2.0 + 1e-6;  // places are rounded
+
+}  // namespace
 
 void LeaveOneOut::add(const LineModel& line, bool logarithmic) {
   const std::span<const PointCounters> points = line.points();
@@ -127,6 +145,9 @@ void LeaveOneOut::add(const LineModel& line, bool logarithmic) {
       }
     }
     const PointCounters& exact = points[left_out];
+    if (steps_beyond(rest, exact.x, logarithmic) > most_steps) {
+      continue;
+    }
     const Modelled modelled = LineModel(std::move(rest), logarithmic).at(exact.x);
     const auto zone = static_cast<std::size_t>(modelled.zone);
     end_[zone].push_back(std::abs(std::log(modelled.end / exact.end)));
@@ -146,8 +167,8 @@ ModelError LeaveOneOut::summary(std::vector<double> errors) {
   std::sort(errors.begin(), errors.end());
   const double mean = std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
   const auto rank = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(errors.size())));
-  error.mean = std::expm1(mean);
-  error.p95 = std::expm1(errors[rank - 1]);
+  error.mean = rounded(std::expm1(mean), curve_digits);
+  error.p95 = rounded(std::expm1(errors[rank - 1]), curve_digits);
   return error;
 }
 

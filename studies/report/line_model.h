@@ -54,8 +54,8 @@ class LineModel {
   LineModel(std::vector<PointCounters> points, bool logarithmic);
 
   /// At the points it is the exact frame time; elsewhere counters are interpolated, and so is the ratio of
-  /// exact to closed_network_end(); but never below asymptotic_end(). Beyond the outer points everything goes
-  /// on as between the last two.
+  /// exact to closed_network_end(); but never below asymptotic_end(). Beyond the outer points counters go on
+  /// as between the last two, and the ratio stays as it is at the last.
   [[nodiscard]] Modelled at(double x) const;
 
   [[nodiscard]] std::span<const PointCounters> points() const { return points_; }
@@ -71,12 +71,18 @@ struct ModelError {
   std::size_t points = 0;
   double mean = 0.0;  ///< as a share: exp of the mean, less 1
   double p95 = 0.0;   ///< the 95th percentile by nearest rank, likewise
+
+  /// May a modelled figure be shown? Not without a measured error, and not with one that says nothing any
+  /// more.
+  [[nodiscard]] bool is_known() const { return points > 0 && p95 <= 2.0; }
 };
 
 /// Errors of points left out, as gathered over lines.
 class LeaveOneOut {
  public:
   /// Leaves every point of the line out once; of lines with fewer than three points nothing can be left out.
+  /// An outer point counts only if it is at most two steps beyond the rest, a step being that of the two
+  /// beside it: of more the model is never asked.
   void add(const LineModel& line, bool logarithmic);
   /// Of frame times between other points, and beyond them, one step of the axis away.
   [[nodiscard]] ModelError of_end(Zone zone) const { return summary(end_[static_cast<std::size_t>(zone)]); }

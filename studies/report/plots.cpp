@@ -9,6 +9,7 @@
 #include "sim/error.h"
 #include "sim/files.h"
 #include "studies/report/child_process.h"
+#include "studies/report/page_files.h"
 #include "studies/report/vega_bundle.h"
 #include "studies/results/pending_files.h"
 #include "studies/signals_held.h"
@@ -55,6 +56,7 @@ std::string drawing_program(std::span<const ReportChart> charts) {
     program += script.text;
     program += "\n";
   }
+  program += report_chart_style_js();
   Json all = Json::array();
   for (const ReportChart& chart : charts) {
     all.push_back({{"name", chart.name}, {"spec", chart.spec}});

@@ -28,8 +28,8 @@ std::vector<std::string_view> page_scripts(std::span<const Script> scripts) {
   for (const Script& script : scripts) {
     all.push_back(script.text);
   }
-  for (const std::string_view own : {report_theme_js(), report_charts_js(), report_explorer_rows_js(),
-                                     report_explorer_js(), report_main_js()}) {
+  for (const std::string_view own : {report_chart_style_js(), report_theme_js(), report_charts_js(),
+                                     report_explorer_rows_js(), report_explorer_js(), report_main_js()}) {
     all.push_back(own);
   }
   for (const std::string_view text : all) {

@@ -122,13 +122,12 @@ Table tree_table(const RunJson& run) {
   Table table("run_tree", "The tree by level",
               {{"level", ColumnType::integer, "1", "from 1, the root"},
                {"branches", ColumnType::integer, "1", "branches"},
-               {"leaves", ColumnType::integer, "1", "leaves with objects"},
-               {"empty_leaves", ColumnType::integer, "1", "leaves without"},
+               {"leaves", ColumnType::integer, "1", "leaves, empty ones included"},
+               {"empty_leaves", ColumnType::integer, "1", "leaves without objects"},
                {"entries", ColumnType::integer, "1", "object references"}});
   std::int64_t level = 0;
   for (const RunJson& each : run.list("structure.levels")) {
-    const std::int64_t empty = whole(each, "empty_leaves");
-    table.add_row({++level, whole(each, "branches"), plus(whole(each, "leaves"), -empty), empty,
+    table.add_row({++level, whole(each, "branches"), whole(each, "leaves"), whole(each, "empty_leaves"),
                    whole(each, "entries")});
   }
   return table;

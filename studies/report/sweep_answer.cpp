@@ -60,17 +60,21 @@ std::string advice(const SweepPoints& sweep, const ReportPoint& from) {
     std::string text;
     double gain;
   };
+  constexpr double little = 0.0005;  // of the frame: less is shown as 0.0 %
   std::vector<Step> steps;
   for (std::size_t axis = 0; axis < sweep.axes.size(); ++axis) {
     const std::optional<std::size_t> next = step_up(sweep, from, axis);
     if (!sweep.axes[axis].numeric || !next) {
       continue;
     }
-    const double gain = 1.0 - sweep.points[*next].figure("end") / from.figure("end");
     const ReportAxis& each = sweep.axes[axis];
-    steps.push_back({fmt::format("{} from {} to {} makes the frame {:.1f} % {}", each.name,
-                                 each.texts[from.place[axis]], each.texts[from.place[axis] + 1],
-                                 100.0 * std::abs(gain), gain >= 0.0 ? "shorter" : "longer"),
+    const double gain = 1.0 - sweep.points[*next].figure("end") / from.figure("end");
+    const std::string effect = std::abs(gain) < little
+                                   ? std::string("changes nothing")
+                                   : fmt::format("makes the frame {:.1f} % {}", 100.0 * std::abs(gain),
+                                                 gain > 0.0 ? "shorter" : "longer");
+    steps.push_back({fmt::format("{} from {} to {} {}", each.name, each.texts[from.place[axis]],
+                                 each.texts[from.place[axis] + 1], effect),
                      gain});
   }
   std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) { return a.gain > b.gain; });

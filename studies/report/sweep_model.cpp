@@ -1,10 +1,13 @@
 #include "studies/report/sweep_model.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "processors/accounting.h"
+#include "studies/report/rounded.h"
 
 namespace marti::studies {
 
@@ -21,7 +24,7 @@ std::vector<double> samples_of(const ReportAxis& axis) {
   const auto place = [&](double from, double to, double share) {
     const double x = axis.logarithmic ? std::exp(std::lerp(std::log(from), std::log(to), share))
                                       : std::lerp(from, to, share);
-    return axis.integer ? std::round(x) : x;
+    return axis.integer ? std::round(x) : rounded(x, place_digits);
   };
   std::vector<double> x = values;
   const std::size_t last = values.size() - 1;
@@ -62,12 +65,17 @@ Curve curve_of(const LineModel& line, const ReportAxis& axis, const AxisModel& m
       continue;
     }
     sample = line.at(x);
+    sample->end = rounded(sample->end, curve_digits);
+    sample->base_end = rounded(sample->base_end, place_digits);
+    sample->asymptote = rounded(sample->asymptote, curve_digits);
     if (!model.has_band(sample->zone) || !std::isfinite(sample->end)) {
       sample.reset();
     }
   }
   if (axis.name == "machine.nodes") {
-    curve.saturation = saturation_nodes(line.points().back());
+    if (const std::optional<double> nodes = saturation_nodes(line.points().back())) {
+      curve.saturation = rounded(*nodes, curve_digits);
+    }
   }
   return curve;
 }
@@ -80,6 +88,28 @@ std::string line_key(const ReportPoint& point, std::size_t axis) {
     key += (i == 0 ? "" : ",") + (i == axis ? std::string("*") : std::to_string(point.place[i]));
   }
   return key;
+}
+
+std::string error_note(const AxisModel* model) {
+  if (model == nullptr) {
+    return "Exact points only: the model needs three points on a line to measure its error, and one that is "
+           "not too "
+           "large.";
+  }
+  const auto said = [&](Zone zone, const std::string& where) {
+    const ModelError& error = model->end[static_cast<std::size_t>(zone)];
+    if (error.points == 0) {
+      return std::string();
+    }
+    if (!error.is_known()) {
+      return fmt::format(" {} it is not shown: it is off by more than a factor of 3.", where);
+    }
+    return fmt::format(" {}: {:.1f} % on average, 95 % of them below {:.1f} % ({} points left out once).",
+                       where, 100.0 * error.mean, 100.0 * error.p95, error.points);
+  };
+  return "Points are simulated, the curve is modelled. Error of the model's frame times, measured on this "
+         "sweep." +
+         said(Zone::between, " Between points") + said(Zone::beyond, " One step beyond them");
 }
 
 PointCounters counters_of(const ReportPoint& point, double x) {

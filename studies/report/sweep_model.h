@@ -26,12 +26,14 @@ struct AxisModel {
   ModelError end[2];      ///< by Zone
   ModelError speed_up[2];
   std::map<std::string, Curve> curves;  ///< by line_key()
-  /// May a figure be shown? Not without a measured error.
-  [[nodiscard]] bool has_band(Zone zone) const { return end[static_cast<std::size_t>(zone)].points > 0; }
+  [[nodiscard]] bool has_band(Zone zone) const { return end[static_cast<std::size_t>(zone)].is_known(); }
 };
 
 /// The point's place on all axes but one, which is "*": "0,*,2".
 [[nodiscard]] std::string line_key(const ReportPoint& point, std::size_t axis);
+
+/// For people: what the curve is worth. `model` may be null: there is no curve.
+[[nodiscard]] std::string error_note(const AxisModel* model);
 
 /// What the model takes from a point's counters.
 [[nodiscard]] PointCounters counters_of(const ReportPoint& point, double x);

@@ -83,7 +83,7 @@ class Charts {
     const Table rows = explorer_rows(sweep_, model, axis, through_);
     for (const auto& [name, title] :
          {std::pair("frame_time", "Frame time"), std::pair("speed_up", "Speed-up")}) {
-      ReportChart chart = make_chart(name, rows, note_of(model));
+      ReportChart chart = make_chart(name, rows, error_note(model));
       chart.name = name;
       chart.title = fmt::format("{} over {}", title, sweep_.axes[axis].name);
       chart.spec["title"] = chart.title;
@@ -116,7 +116,8 @@ class Charts {
     for (const ReportPoint* point : line_of(axis)) {
       std::vector<Cell> row = {along.texts[point->place[axis]]};
       for (const ExplorerField* field : present) {
-        row.push_back(point->has(field->name) ? Cell(point->figure(field->name) * field->scale) : Cell());
+        const std::optional<double> value = shown(*field, *point);
+        row.push_back(value ? Cell(*value) : Cell());
       }
       table.add_row(std::move(row));
     }
@@ -151,23 +152,6 @@ class Charts {
   }
 
  private:
-  [[nodiscard]] std::string note_of(const AxisModel* model) const {
-    if (model == nullptr) {
-      return "Exact points only: the model needs three points on a line to measure its error.";
-    }
-    const auto said = [&](Zone zone, const std::string& where) {
-      const ModelError& error = model->end[static_cast<std::size_t>(zone)];
-      return error.points == 0
-                 ? std::string()
-                 : fmt::format(
-                       " {}: {:.1f} % on average, 95 % of them below {:.1f} % ({} points left out once).",
-                       where, 100.0 * error.mean, 100.0 * error.p95, error.points);
-    };
-    return "Points are simulated, the curve is modelled. Error of the model's frame times, measured on this "
-           "sweep." +
-           said(Zone::between, " Between points") + said(Zone::beyond, " One step beyond them");
-  }
-
   [[nodiscard]] std::vector<const ReportPoint*> line_of(std::size_t axis) const {
     std::vector<const ReportPoint*> line;
     for (const ReportPoint& point : sweep_.points) {

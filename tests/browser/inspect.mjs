@@ -12,23 +12,14 @@ export const rowsOf = (page, name) =>
     return window.marti.views[name].data(given).map((row) => ({ ...row }));
   }, name);
 
-/** The names of all data sets of a chart. */
-export const dataSets = (page, name) =>
-  page.evaluate(
-    (name) => Object.keys(window.marti.views[name].getState({ data: () => true, signals: () => false }).data),
-    name,
-  );
-
-/** The rows of one data set by its name. */
-export const dataOf = (page, name, set) =>
-  page.evaluate(([name, set]) => window.marti.views[name].data(set).map((row) => ({ ...row })), [name, set]);
+const dataMarks = (name) => `#chart-${name} svg .role-mark:not([aria-hidden='true']) > *`;
 
 /** How many marks that show data a chart draws; axes and legends are none. */
-export const markCount = (page, name) =>
-  page.$$eval(
-    `#chart-${name} svg .role-mark:not([aria-hidden='true'] *) > *`,
-    (marks) => marks.filter((mark) => mark.getAttribute("d") !== "" && mark.textContent !== undefined).length,
-  );
+export const markCount = (page, name) => page.locator(dataMarks(name)).count();
+
+/** Where these marks are, and how large, in pixels. */
+export const markBoxes = (page, name) =>
+  page.$$eval(dataMarks(name), (marks) => marks.map((mark) => mark.getBBox()).map(({ width, height }) => ({ width, height })));
 
 /** The drawing as it is: another one after something has moved. */
 export const drawing = (page, name) => page.$eval(`#chart-${name} svg`, (svg) => svg.outerHTML);

@@ -6,13 +6,13 @@ marti.charts = (() => {
   const charts = new Map(data.charts.map((chart) => [chart.name, chart]));
 
   /** Vega without eval: expressions are interpreted, as the page's policy wants it. */
-  function makeView(spec, dark, options) {
-    const compiled = vegaLite.compile(spec, { config: marti.theme.config(dark), logger: vega.logger(vega.Error) });
+  function makeView(spec, config, options) {
+    const compiled = vegaLite.compile(spec, { config, logger: vega.logger(vega.Error) });
     const runtime = vega.parse(compiled.spec, null, { ast: true });
     return new vega.View(runtime, { expr: vega.expressionInterpreter, logLevel: vega.Error, ...options });
   }
 
-  const isPlain = (spec) => !("facet" in spec || "concat" in spec || "hconcat" in spec || "vconcat" in spec || "repeat" in spec);
+  const isPlain = (spec) => !["facet", "concat", "hconcat", "vconcat", "repeat"].some((part) => part in spec);
 
   /** As wide as there is room; the page has the title already. */
   function fitted(spec, room) {
@@ -31,7 +31,7 @@ marti.charts = (() => {
     const old = marti.views[name];
     if (old) old.finalize();
     const spec = fitted(chart.spec, place.clientWidth || 560);
-    const view = makeView(spec, marti.theme.isDark(), { renderer: "svg", container: place, hover: true });
+    const view = makeView(spec, marti.theme.inPage, { renderer: "svg", container: place, hover: true });
     view.description(chart.title);
     marti.views[name] = view;
     await view.runAsync();
@@ -70,7 +70,7 @@ marti.charts = (() => {
   }
 
   async function saveSvg(chart) {
-    const view = makeView({ ...chart.spec, background: "white" }, false, { renderer: "none" });
+    const view = makeView(chart.spec, marti.theme.inFile, { renderer: "none" });
     const svg = await view.toSVG();
     view.finalize();
     save(`${chart.name}.svg`, "image/svg+xml", svg);
@@ -101,7 +101,6 @@ marti.charts = (() => {
 
   let busy = Promise.resolve();
   const redraw = () => (busy = busy.then(drawAll));
-  marti.theme.changed(redraw);
   let width = window.innerWidth;
   let timer = 0;
   window.addEventListener("resize", () => {

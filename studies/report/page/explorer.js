@@ -15,7 +15,7 @@ marti.explorer = (() => {
   const inputs = new Map();
   const digits = (value) => Number(value).toPrecision(4).replace(/\.?0+(e|$)/, "$1");
 
-  const samples = () => (explorer.models[state.axis] ? explorer.models[state.axis].x : explorer.axes[state.axis].values);
+  const samples = () => explorer.models[state.axis]?.x ?? explorer.axes[state.axis].values;
   const valueAt = (axis) => explorer.axes[axis].texts[state.place[axis]];
   const withUnit = (axis, x) => {
     const at = axis.values.indexOf(x);
@@ -36,7 +36,8 @@ marti.explorer = (() => {
     const axis = explorer.axes[state.axis];
     const x = samples()[state.x];
     const at = axis.values.indexOf(x);
-    const point = at < 0 ? undefined : marti.rows.line(explorer, state.axis, state.place).find((p) => explorer.place[state.axis][p] === at);
+    const line = marti.rows.line(explorer, state.axis, state.place);
+    const point = at < 0 ? undefined : line.find((p) => explorer.place[state.axis][p] === at);
     let text = `${axis.name} = ${withUnit(axis, x)}: `;
     let beyond = false;
     if (point !== undefined) {
@@ -50,7 +51,9 @@ marti.explorer = (() => {
       } else {
         beyond = row.zone !== "between";
         text += `modelled, ${digits(row.ms)} ms a frame (95 % band ${digits(row.ms_low)} to ${digits(row.ms_high)} ms)`;
-        if (row.speed_up) text += `, speed-up ${digits(row.speed_up)} (${digits(row.speed_up_low)} to ${digits(row.speed_up_high)})`;
+        if (row.speed_up) {
+          text += `, speed-up ${digits(row.speed_up)} (${digits(row.speed_up_low)} to ${digits(row.speed_up_high)})`;
+        }
         text += beyond ? ". Extrapolated: beyond all exact points." : ".";
       }
     }
@@ -158,19 +161,12 @@ marti.explorer = (() => {
         chart.title = `${chart.live.title} over ${explorer.axes[a].name}`;
         chart.spec.title = chart.title;
         document.getElementById(`title-${name}`).textContent = chart.title;
-        document.getElementById(`note-${name}`).textContent = noteOf(explorer.models[a]);
+        document.getElementById(`note-${name}`).textContent = explorer.models[a]?.note ?? explorer.no_model;
         await marti.charts.draw(name);
       } else {
         await marti.charts.change(name, chart.spec.data.values);
       }
     }
-  }
-
-  function noteOf(model) {
-    if (!model) return "Exact points only: the model needs three points on a line to measure its error.";
-    const said = (error, where) =>
-      error.points ? ` ${where}: ${(100 * error.mean).toFixed(1)} % on average, 95 % of them below ${(100 * error.p95).toFixed(1)} % (${error.points} points left out once).` : "";
-    return "Points are simulated, the curve is modelled. Error of the model's frame times, measured on this sweep." + said(model.error.between, "Between points") + said(model.error.beyond, "One step beyond them");
   }
 
   function addAxisChoice() {
@@ -198,7 +194,8 @@ marti.explorer = (() => {
     ];
     document.getElementById("save-points").addEventListener("click", (event) => {
       event.preventDefault();
-      const rows = explorer.ordinal.map((ordinal, i) => ({ ordinal, ...Object.fromEntries(row(i).map((cell, c) => [names[c], cell])) }));
+      const named = (i) => Object.fromEntries(row(i).map((cell, c) => [names[c], cell]));
+      const rows = explorer.ordinal.map((ordinal, i) => ({ ordinal, ...named(i) }));
       marti.charts.save("points.csv", "text/csv", marti.charts.csv(rows));
     });
     details.addEventListener("toggle", () => {
@@ -217,7 +214,7 @@ marti.explorer = (() => {
         const line = body.insertRow();
         [ordinal, ...row(i)].forEach((value) => {
           const cell = line.insertCell();
-          cell.textContent = value === null ? "" : typeof value === "number" && !Number.isInteger(value) ? digits(value) : value;
+          cell.textContent = typeof value === "number" && !Number.isInteger(value) ? digits(value) : (value ?? "");
           if (typeof value === "number") cell.className = "number";
         });
       });

@@ -20,8 +20,9 @@ marti.rows = (() => {
     const factor = 1 + model.error[which].p95;
     const base = Array.isArray(curve.base) ? curve.base[i] : curve.base;
     const ms = curve.ms[i];
-    const row = { kind: "model", zone, x: model.x[i], ms, ms_low: ms / factor, ms_high: ms * factor, ms_bound: curve.bound[i] };
-    if (base > 0 && model.speed_up_error[which].points > 0) {
+    const row = { kind: "model", zone, x: model.x[i], ms, ms_low: ms / factor, ms_high: ms * factor };
+    row.ms_bound = curve.bound[i];
+    if (base > 0 && model.speed_up_error[which].known) {
       const speedFactor = 1 + model.speed_up_error[which].p95;
       row.speed_up = base / ms;
       row.speed_up_low = row.speed_up / speedFactor;
@@ -41,9 +42,9 @@ marti.rows = (() => {
     const last = xs[xs.length - 1];
     const x = model.x[i];
     const zones = [];
-    if (x <= first && model.error.beyond.points > 0) zones.push("below");
-    if (x >= first && x <= last && model.error.between.points > 0) zones.push("between");
-    if (x >= last && model.error.beyond.points > 0) zones.push("above");
+    if (x <= first && model.error.beyond.known) zones.push("below");
+    if (x >= first && x <= last && model.error.between.known) zones.push("between");
+    if (x >= last && model.error.beyond.known) zones.push("above");
     return zones.map((zone) => banded(model, curve, i, zone));
   }
 
@@ -56,7 +57,7 @@ marti.rows = (() => {
       const x = explorer.axes[axis].values[explorer.place[axis][p]];
       if (efficiency > 0) most = Math.max(most, explorer.columns.speed_up[p] / efficiency / x);
     }
-    return Math.abs(most - Math.round(most)) < 1e-4 * most ? Math.round(most) : most;
+    return most;
   }
 
   function explore(explorer, axis, place) {
