@@ -1,6 +1,6 @@
 // Light or dark: as the system has it, until the reader chooses.
 "use strict";
-window.marti = { views: {}, specs: {}, ready: null };
+window.marti = { views: {}, ready: null };
 
 marti.theme = (() => {
   const order = ["system", "light", "dark"];
