@@ -15,8 +15,8 @@ std::string cell_of(const Json& value) {
   if (value.is_null()) {
     return {};
   }
-  const std::string text = value.is_string() ? value.get<std::string>()
-                                             : value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = value.is_string() ? value.get<std::string>()
+                                       : value.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (!text.empty() && text.find_first_of(",\"\r\n") == std::string::npos) {
     return text;
   }
