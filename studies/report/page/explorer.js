@@ -82,19 +82,27 @@ marti.explorer = (() => {
     for (const [name, chart] of charts) {
       if (chart.live && chart.live.rows !== "all") await marti.charts.change(name, chart.spec.data.values);
     }
-    if (marti.explorer) marti.explorer.updates += 1;
   }
 
   // Changes come faster than charts are drawn: only the latest counts.
   let pending = false;
+  let running = 0;
   function request() {
     if (pending) return;
     pending = true;
     requestAnimationFrame(async () => {
       pending = false;
-      await update();
+      running += 1;
+      try {
+        await update();
+      } finally {
+        running -= 1;
+      }
     });
   }
+
+  // Whether the charts may not show yet what the controls say.
+  const busy = () => pending || running > 0;
 
   function showControl(a) {
     const axis = explorer.axes[a];
@@ -229,5 +237,5 @@ marti.explorer = (() => {
   addPoints();
   read();
   fill();
-  return { state, updates: 0 };
+  return { busy };
 })();

@@ -380,7 +380,7 @@ TEST(SweepPlan, WrongPointsAreNamed) {
             "s.toml:4: cache.line: must be a power of two, not 33 bytes (the machine that the point "
             "machine.nodes = 1 "
             "is measured against)"},
-           {"[sweep.axes]\nscene.source = [\"no.glb\"]\n", "s.toml:2: scene.source: no.glb"},
+           {"[sweep.axes]\nscene.source = [\"no.glb\"]\n", "s.toml:2: scene.source: there is no file no.glb"},
        }) {
     const std::string message = user_error_of([&] { (void)plan_of(wrong.text); });
     EXPECT_EQ(message.substr(0, std::string(wrong.message).size()), wrong.message) << wrong.text;
