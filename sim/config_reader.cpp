@@ -1,5 +1,6 @@
 // Reading a Config: TOML through toml++, which no other file of the project includes.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <memory>
@@ -150,8 +151,6 @@ void check_free(const DocumentValue& value, const std::string& name, std::string
   }
 }
 
-}  // namespace
-
 /// What to write where a value that is a text lacks its quotation marks, the commonest fault of all; else
 /// nothing.
 std::string missing_quotes(std::string_view text, std::size_t line) {
@@ -171,11 +170,19 @@ std::string missing_quotes(std::string_view text, std::size_t line) {
                : std::string(part.substr(begin, part.find_last_not_of(" \t\r") - begin + 1));
   };
   const std::string value = trimmed(text.substr(equals + 1));
-  return value.empty()
-             ? "; the value is missing"
+  if (value.empty()) {
+    return "; the value is missing";
+  }
+  // A number, a truth value or a date has another fault.
+  const bool letters =
+      std::any_of(value.begin(), value.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
+  return !letters || value == "true" || value == "false"
+             ? ""
              : "; texts and values with a unit stand in quotation marks: " + trimmed(text.substr(0, equals)) +
                    " = \"" + value + "\"";
 }
+
+}  // namespace
 
 /// Builds one Config. Everything wrong is thrown at once, in the order of the text.
 class ConfigReader {

@@ -120,7 +120,7 @@ a fault of the program
 the input is wrong; the message says what, where, and what would be right
 .TP
 128 + signal
-a signal has ended a sweep; the same command does the rest
+a signal has ended it; the same sweep command does the rest
 .SH FILES
 .TP
 .I result.json

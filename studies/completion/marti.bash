@@ -6,7 +6,7 @@ _marti() {
   read -ra words <<<"${COMP_LINE:0:COMP_POINT}"
   if [[ ${COMP_LINE:0:COMP_POINT} == *[[:space:]] ]]; then words+=(''); fi
   word=${words[-1]}
-  mapfile -t candidates < <("${words[0]}" __complete "${words[@]:1}" 2>/dev/null)
+  mapfile -t candidates < <("${words[0]/#\~/$HOME}" __complete "${words[@]:1}" 2>/dev/null)
   if [[ ${#candidates[@]} -gt 0 && ${candidates[-1]} == :* ]]; then
     directive=${candidates[-1]}
     unset 'candidates[-1]'

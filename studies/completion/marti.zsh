@@ -3,7 +3,7 @@
 _marti() {
   local directive= ending
   local -a candidates open closed
-  candidates=("${(@f)$("${words[1]}" __complete "${(@)words[2,CURRENT]}" 2>/dev/null)}")
+  candidates=("${(@f)$("${words[1]/#\~/$HOME}" __complete "${(@)words[2,CURRENT]}" 2>/dev/null)}")
   if [[ ${candidates[-1]} == :* ]]; then
     directive=${candidates[-1]}
     candidates[-1]=()

@@ -81,7 +81,9 @@ marti.charts = (() => {
     if (!link) return;
     event.preventDefault();
     const chart = charts.get(link.dataset.chart);
-    if (link.dataset.save === "csv") save(`${chart.name}.csv`, "text/csv", csv(chart.spec.data.values));
+    // Where a slider stands is no figure.
+    const figures = () => chart.spec.data.values.filter(({ kind }) => kind !== "cursor");
+    if (link.dataset.save === "csv") save(`${chart.name}.csv`, "text/csv", csv(figures()));
     else saveSvg(chart);
   });
 

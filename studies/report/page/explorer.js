@@ -13,7 +13,7 @@ marti.explorer = (() => {
   const controls = document.getElementById("controls");
   const reading = document.getElementById("reading");
   const inputs = new Map();
-  const digits = (value) => Number(value).toPrecision(4).replace(/\.?0+(e|$)/, "$1");
+  const digits = (value) => String(Number(Number(value).toPrecision(4)));
 
   const samples = () => explorer.models[state.axis]?.x ?? explorer.axes[state.axis].values;
   const valueAt = (axis) => explorer.axes[axis].texts[state.place[axis]];
@@ -90,15 +90,20 @@ marti.explorer = (() => {
   function request() {
     if (pending) return;
     pending = true;
-    requestAnimationFrame(async () => {
+    requestAnimationFrame(() => {
       pending = false;
-      running += 1;
-      try {
-        await update();
-      } finally {
-        running -= 1;
-      }
+      working(update);
     });
+  }
+
+  /** What takes time and changes what charts show. */
+  async function working(work) {
+    running += 1;
+    try {
+      await work();
+    } finally {
+      running -= 1;
+    }
   }
 
   // Whether the charts may not show yet what the controls say.
@@ -187,7 +192,7 @@ marti.explorer = (() => {
       if (axis.numeric) select.append(new Option(axis.name, a));
     });
     select.value = state.axis;
-    select.addEventListener("change", () => turn(Number(select.value)));
+    select.addEventListener("change", () => working(() => turn(Number(select.value))));
     controls.append(label);
   }
 
@@ -195,7 +200,8 @@ marti.explorer = (() => {
     const details = document.getElementById("points");
     const most = 1000;
     const fields = explorer.fields;
-    const names = [...explorer.axes.map((axis) => axis.name), ...fields.map((field) => field.name)];
+    const measure = ({ name, unit }) => (unit === "1" || unit === "fraction" ? name : `${name}_${unit}`);
+    const names = [...explorer.axes.map((axis) => axis.name), ...fields.map(measure)];
     const row = (i) => [
       ...explorer.axes.map((axis, a) => axis.texts[explorer.place[a][i]]),
       ...fields.map((field) => explorer.columns[field.name][i]),
@@ -204,7 +210,7 @@ marti.explorer = (() => {
       event.preventDefault();
       const named = (i) => Object.fromEntries(row(i).map((cell, c) => [names[c], cell]));
       const rows = explorer.ordinal.map((ordinal, i) => ({ ordinal, ...named(i) }));
-      marti.charts.save("points.csv", "text/csv", marti.charts.csv(rows));
+      marti.charts.save("machines.csv", "text/csv", marti.charts.csv(rows));
     });
     details.addEventListener("toggle", () => {
       const place = document.getElementById("points-table");

@@ -184,6 +184,14 @@ TEST(Config, WhatBeginsNoNameIsNamed) {
   }
 }
 
+TEST(Config, QuotationMarksAreAdvisedForTextsAlone) {
+  EXPECT_NE(error_of("cache.size = 16 KiB\n").find("cache.size = \"16 KiB\""), std::string::npos);
+  EXPECT_NE(error_of("cache.size =\n").find("the value is missing"), std::string::npos);
+  for (const char* text : {"nodes = 4\nnodes = 5\n", "nodes = 0123\n", "nodes = 1__0\n"}) {
+    EXPECT_EQ(error_of(text).find("quotation"), std::string::npos) << error_of(text);
+  }
+}
+
 TEST(Config, HostileDepthIsRefused) {
   std::string dotted = "a";
   for (int i = 0; i < 200'000; ++i) {
