@@ -223,7 +223,8 @@ std::vector<std::string> answer_of(const SweepPoints& sweep, const Chosen& chose
   if (const Advice steps = advice(sweep, knee); !steps.text.empty()) {
     answer.push_back(fmt::format("What to change there, one step at a time: {}.", steps.text));
   } else if (steps.any_step) {
-    answer.push_back("What to change there: no single step of an axis makes it faster.");
+    answer.push_back(
+        "What to change there: no single step of an axis makes it faster, of those that were timed.");
   }
   if (sweep.points.size() < sweep.planned) {
     answer.push_back(
