@@ -3,19 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "studies/text_units.h"
+#include "studies/report/answer_text.h"
 
 namespace marti::studies {
 
 namespace {
 
-std::string time_text(double ps) {
-  constexpr double longest = 9e18;  // of 64 bits
-  return seconds(static_cast<sim::Ticks>(std::llround(std::min(std::max(ps, 0.0), longest))));
-}
+constexpr double longest = 0x1p62;     // of times, ps
+constexpr double most_nodes = 0x1p24;  // of a machine, and so of its clusters
+constexpr double most_figure = 1e12;   // of ratios: far beyond any
 
 std::string words(std::string name) {
   for (char& c : name) {
@@ -39,11 +37,13 @@ std::string largest_loss(const RunJson& run) {
     return {};
   }
   double all = 0.0;
-  for (const auto& [name, value] : lost.items()) {
-    if (value.is_number()) {
-      all += value.get<double>();
-      if (value.get<double>() > largest.second) {
-        largest = {name, value.get<double>()};
+  for (const auto& [name, ignored] : lost.items()) {
+    const std::optional<double> value =
+        run.optional_number("machine.speed_up_loss.lost_speed_up." + name, -most_figure, most_figure);
+    if (value) {
+      all += *value;
+      if (*value > largest.second) {
+        largest = {name, *value};
       }
     }
   }
@@ -55,20 +55,23 @@ std::string largest_loss(const RunJson& run) {
 }
 
 std::string bound_sentence(const RunJson& run) {
-  const std::optional<double> least = run.number("machine.bounds.frame_time_at_least_ps");
-  const std::optional<double> end = run.number("machine.frame_time_ps");
-  if (!least || !end || *end <= 0.0) {
+  const std::optional<double> least =
+      run.optional_number("machine.bounds.frame_time_at_least_ps", 0.0, longest);
+  const double end = run.required_number("machine.frame_time_ps", 1.0, longest);
+  if (!least) {
     return {};
   }
   return fmt::format(
-      "No machine with this work can be faster than {} ({}): better waiting and balance could gain {:.1f} % "
+      "This machine cannot do this work in less than {} ({}): better waiting and balance could gain {:.1f} % "
       "at most.",
-      time_text(*least), words(run.text("machine.bounds.by")), 100.0 * std::max(0.0, 1.0 - *least / *end));
+      time_text(*least), words(run.text("machine.bounds.by")), 100.0 * std::max(0.0, 1.0 - *least / end));
 }
 
 std::string saturation_sentence(const RunJson& run) {
-  const std::optional<double> nodes = run.number("machine.bounds.prediction.saturation_nodes");
-  const std::optional<double> error = run.number("machine.bounds.prediction.mean_value_error");
+  const std::optional<double> nodes =
+      run.optional_number("machine.bounds.prediction.saturation_nodes", 0.0, most_figure);
+  const std::optional<double> error =
+      run.optional_number("machine.bounds.prediction.mean_value_error", -most_figure, most_figure);
   if (!nodes) {
     return {};
   }
@@ -82,8 +85,8 @@ std::string saturation_sentence(const RunJson& run) {
 }  // namespace
 
 std::string machine_text(const RunJson& run) {
-  const double clusters = run.count("machine.clusters");
-  const double nodes = run.count("machine.nodes");
+  const double clusters = run.required_number("machine.clusters", 1.0, most_nodes);
+  const double nodes = run.required_number("machine.nodes", 1.0, most_nodes);
   const std::string each = fmt::format("{:.0f} node{}", nodes, nodes == 1.0 ? "" : "s");
   return clusters > 1.0 ? fmt::format("{:.0f} clusters of {}", clusters, each) : each;
 }
@@ -91,10 +94,11 @@ std::string machine_text(const RunJson& run) {
 std::vector<std::string> answer_of(const RunJson& run) {
   std::vector<std::string> answer;
   std::string first =
-      fmt::format("A frame takes {} on {}", time_text(run.count("machine.frame_time_ps")), machine_text(run));
-  if (const std::optional<double> speed_up = run.number("machine.speed_up")) {
+      fmt::format("A frame takes {} on {}",
+                  time_text(run.required_number("machine.frame_time_ps", 1.0, longest)), machine_text(run));
+  if (const std::optional<double> speed_up = run.optional_number("machine.speed_up", 0.0, most_figure)) {
     first += fmt::format(": {:.2f} times as fast as one node, an efficiency of {:.1f} %", *speed_up,
-                         100.0 * run.count("machine.efficiency"));
+                         100.0 * run.required_number("machine.efficiency", 0.0, most_figure));
   }
   answer.push_back(first + ".");
   if (const std::string limit = run.text("machine.limit.sentence"); !limit.empty()) {

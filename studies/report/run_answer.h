@@ -8,10 +8,12 @@
 
 namespace marti::studies {
 
-/// "16 nodes", "4 clusters of 16 nodes".
+/// "16 nodes", "4 clusters of 16 nodes". Throws UserError, naming the field, when the result does not have
+/// them.
 [[nodiscard]] std::string machine_text(const RunJson& run);
 
-/// How fast, what limits it, what to change: the most important first.
+/// How fast, what limits it, what to change: the most important first. Throws UserError, naming the file and
+/// the field, when a figure that it needs is not there or one that it uses is out of range.
 [[nodiscard]] std::vector<std::string> answer_of(const RunJson& run);
 
 }  // namespace marti::studies

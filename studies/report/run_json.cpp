@@ -1,5 +1,7 @@
 #include "studies/report/run_json.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "sim/error.h"
@@ -78,6 +80,21 @@ std::optional<double> RunJson::number(std::string_view path) const {
   }
   const double number = value.get<double>();
   return std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+std::optional<double> RunJson::optional_number(std::string_view path, double low, double high) const {
+  if (find(path).is_null()) {
+    return std::nullopt;
+  }
+  return required_number(path, low, high);
+}
+
+double RunJson::required_number(std::string_view path, double low, double high) const {
+  const std::optional<double> found = number(path);
+  if (!found || *found < low || *found > high) {
+    refuse(file_, fmt::format("has no number \"{}\" from {:g} to {:g}", path, low, high));
+  }
+  return *found;
 }
 
 std::string RunJson::text(std::string_view path) const {

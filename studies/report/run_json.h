@@ -20,6 +20,10 @@ class RunJson {
   [[nodiscard]] const nlohmann::ordered_json& at(std::string_view path) const;
   /// Nothing when it is not there or no finite number.
   [[nodiscard]] std::optional<double> number(std::string_view path) const;
+  /// Both throw UserError, naming the file and the field, when it is there and no number from `low` to
+  /// `high`; the first also when it is missing or null, where the second gives nothing.
+  [[nodiscard]] double required_number(std::string_view path, double low, double high) const;
+  [[nodiscard]] std::optional<double> optional_number(std::string_view path, double low, double high) const;
   /// 0 when it is not there or no number.
   [[nodiscard]] double count(std::string_view path) const { return number(path).value_or(0.0); }
   /// Empty when it is not there or no text.

@@ -4,25 +4,28 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <map>
+#include <set>
 
+#include "processors/accounting.h"
+#include "studies/report/answer_text.h"
+#include "studies/scaling.h"
 #include "studies/sweep/sweep_best.h"
-#include "studies/text_units.h"
 
 namespace marti::studies {
 
 namespace {
 
-std::string time_text(double ps) { return seconds(static_cast<sim::Ticks>(std::llround(ps))); }
-
 double price_of(const ReportPoint& point) { return point.figure("price"); }
 
-// The point of the front farthest below the line between its ends.
+// The point of the front farthest below the line between its ends. A price of 0 has no logarithm: prices are
+// taken as they are then.
 std::size_t knee_of(const SweepPoints& sweep, const std::vector<std::size_t>& front) {
+  const bool free = price_of(sweep.points[front.front()]) <= 0.0;  // the cheapest
   const auto place = [&](std::size_t i) {
     const ReportPoint& point = sweep.points[i];
-    return std::pair(std::log(std::max(price_of(point), 1e-12)),
-                     std::log(std::max(point.figure("end"), 1e-12)));
+    const double price = price_of(point);
+    return std::pair(free ? price : std::log(price), std::log(point.figure("end")));
   };
   const auto [x0, y0] = place(front.front());
   const auto [x1, y1] = place(front.back());
@@ -39,50 +42,103 @@ std::size_t knee_of(const SweepPoints& sweep, const std::vector<std::size_t>& fr
   return best;
 }
 
-// The same machine with the next value up of an axis, if it was timed.
-std::optional<std::size_t> step_up(const SweepPoints& sweep, const ReportPoint& from, std::size_t axis) {
-  for (std::size_t i = 0; i < sweep.points.size(); ++i) {
-    const ReportPoint& point = sweep.points[i];
-    bool matches = point.place[axis] == from.place[axis] + 1;
-    for (std::size_t j = 0; matches && j < point.place.size(); ++j) {
-      matches = j == axis || point.place[j] == from.place[j];
-    }
-    if (matches) {
-      return i;
-    }
-  }
-  return std::nullopt;
-}
+// What a step up or down on each axis gains, the best first; steps that gain nothing are left out.
+struct Advice {
+  bool any_step = false;  ///< a machine one step away was timed on the same frame
+  std::string text;
+};
 
-// What the next step on each axis buys, the best first.
-std::string advice(const SweepPoints& sweep, const ReportPoint& from) {
+Advice advice(const SweepPoints& sweep, const ReportPoint& from) {
   struct Step {
     std::string text;
     double gain;
   };
   constexpr double little = 0.0005;  // of the frame: less is shown as 0.0 %
+  std::map<std::vector<std::size_t>, const ReportPoint*> timed;
+  for (const ReportPoint& point : sweep.points) {
+    if (point.frame == from.frame) {
+      timed.emplace(point.place, &point);
+    }
+  }
+  Advice advice;
   std::vector<Step> steps;
   for (std::size_t axis = 0; axis < sweep.axes.size(); ++axis) {
-    const std::optional<std::size_t> next = step_up(sweep, from, axis);
-    if (!sweep.axes[axis].numeric || !next) {
-      continue;
-    }
     const ReportAxis& each = sweep.axes[axis];
-    const double gain = 1.0 - sweep.points[*next].figure("end") / from.figure("end");
-    const std::string effect = std::abs(gain) < little
-                                   ? std::string("changes nothing")
-                                   : fmt::format("makes the frame {:.1f} % {}", 100.0 * std::abs(gain),
-                                                 gain > 0.0 ? "shorter" : "longer");
-    steps.push_back({fmt::format("{} from {} to {} {}", each.name, each.texts[from.place[axis]],
-                                 each.texts[from.place[axis] + 1], effect),
-                     gain});
+    for (const int direction : {1, -1}) {
+      std::vector<std::size_t> place = from.place;
+      if (!each.numeric || (direction < 0 && place[axis] == 0)) {
+        continue;
+      }
+      place[axis] = direction > 0 ? place[axis] + 1 : place[axis] - 1;
+      const auto next = timed.find(place);
+      if (next == timed.end()) {
+        continue;
+      }
+      advice.any_step = true;
+      const double gain = 1.0 - next->second->figure("end") / from.figure("end");
+      if (gain >= little) {
+        steps.push_back({fmt::format("{} from {} to {} makes the frame {:.1f} % shorter", each.name,
+                                     each.texts[from.place[axis]], each.texts[place[axis]], 100.0 * gain),
+                         gain});
+      }
+    }
   }
   std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) { return a.gain > b.gain; });
-  std::string text;
   for (const Step& step : steps) {
-    text += (text.empty() ? "" : "; ") + step.text;
+    advice.text += (advice.text.empty() ? "" : "; ") + step.text;
+  }
+  return advice;
+}
+
+// Values that all machines of a frame share and other machines have not: "image.width = 512".
+std::string frame_text(const SweepPoints& sweep, std::size_t frame) {
+  std::string text;
+  for (std::size_t axis = 0; axis < sweep.axes.size(); ++axis) {
+    std::set<std::size_t> values;
+    for (const ReportPoint& point : sweep.points) {
+      if (point.frame == frame) {
+        values.insert(point.place[axis]);
+      }
+    }
+    if (values.size() == 1) {
+      text += (text.empty() ? ": " : ", ") + sweep.axes[axis].name + " = " +
+              sweep.axes[axis].texts[*values.begin()];
+    }
   }
   return text;
+}
+
+// As much of the machine as find_limit looks at; what it looks at in sums only is one node's.
+std::optional<Finding> limit_of(const ReportPoint& point) {
+  constexpr double most_nodes = 65'536;  // each takes memory
+  const double nodes = point.figure("nodes");
+  const double clusters = std::max(1.0, point.figure("clusters"));
+  if (!point.image_machine || nodes < 1.0 || nodes > most_nodes) {
+    return std::nullopt;
+  }
+  const auto ticks = [&](std::string_view name) { return static_cast<sim::Ticks>(point.figure(name)); };
+  processors::MachineConfig machine;
+  machine.scheme = processors::Scheme::image;
+  machine.placement = point.image_machine->placement;
+  machine.interconnect.kind = point.image_machine->interconnect;
+  machine.network.kind = point.image_machine->network;
+  machine.build.sharing = point.image_machine->sharing;
+  processors::MachineResult result;
+  result.end = ticks("end");
+  result.nodes.resize(static_cast<std::size_t>(nodes));
+  bool timed = false;
+  for (std::size_t i = 0; i < processors::activities; ++i) {
+    const sim::Ticks time = ticks("time_" + std::string(processors::activity_names[i]));
+    result.nodes.front().time[i] = time;
+    timed = timed || time > 0;
+  }
+  result.build.start_up_wait = ticks("build_start_up_wait");
+  result.packets = static_cast<std::uint64_t>(point.figure("packets"));
+  processors::ClusterResult& busiest = result.clusters.emplace_back();
+  busiest.interconnect.busy = ticks("most_interconnect_busy");
+  busiest.interconnect.links = static_cast<std::int64_t>(point.figure("interconnect_links") / clusters);
+  busiest.banks.emplace_back().busy = ticks("most_bank_busy");
+  return timed ? std::optional(find_limit(machine, result)) : std::nullopt;
 }
 
 std::string speed_text(const ReportPoint& point) {
@@ -96,12 +152,22 @@ std::string speed_text(const ReportPoint& point) {
 }  // namespace
 
 Chosen choose(const SweepPoints& sweep) {
+  const auto shortest = std::min_element(
+      sweep.points.begin(), sweep.points.end(),
+      [](const ReportPoint& a, const ReportPoint& b) { return a.figure("end") < b.figure("end"); });
   Chosen chosen;
   std::vector<Offer> offers;
-  for (const ReportPoint& point : sweep.points) {
-    offers.push_back({price_of(point), point.figure("end")});
+  std::vector<std::size_t> offered;
+  for (std::size_t i = 0; i < sweep.points.size(); ++i) {
+    const ReportPoint& point = sweep.points[i];
+    if (point.frame == shortest->frame) {
+      offers.push_back({price_of(point), point.figure("end")});
+      offered.push_back(i);
+    }
   }
-  chosen.front = pareto_front(offers, Better::lower);
+  for (const std::size_t i : pareto_front(offers, Better::lower)) {
+    chosen.front.push_back(offered[i]);
+  }
   chosen.fastest = chosen.front.back();
   chosen.knee = knee_of(sweep, chosen.front);
   return chosen;
@@ -116,62 +182,49 @@ std::string place_text(const SweepPoints& sweep, const ReportPoint& point) {
 }
 
 std::string limit_sentence(const ReportPoint& point) {
-  const auto share = [&](std::initializer_list<const char*> names) {
-    double sum = 0.0;
-    for (const char* name : names) {
-      sum += point.figure(std::string("share_") + name);
-    }
-    return sum;
-  };
-  struct Limit {
-    double share;
-    std::string what;
-    std::string remedy;
-  };
-  const std::vector<Limit> limits = {
-      {share({"interconnect_wait"}), "waiting for the interconnect",
-       "a wider or faster interconnect, larger caches or fewer nodes would help"},
-      {share({"bank_wait"}), "waiting for memory banks", "more or faster banks would help"},
-      {share({"transfer", "bank_access"}), "transfers and bank accesses that meet no queue",
-       "fewer misses or faster memory would help"},
-      {share({"dispatch_wait"}), "waiting for packets or for the initial tree",
-       "larger packets or a faster host would help"},
-      {share({"lock_wait"}), "waiting for branches that others split",
-       "a higher build.initial_level would help"},
-      {share({"idle"}), "idling because the work is uneven at the end of the frame",
-       "smaller packets or fewer nodes would help"},
-      {share({"queue_full_wait"}), "waiting for room in a buffer or queue", "longer queues would help"},
-      {share({"message_wait"}), "waiting for rays and messages", "more rays in flight would help"},
-      {share({"traversal", "intersection", "shading", "building", "cache_access", "switching", "messaging"}),
-       "computing", "more or faster nodes would help"}};
-  const auto most = std::max_element(limits.begin(), limits.end(),
-                                     [](const Limit& a, const Limit& b) { return a.share < b.share; });
-  return fmt::format("its nodes spend {:.1f} % of their time {}; {}", 100.0 * most->share, most->what,
-                     most->remedy);
+  const std::optional<Finding> finding = limit_of(point);
+  return finding ? finding->sentence : std::string();
 }
 
 std::vector<std::string> answer_of(const SweepPoints& sweep, const Chosen& chosen) {
   const ReportPoint& fastest = sweep.points[chosen.fastest];
   const ReportPoint& knee = sweep.points[chosen.knee];
   const std::string unit = sweep.priced ? "at a price of" : "with a node count of";
+  const auto compared = static_cast<std::size_t>(
+      std::count_if(sweep.points.begin(), sweep.points.end(),
+                    [&](const ReportPoint& point) { return point.frame == fastest.frame; }));
   std::vector<std::string> answer;
-  answer.push_back(fmt::format("The fastest of {} machines takes {} a frame{} {} {:g}: {}.",
-                               sweep.points.size(), time_text(fastest.figure("end")), speed_text(fastest),
-                               unit, price_of(fastest), place_text(sweep, fastest)));
-  answer.push_back(fmt::format("What limits it: {}.", limit_sentence(fastest)));
+  const auto add_limit = [&](const char* begin, const ReportPoint& point) {
+    if (const std::string limit = limit_sentence(point); !limit.empty()) {
+      answer.push_back(fmt::format("{}: {}.", begin, limit));
+    }
+  };
+  answer.push_back(fmt::format("The fastest of {} machines takes {} a frame{} {} {:g}: {}.", compared,
+                               time_text(fastest.figure("end")), speed_text(fastest), unit, price_of(fastest),
+                               place_text(sweep, fastest)));
+  if (sweep.frames > 1) {
+    answer.push_back(fmt::format(
+        "The sweep has {} different frames, which are not the same work: only the machines of the frame with "
+        "the shortest time are compared here{}.",
+        sweep.frames, frame_text(sweep, fastest.frame)));
+  }
+  add_limit("What limits it", fastest);
   if (chosen.knee != chosen.fastest) {
     const double time = knee.figure("end") / fastest.figure("end");
-    const double price = price_of(knee) / std::max(price_of(fastest), 1e-12);
+    const double price = price_of(knee) / price_of(fastest);  // dearer than the knee: above 0
     answer.push_back(
         fmt::format("Worth its price (the knee of the {} machines that no other beats in price and time): {} "
                     "a frame{} {} {:g}, "
                     "{:.2f} times the time of the fastest for {:.1f} % of its price: {}.",
                     chosen.front.size(), time_text(knee.figure("end")), speed_text(knee), unit,
                     price_of(knee), time, 100.0 * price, place_text(sweep, knee)));
-    answer.push_back(fmt::format("What limits that one: {}.", limit_sentence(knee)));
+    add_limit("What limits that one", knee);
   }
-  if (const std::string steps = advice(sweep, knee); !steps.empty()) {
-    answer.push_back(fmt::format("What to change there, one step at a time: {}.", steps));
+  if (const Advice steps = advice(sweep, knee); !steps.text.empty()) {
+    answer.push_back(fmt::format("What to change there, one step at a time: {}.", steps.text));
+  } else if (steps.any_step) {
+    answer.push_back(
+        "What to change there: no single step of an axis makes it faster, of those that were timed.");
   }
   if (sweep.points.size() < sweep.planned) {
     answer.push_back(

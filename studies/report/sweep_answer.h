@@ -17,15 +17,18 @@ struct Chosen {
   std::vector<std::size_t> front;  ///< that no other beats in price and frame time, ascending by price
 };
 
-/// The price is the cost by [prices], or the number of nodes where all costs are equal. The knee is the point
-/// of the front that lies farthest below the line from its first to its last, both in logarithms.
+/// Among the machines of one frame, the one with the shortest time of all: frames of different work are not
+/// compared. The price is the cost by [prices], or the number of nodes where all costs are equal. The knee is
+/// the point of the front that lies farthest below the line from its first to its last, both in logarithms;
+/// the price as it is where a machine of the front is free.
 [[nodiscard]] Chosen choose(const SweepPoints& sweep);
 
 /// "machine.nodes = 16, cache.size = 16 KiB".
 [[nodiscard]] std::string place_text(const SweepPoints& sweep, const ReportPoint& point);
 
-/// What takes most of the nodes' time, as a sentence without its first capital and full stop; by the rule of
-/// docs/model.md, "What limits the machine".
+/// What limits a machine of the image scheme: the sentence of find_limit (studies/scaling.h), as `marti run`
+/// says it. Empty for a machine of another scheme, because a store lacks how busy its stages and nodes are;
+/// for one of more than 65,536 nodes; and where the store has no times.
 [[nodiscard]] std::string limit_sentence(const ReportPoint& point);
 
 [[nodiscard]] std::vector<std::string> answer_of(const SweepPoints& sweep, const Chosen& chosen);

@@ -22,7 +22,14 @@ namespace {
 // What a browser can be given as one page, and a person as one chart.
 constexpr std::size_t most_points = 20'000;
 
+// No time and no count of a simulation is above it; sums and rounding stay clear of 64 bits.
+constexpr double most = 0x1p62;
+
 constexpr std::string_view counters[] = {"end",
+                                         "cost",
+                                         "build_start_up_wait",
+                                         "most_interconnect_busy",
+                                         "most_bank_busy",
                                          "nodes",
                                          "clusters",
                                          "packets",
@@ -67,6 +74,73 @@ std::vector<std::string> wanted_figures(const SweepReader& reader) {
   return names;
 }
 
+[[noreturn]] void refuse(const std::filesystem::path& store, std::int64_t ordinal, const std::string& what) {
+  throw sim::UserError(
+      fmt::format("{}: point {}: {}; the store is damaged or was changed: remove it and run the sweep again",
+                  store.string(), ordinal, what));
+}
+
+std::string shown(const Cell& cell) {
+  if (const auto* text = std::get_if<std::string>(&cell)) {
+    constexpr std::size_t longest = 40;
+    return "\"" + text->substr(0, longest) + "\"";
+  }
+  const std::optional<double> number = number_of(cell);
+  return number ? fmt::format("{:g}", *number) : "missing";
+}
+
+// What the page and its model reckon with has to be a number that they can reckon with.
+void check_point(const std::filesystem::path& store, const StoredPoint& point,
+                 std::span<const std::string> axes) {
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const Cell& value = point.values[i];
+    const std::optional<double> number = number_of(value);
+    if (std::holds_alternative<std::monostate>(value)) {
+      refuse(store, point.ordinal, "its value of axis " + axes[i] + " is missing");
+    }
+    if (number && !(std::abs(*number) <= 0x1p63)) {
+      refuse(store, point.ordinal,
+             fmt::format("its value of axis {} is {}, out of range", axes[i], shown(value)));
+    }
+  }
+}
+
+void check_figure(const std::filesystem::path& store, std::int64_t ordinal, std::string_view name,
+                  const Cell& cell) {
+  const bool needed = name == "end" || name == "cost" || name == "nodes";
+  if (std::holds_alternative<std::monostate>(cell) && !needed) {
+    return;  // the machine has no such part
+  }
+  const double least = name == "end" || name == "nodes" ? 1.0 : 0.0;
+  const std::optional<double> number = number_of(cell);
+  const bool whole = name != "end" || std::holds_alternative<std::int64_t>(cell);
+  if (!number || !whole || !(*number >= least && *number <= most)) {
+    refuse(store, ordinal,
+           fmt::format("its {} is {}; expected is {} from {:.0f} to 2^62", name, shown(cell),
+                       name == "end" ? "an integer" : "a number", least));
+  }
+}
+
+// Points are told apart by their values: as texts, and as numbers where a chart has them on an axis of
+// numbers.
+void check_places(const std::filesystem::path& store, const SweepPoints& sweep) {
+  std::map<std::vector<std::size_t>, std::int64_t> seen;
+  for (const ReportPoint& point : sweep.points) {
+    const auto [at, fresh] = seen.emplace(point.place, point.ordinal);
+    if (!fresh) {
+      refuse(store, point.ordinal, fmt::format("it has the same values as point {}", at->second));
+    }
+    for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
+      const ReportAxis& axis = sweep.axes[i];
+      const std::size_t place = point.place[i];
+      if (axis.numeric && place > 0 && !(axis.number(place) > axis.number(place - 1))) {
+        refuse(store, point.ordinal,
+               fmt::format("two values of axis {} are the same number, {}", axis.name, axis.texts[place]));
+      }
+    }
+  }
+}
+
 void add_hit_ratios(ReportPoint& point) {
   for (const std::string_view kind : kinds) {
     const double hits = point.figure(std::string(kind) + "_hits");
@@ -108,6 +182,43 @@ void add_percentiles(const SweepRow& row, ReportPoint& point) {
   }
 }
 
+// The number of a setting's text among a choice's names; the first where the machine has no such setting.
+template <class Choice, std::size_t N>
+Choice choice_of(std::string text, const std::array<std::string_view, N>& names) {
+  std::erase(text, '"');
+  const auto* const at = std::find(names.begin(), names.end(), text);
+  return static_cast<Choice>(at == names.end() ? 0 : at - names.begin());
+}
+
+template <class Value>
+ImageMachine image_machine(const Value& value) {
+  constexpr std::array<std::string_view, 3> interconnects = {"ideal", "bus", "crossbar"};
+  return {choice_of<processors::Placement>(value("database.placement"), processors::placement_names),
+          choice_of<memory::InterconnectKind>(value("interconnect.kind"), interconnects),
+          choice_of<memory::NetworkKind>(value("network.kind"), memory::network_kind_names),
+          choice_of<processors::Sharing>(value("build.sharing"), processors::sharing_names)};
+}
+
+// Numbers frames by what was rendered. A tree that was built otherwise gives the same rays and pixels: its
+// machines can be compared.
+class Frames {
+ public:
+  explicit Frames(const SweepReader& reader) : reader_(reader) {}
+
+  [[nodiscard]] std::size_t number_of(std::int64_t machine) {
+    std::string key;
+    if (const std::optional<FrameRow> frame = reader_.read_frame(machine)) {
+      key = fmt::format("{} {} {}", frame->scene_hash, frame->image_hash, frame->hit_hash);
+    }
+    return numbers_.emplace(key, numbers_.size()).first->second;
+  }
+  [[nodiscard]] std::size_t count() const { return numbers_.size(); }
+
+ private:
+  const SweepReader& reader_;
+  std::map<std::string, std::size_t> numbers_;
+};
+
 // Settings that all machines of the sweep share, and what each says of its queues.
 class Settings {
  public:
@@ -122,6 +233,9 @@ class Settings {
     };
     const bool bus = value("interconnect.kind") == "\"bus\"";
     const bool local = value("database.placement") != "\"shared\"";
+    if (value("machine.scheme") == "\"image\"") {
+      point.image_machine = image_machine(value);
+    }
     point.links_are_queues = !local && (bus || value("interconnect.kind") == "\"crossbar\"");
     point.banks_are_queues = point.links_are_queues && !(bus && value("interconnect.mode") == "\"held\"");
     if (!begun_) {
@@ -241,11 +355,16 @@ SweepPoints read_sweep_points(const std::filesystem::path& store) {
   const std::vector<std::string> names = wanted_figures(reader);
   std::vector<std::vector<Cell>> values;
   Settings settings(reader);
+  Frames frames(reader);
   reader.for_each_point(names, [&](const StoredPoint& stored, std::span<const Cell> cells) {
     ++sweep.planned;
+    if (reader.settings(stored.machine).empty()) {
+      refuse(store, stored.ordinal, fmt::format("its machine {} is not in the store", stored.machine));
+    }
     if (!stored.done) {
       return;
     }
+    check_point(store, stored, reader.axes());
     if (sweep.points.size() == most_points) {
       throw sim::UserError(
           fmt::format("{}: has more than {} timed points, too many for one page; time a part of "
@@ -258,7 +377,8 @@ SweepPoints read_sweep_points(const std::filesystem::path& store) {
     point.machine = stored.machine;
     point.cost = stored.cost;
     for (std::size_t i = 0; i < names.size(); ++i) {
-      if (const std::optional<double> number = number_of(cells[i]); number && std::isfinite(*number)) {
+      check_figure(store, stored.ordinal, names[i], cells[i]);
+      if (const std::optional<double> number = number_of(cells[i])) {
         point.figures[names[i]] = *number;
       }
     }
@@ -277,7 +397,9 @@ SweepPoints read_sweep_points(const std::filesystem::path& store) {
       add_percentiles(*row, point);
     }
     settings.add(point);
+    point.frame = frames.number_of(point.machine);
   }
+  sweep.frames = frames.count();
   const sim::Schema schema = sweep_schema();
   for (const AxisColumn& column : order_axes(reader.axes(), values)) {
     for (std::size_t i = 0; i < sweep.points.size(); ++i) {
@@ -285,6 +407,7 @@ SweepPoints read_sweep_points(const std::filesystem::path& store) {
     }
     sweep.axes.push_back(make_axis(column, schema));
   }
+  check_places(store, sweep);
   sweep.settings = settings.shared();
   sweep.priced = std::any_of(sweep.points.begin(), sweep.points.end(), [&](const ReportPoint& point) {
     return point.cost != sweep.points.front().cost;

@@ -10,6 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "memory/interconnect.h"
+#include "memory/network.h"
+#include "processors/build_config.h"
+#include "processors/machine_config.h"
 #include "studies/results/table.h"
 
 namespace marti::studies {
@@ -28,12 +32,22 @@ struct ReportAxis {
   [[nodiscard]] double number(std::size_t value) const;  ///< of a numeric axis
 };
 
+/// What it takes, beside figures, to say what limits a machine of the image scheme.
+struct ImageMachine {
+  processors::Placement placement = processors::Placement::shared;
+  memory::InterconnectKind interconnect = memory::InterconnectKind::bus;
+  memory::NetworkKind network = memory::NetworkKind::ideal;
+  processors::Sharing sharing = processors::Sharing::given;
+};
+
 struct ReportPoint {
   std::int64_t ordinal = 0;
   std::int64_t machine = 0;
   double cost = 0.0;
   std::vector<std::size_t> place;                      ///< for each axis the index of its value
   std::map<std::string, double, std::less<>> figures;  ///< those that the point has
+  std::size_t frame = 0;                               ///< which of the sweep's frames it renders, from 0
+  std::optional<ImageMachine> image_machine;           ///< nothing of another scheme
   bool links_are_queues = false;                       ///< its interconnect is a bus or a crossbar
   bool banks_are_queues = false;                       ///< and is not held while a bank works
 
@@ -47,7 +61,8 @@ struct SweepPoints {
   std::vector<ReportAxis> axes;
   std::vector<ReportPoint> points;  ///< that have been timed, in the order of the plan
   std::size_t planned = 0;
-  bool priced = false;                                        ///< costs differ
+  std::size_t frames = 1;  ///< that differ in their scene, rays or image: frames of different work
+  bool priced = false;     ///< costs differ
   std::vector<std::pair<std::string, std::string>> settings;  ///< that all timed points share, by key
   std::vector<std::pair<std::string, std::string>> provenance;
 
@@ -58,8 +73,9 @@ struct SweepPoints {
 /// "hit_ratio_node", "hit_ratio_list", "hit_ratio_primitive", "hit_ratio_material", "interconnect_wait_p50"
 /// and the like (p50, p95, p99; ps) of "interconnect_wait" and "bank_wait", "part_traversal" and the like
 /// (cycle_groups.h; shares of the nodes' time) and "price" (the cost by [prices], or the number of nodes
-/// where all costs are equal). Throws UserError when the store cannot be read, holds no timed point, or more
-/// than a page can show.
+/// where all costs are equal). Times are from 1 ps to 2^62 ps, other figures that the store holds from 0 to
+/// 2^62, and no two points have the same values. Throws UserError when the store cannot be read, holds no
+/// timed point, more than a page can show, or a point that is not so, which it names by its ordinal.
 [[nodiscard]] SweepPoints read_sweep_points(const std::filesystem::path& store);
 
 }  // namespace marti::studies

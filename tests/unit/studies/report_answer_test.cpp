@@ -1,0 +1,204 @@
+// What the answer of a sweep and of a run says.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "studies/report/answer_text.h"
+#include "studies/report/run_answer.h"
+#include "studies/report/sweep_answer.h"
+#include "studies/scaling.h"
+#include "tests/support/user_error.h"
+
+namespace marti::studies {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using test::user_error_of;
+
+// Machines along one axis of numbers, with a price and a frame time each.
+SweepPoints line_of(const std::vector<std::pair<double, double>>& offers) {
+  SweepPoints sweep;
+  ReportAxis axis;
+  axis.name = "machine.nodes";
+  axis.numeric = true;
+  for (std::size_t i = 0; i < offers.size(); ++i) {
+    axis.values.emplace_back(static_cast<std::int64_t>(i + 1));
+    axis.texts.push_back(std::to_string(i + 1));
+    ReportPoint point;
+    point.ordinal = static_cast<std::int64_t>(i);
+    point.place = {i};
+    point.figures = {{"price", offers[i].first}, {"end", offers[i].second}};
+    sweep.points.push_back(point);
+  }
+  sweep.axes.push_back(axis);
+  sweep.planned = offers.size();
+  return sweep;
+}
+
+std::string all_of(const SweepPoints& sweep) {
+  std::string text;
+  for (const std::string& sentence : answer_of(sweep, choose(sweep))) {
+    text += sentence + "\n";
+  }
+  return text;
+}
+
+// Its figures as a store has them; whatever find_limit says of the machine itself has to be said of them.
+void expect_same_limit(const processors::MachineConfig& machine, const processors::MachineResult& result) {
+  ReportPoint point;
+  point.image_machine = {machine.placement, machine.interconnect.kind, machine.network.kind,
+                         machine.build.sharing};
+  point.figures = {{"end", static_cast<double>(result.end)},
+                   {"nodes", static_cast<double>(result.nodes.size())},
+                   {"clusters", 1.0},
+                   {"packets", static_cast<double>(result.packets)},
+                   {"interconnect_links", static_cast<double>(result.clusters[0].interconnect.links)},
+                   {"most_interconnect_busy", static_cast<double>(result.clusters[0].interconnect.busy)},
+                   {"most_bank_busy", static_cast<double>(result.clusters[0].banks[0].busy)},
+                   {"build_start_up_wait", static_cast<double>(result.build.start_up_wait)}};
+  const processors::TimeDivision time = result.time();
+  for (std::size_t i = 0; i < processors::activities; ++i) {
+    point.figures["time_" + std::string(processors::activity_names[i])] = static_cast<double>(time[i]);
+  }
+  EXPECT_EQ(limit_sentence(point), find_limit(machine, result).sentence);
+}
+
+TEST(LimitSentence, IsWhatTheRunSays) {
+  for (std::size_t activity = 0; activity < processors::activities; ++activity) {
+    for (const processors::Placement placement :
+         {processors::Placement::shared, processors::Placement::distributed}) {
+      processors::MachineConfig machine;
+      machine.placement = placement;
+      machine.build.sharing = processors::Sharing::none;
+      processors::MachineResult result;
+      result.end = 1000;
+      result.packets = 77;
+      result.nodes.resize(4);
+      for (processors::NodeStatistics& node : result.nodes) {
+        node.time[activity] = 700;
+        node.time[0] += 300;
+      }
+      result.clusters.resize(1);
+      result.clusters[0].interconnect.links = 2;
+      result.clusters[0].interconnect.busy = 1500;
+      result.clusters[0].banks.resize(1);
+      result.clusters[0].banks[0].busy = 600;
+      expect_same_limit(machine, result);
+      result.build.start_up_wait = 2600;
+      expect_same_limit(machine, result);
+    }
+  }
+}
+
+TEST(LimitSentence, SaysNothingOfWhatTheStoreLacks) {
+  ReportPoint point;
+  point.figures = {{"end", 1000.0}, {"nodes", 1.0}, {"time_idle", 1000.0}};
+  EXPECT_EQ(limit_sentence(point), "") << "no machine of the image scheme";
+  point.image_machine.emplace();
+  EXPECT_NE(limit_sentence(point), "");
+  point.figures["nodes"] = 1e12;
+  EXPECT_EQ(limit_sentence(point), "");
+  SweepPoints sweep = line_of({{1, 100}, {2, 50}});
+  EXPECT_EQ(all_of(sweep).find("What limits"), std::string::npos);
+}
+
+TEST(Choose, TakesTheFrontOfOneFrameOnly) {
+  SweepPoints sweep = line_of({{1, 10}, {2, 100}, {3, 50}, {4, 45}});
+  sweep.points[1].frame = sweep.points[2].frame = sweep.points[3].frame = 1;
+  sweep.frames = 2;
+  EXPECT_EQ(choose(sweep).front, std::vector<std::size_t>{0});
+  sweep.points[0].figures["end"] = 60;
+  EXPECT_EQ(choose(sweep).front, (std::vector<std::size_t>{1, 2, 3}));
+  EXPECT_EQ(choose(sweep).fastest, 3U);
+}
+
+TEST(AnswerOfSweep, ComparesTheSameWorkOnly) {
+  SweepPoints sweep = line_of({{4, 10}, {4, 40}});
+  EXPECT_EQ(all_of(sweep).find("different frames"), std::string::npos);
+  sweep.points[1].frame = 1;
+  sweep.frames = 2;
+  const std::string text = all_of(sweep);
+  EXPECT_NE(text.find("The fastest of 1 machines"), std::string::npos) << text;
+  EXPECT_NE(text.find("The sweep has 2 different frames"), std::string::npos) << text;
+  EXPECT_NE(text.find("are compared here: machine.nodes = 1."), std::string::npos) << text;
+  EXPECT_EQ(text.find("What to change"), std::string::npos) << "the next value is other work\n" << text;
+}
+
+TEST(AnswerOfSweep, AdvisesGainsUpAndDown) {
+  // The price is the same: the best is the shortest, in the middle or at an end.
+  EXPECT_NE(all_of(line_of({{1, 50}, {1, 40}, {1, 60}})).find("no single step of an axis makes it faster"),
+            std::string::npos);
+  // The knee is the second of three on the front.
+  const std::string up = all_of(line_of({{1, 1600}, {2, 400}, {1600, 390}}));
+  EXPECT_NE(up.find("machine.nodes from 2 to 3 makes the frame 2.5 % shorter"), std::string::npos) << up;
+  // And so it is here, but its better neighbour lies below.
+  const std::string down = all_of(line_of({{1600, 390}, {2, 400}, {1, 1600}}));
+  EXPECT_NE(down.find("machine.nodes from 2 to 1 makes the frame 2.5 % shorter"), std::string::npos) << down;
+  EXPECT_EQ(down.find("longer"), std::string::npos) << down;
+}
+
+TEST(Choose, DrawsTheLineOfTheKneeFromFreeMachinesToo) {
+  // With the logarithm of almost nothing for 0, a machine next to the fastest would lie deepest below the
+  // line.
+  SweepPoints sweep = line_of({{0, 1000}, {1, 300}, {2, 290}, {10, 250}});
+  EXPECT_EQ(choose(sweep).knee, 1U);
+  EXPECT_EQ(choose(line_of({{0, 1000}})).knee, 0U);
+  const std::string text = all_of(line_of({{0, 1000}, {1, 1000}}));
+  EXPECT_EQ(text.find("nan"), std::string::npos) << text;
+}
+
+TEST(TimeText, KeepsWithin64Bits) {
+  EXPECT_EQ(time_text(1e6), "1.000 us");
+  EXPECT_EQ(time_text(-1.0), "0.000 us");
+  EXPECT_EQ(time_text(1e308), time_text(0x1p62));
+}
+
+const char* const whole_run =
+    R"({"machine": {"frame_time_ps": 2000000, "nodes": 4, "clusters": 1, "speed_up": 3,
+  "efficiency": 0.75, "bounds": {"frame_time_at_least_ps": 1000000, "by": "computing",
+  "prediction": {"saturation_nodes": 11.0, "mean_value_error": -0.125}},
+  "speed_up_loss": {"lost_speed_up": {"bank_wait": 1.0}}}})";
+
+TEST(AnswerOfRun, BoundsThisMachineOnly) {
+  const std::vector<std::string> answer = answer_of(RunJson(Json::parse(whole_run), "f"));
+  ASSERT_EQ(answer.size(), 4U);
+  EXPECT_EQ(answer[0],
+            "A frame takes 2.000 us on 4 nodes: 3.00 times as fast as one node, an efficiency of 75.0 %.");
+  EXPECT_EQ(answer[2],
+            "This machine cannot do this work in less than 1.000 us (computing): better waiting and balance "
+            "could gain 50.0 % at most.");
+  EXPECT_NE(answer[3].find("-12.5 % off"), std::string::npos);
+}
+
+TEST(AnswerOfRun, NamesTheFieldThatIsWrong) {
+  const std::vector<std::string> required = {"/frame_time_ps", "/nodes", "/clusters", "/efficiency"};
+  const std::vector<std::string> optional = {
+      "/speed_up", "/bounds/frame_time_at_least_ps", "/bounds/prediction/saturation_nodes",
+      "/bounds/prediction/mean_value_error", "/speed_up_loss/lost_speed_up/bank_wait"};
+  const auto error = [&](const std::string& field, const Json& value) {
+    Json run = Json::parse(whole_run);
+    run["machine"][Json::json_pointer(field)] = value;
+    return user_error_of([&] { (void)answer_of(RunJson(run, "some/result.json")); });
+  };
+  const auto expect_refused = [&](const std::string& field) {
+    for (const Json& value : {Json("4"), Json(true), Json(-1e300), Json(1e300), Json(Json::array())}) {
+      const std::string message = error(field, value);
+      EXPECT_NE(message.find("some/result.json: has no number \"machine."), std::string::npos)
+          << field << value << message;
+      EXPECT_NE(message.find(field.substr(field.rfind('/') + 1)), std::string::npos) << message;
+    }
+  };
+  for (const std::string& field : required) {
+    expect_refused(field);
+    EXPECT_NE(error(field, nullptr), "no UserError") << field;
+  }
+  for (const std::string& field : optional) {
+    expect_refused(field);
+    EXPECT_EQ(error(field, nullptr), "no UserError") << field;
+  }
+  EXPECT_NE(error("/frame_time_ps", 0), "no UserError");
+  EXPECT_NE(error("/nodes", 0), "no UserError");
+}
+
+}  // namespace
+}  // namespace marti::studies

@@ -1,0 +1,136 @@
+// Points of a store that anybody may have changed.
+#include <gtest/gtest.h>
+
+#include "studies/report/sweep_points.h"
+#include "studies/results/sqlite_connection.h"
+#include "studies/sweep/sweep_store.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/support/user_error.h"
+#include "tests/unit/studies/sweep_parts.h"
+
+namespace marti::studies {
+namespace {
+
+namespace fs = std::filesystem;
+using test::made_plan;
+using test::TemporaryDirectory;
+using test::user_error_of;
+
+class ReadSweepPoints : public testing::Test {
+ protected:
+  ReadSweepPoints() { make({}); }
+
+  // Five machines on two frames, four of them timed.
+  void make(const std::vector<std::string>& changes) {
+    fs::remove(file_);
+    {
+      SweepStore store(file_, made_plan(5));
+      for (std::size_t frame = 0; frame < 2; ++frame) {
+        FrameRow row = test::made_frame_row(frame);
+        row.image_hash = test::made_key(frame).substr(16);
+        store.add_frame(frame, row, 1);
+      }
+      for (std::size_t machine = 0; machine < 4; ++machine) {
+        SweepRow row;
+        for (std::size_t i = 0; i < sweep_columns().size(); ++i) {
+          row.counters.emplace_back(1000 + 10 * machine);
+        }
+        store.add_result(machine, row, 1);
+      }
+      store.close();
+    }
+    if (!changes.empty()) {
+      SqliteConnection connection(file_, SqliteConnection::Access::write);
+      for (const std::string& change : changes) {
+        connection.execute(change);
+      }
+    }
+  }
+
+  std::string error(const std::string& change) {
+    make({change});
+    return user_error_of([&] { (void)read_sweep_points(file_); });
+  }
+
+  void expect_refused(const std::string& change, const std::string& what) {
+    const std::string message = error(change);
+    EXPECT_NE(message.find("results.sqlite: point 2: "), std::string::npos) << change << "\n" << message;
+    EXPECT_NE(message.find(what), std::string::npos) << change << "\n" << message;
+  }
+
+  TemporaryDirectory directory_;
+  fs::path file_ = directory_.path() / "results.sqlite";
+};
+
+TEST_F(ReadSweepPoints, ReadsThemWithTheirFrames) {
+  const SweepPoints sweep = read_sweep_points(file_);
+  EXPECT_EQ(sweep.planned, 5U);
+  ASSERT_EQ(sweep.points.size(), 4U);
+  EXPECT_EQ(sweep.frames, 2U);
+  EXPECT_EQ(sweep.points[0].frame, sweep.points[2].frame);
+  EXPECT_NE(sweep.points[0].frame, sweep.points[1].frame);
+  EXPECT_EQ(sweep.points[1].figure("end"), 1010.0);
+  EXPECT_EQ(sweep.points[1].figure("price"), 1.5);
+  EXPECT_FALSE(sweep.points[0].image_machine.has_value()) << "its settings do not name a scheme";
+}
+
+TEST_F(ReadSweepPoints, KnowsWhatBearsOnALimit) {
+  const auto set = [](const std::string& section, const std::string& key, const std::string& value) {
+    return "UPDATE settings SET key = '" + key + "', value = '\"" + value + "\"' WHERE key = '" + section +
+           ".key1'";
+  };
+  make({set("machine", "machine.scheme", "image"), set("build", "build.sharing", "private"),
+        set("interconnect", "interconnect.kind", "crossbar"),
+        set("database", "database.placement", "replicated")});
+  const std::optional<ImageMachine> machine = read_sweep_points(file_).points[0].image_machine;
+  ASSERT_TRUE(machine.has_value());
+  EXPECT_EQ(machine->sharing, processors::Sharing::private_trees);
+  EXPECT_EQ(machine->interconnect, memory::InterconnectKind::crossbar);
+  EXPECT_EQ(machine->placement, processors::Placement::replicated);
+  make({set("machine", "machine.scheme", "pipeline")});
+  EXPECT_FALSE(read_sweep_points(file_).points[0].image_machine.has_value());
+}
+
+TEST_F(ReadSweepPoints, RefusesFrameTimesThatAreNone) {
+  for (const char* end :
+       {"NULL", "0", "'soon'", "-5", "1e300", "1.5", "9223372036854775807", "1e308", "9e999"}) {
+    expect_refused(std::string("UPDATE results SET \"end\" = ") + end + " WHERE machine = 3", "its end is ");
+  }
+  EXPECT_EQ(error("UPDATE results SET \"end\" = 4611686018427387904 WHERE machine = 3"), "no UserError");
+}
+
+TEST_F(ReadSweepPoints, RefusesFiguresOutOfRange) {
+  for (const char* value : {"-1", "'many'", "1e300", "9e999", "9223372036854775807"}) {
+    expect_refused(std::string("UPDATE results SET hits = ") + value + " WHERE machine = 3", "hit");
+    expect_refused(std::string("UPDATE results SET nodes = ") + value + " WHERE machine = 3", "");
+    expect_refused(std::string("UPDATE points SET cost = ") + value + " WHERE ordinal = 2", "its cost is ");
+  }
+  EXPECT_EQ(error("UPDATE results SET hits = NULL WHERE machine = 3"), "no UserError");
+}
+
+TEST_F(ReadSweepPoints, RefusesValuesThatAreNoPlace) {
+  expect_refused("UPDATE points SET \"machine.nodes\" = NULL WHERE ordinal = 2", "machine.nodes is missing");
+  expect_refused("UPDATE points SET \"cache.size\" = 9e999 WHERE ordinal = 2", "cache.size is inf");
+  expect_refused("UPDATE points SET \"cache.size\" = -1e300 WHERE ordinal = 2", "out of range");
+  expect_refused("UPDATE points SET \"machine.nodes\" = 0, \"cache.size\" = 0.0 WHERE ordinal = 2",
+                 "the same values as point 0");
+  EXPECT_NE(error("UPDATE points SET \"machine.nodes\" = 'x', \"cache.size\" = 1.0, \"l2.on\" = 0")
+                .find("point 1: it has the same values as point 0"),
+            std::string::npos);
+}
+
+TEST_F(ReadSweepPoints, RefusesNumbersThatAChartCannotTellApart) {
+  expect_refused(
+      "UPDATE points SET \"machine.nodes\" = 9007199254740992 + (ordinal = 2) WHERE ordinal >= 1 AND ordinal "
+      "<= 2",
+      "the same number");
+}
+
+TEST_F(ReadSweepPoints, RefusesMachinesThatAreNotThere) {
+  expect_refused("UPDATE points SET machine = 99 WHERE ordinal = 2", "its machine 99 is not in the store");
+  EXPECT_NE(error("UPDATE points SET machine = 99 WHERE ordinal = 4").find("point 4: "), std::string::npos)
+      << "one that has not been timed";
+}
+
+}  // namespace
+}  // namespace marti::studies
