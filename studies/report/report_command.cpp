@@ -45,8 +45,10 @@ void check_target(const fs::path& file) {
     return;
   }
   if (!fs::is_regular_file(file, error)) {
-    throw sim::UserError(file.string() + (error ? ": cannot be written: " + error.message()
-                                                : ": is no regular file; choose another name for the page"));
+    const bool unknown = error && error != std::errc::no_such_file_or_directory;  // a link to nothing
+    throw sim::UserError(file.string() +
+                         (unknown ? ": cannot be written: " + error.message()
+                                  : ": is no regular file; choose another name for the page with -o"));
   }
   if (!is_page(file)) {
     throw sim::UserError(
