@@ -16,15 +16,28 @@ namespace {
 // thousands of them.
 constexpr std::uint64_t most_exact_work = 1U << 16U;
 
+// Nodes of a cluster that can have work.
+double customers_of(const PointCounters& counters) {
+  const double nodes = counters.packets > 0.0 ? std::min(counters.nodes, counters.packets) : counters.nodes;
+  return nodes / std::max(1.0, counters.clusters);
+}
+
+// Each queue has a number of its own in the network, and no configuration has more of them (memory.banks).
+constexpr double most_queues = 65536.0;
+
+// Of a cluster. Counts are interpolated, or those of a store that somebody may have changed.
+std::size_t queues_of(double count, const PointCounters& counters) {
+  const double each = std::round(count / std::max(1.0, counters.clusters));
+  return each > 0.0 ? static_cast<std::size_t>(std::min(each, most_queues)) : 0;
+}
+
 processors::ClosedNetwork network_of(const PointCounters& counters) {
   processors::ClosedNetwork network;
-  const double nodes = counters.packets > 0.0 ? std::min(counters.nodes, counters.packets) : counters.nodes;
-  const double customers = std::round(nodes / std::max(1.0, counters.clusters));
-  network.customers = static_cast<std::uint64_t>(std::clamp(customers, 1.0, 1e9));
+  network.customers = static_cast<std::uint64_t>(std::clamp(std::round(customers_of(counters)), 1.0, 1e9));
   const double around = counters.reads > 0.0 ? counters.reads : 1.0;
   if (counters.reads > 0.0) {
     const auto queues = [&](double count, double busy) {
-      const auto each = static_cast<std::size_t>(std::round(count / std::max(1.0, counters.clusters)));
+      const std::size_t each = queues_of(count, counters);
       if (each > 0 && busy > 0.0) {
         network.demands.insert(network.demands.end(), each, busy / around / static_cast<double>(each));
       }
@@ -73,8 +86,10 @@ double closed_network_end(const PointCounters& counters) {
 double asymptotic_end(const PointCounters& counters) {
   const processors::ClosedNetwork network = network_of(counters);
   const double cycles = cycles_of(counters);
-  return std::max(counters.work / std::max(1.0, counters.clusters) / static_cast<double>(network.customers),
-                  network.largest() * cycles);
+  // A part of a node is a node here: with fewer the work would take longer, and this be no bound. What
+  // interpolation has rounded up is none.
+  const double customers = std::max(1.0, std::ceil(customers_of(counters) * (1.0 - 1e-12)));
+  return std::max(counters.work / std::max(1.0, counters.clusters) / customers, network.largest() * cycles);
 }
 
 std::optional<double> saturation_nodes(const PointCounters& counters) {
@@ -92,6 +107,10 @@ LineModel::LineModel(std::vector<PointCounters> points, bool logarithmic)
                 "the points of a line model need frame times and places of their own");
     ratios_.push_back(points_[i].end / closed_network_end(points_[i]));
   }
+}
+
+Zone LineModel::zone(double x) const {
+  return x < points_.front().x || x > points_.back().x ? Zone::beyond : Zone::between;
 }
 
 Modelled LineModel::at(double x) const {
@@ -112,7 +131,7 @@ Modelled LineModel::at(double x) const {
                               interpolate(ratios_[right - 1], ratios_[right], std::clamp(share, 0.0, 1.0)),
                           modelled.asymptote);
   modelled.base_end = counters.base_end;
-  modelled.zone = x < points_.front().x || x > points_.back().x ? Zone::beyond : Zone::between;
+  modelled.zone = zone(x);
   return modelled;
 }
 

@@ -58,6 +58,8 @@ class LineModel {
   /// as between the last two, and the ratio stays as it is at the last.
   [[nodiscard]] Modelled at(double x) const;
 
+  [[nodiscard]] Zone zone(double x) const;
+
   [[nodiscard]] std::span<const PointCounters> points() const { return points_; }
 
  private:

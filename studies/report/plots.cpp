@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <string_view>
 
 #include "sim/error.h"
-#include "sim/files.h"
 #include "studies/report/child_process.h"
 #include "studies/report/page_files.h"
 #include "studies/report/vega_bundle.h"
-#include "studies/results/pending_files.h"
-#include "studies/signals_held.h"
 
 namespace marti::studies {
 
@@ -28,12 +26,17 @@ using Json = nlohmann::ordered_json;
 constexpr std::chrono::seconds limit(120);
 
 void check_names(std::span<const ReportChart> charts) {
+  std::set<std::string_view> names;
   for (const ReportChart& chart : charts) {
     const bool plain = std::none_of(chart.name.begin(), chart.name.end(), [](char c) {
       return c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
     });
     if (!plain || chart.name.empty() || chart.name.front() == '.' || chart.name.size() > 200) {
       throw sim::UserError("chart \"" + chart.name + "\": this cannot be the name of a file");
+    }
+    if (!names.insert(chart.name).second) {
+      throw sim::UserError("chart \"" + chart.name + "\": there are two of this name, which would both be " +
+                           chart.name + ".svg");
     }
   }
 }
@@ -87,30 +90,22 @@ std::string pdf_of(const std::string& svg) {
 
 }  // namespace
 
-std::vector<fs::path> write_plots(std::span<const ReportChart> charts, const fs::path& directory, bool pdf) {
+std::vector<Plot> draw_plots(std::span<const ReportChart> charts, const fs::path& directory, bool pdf) {
   check_names(charts);
   refuse_results(directory);
   if (!have_vega_scripts()) {
     throw sim::UserError(no_vega_scripts);
   }
   const std::vector<std::string> drawings = draw(charts);
-  std::vector<std::string> pages;
-  for (const std::string& svg : drawings) {
-    if (pdf) {
-      pages.push_back(pdf_of(svg));
-    }
-  }
-  sim::make_directory(directory);
-  const SignalsHeld held;
-  PendingFiles files(directory);
+  std::vector<Plot> plots;
   for (std::size_t i = 0; i < charts.size(); ++i) {
-    files.write(charts[i].name + ".svg", drawings[i]);
-    files.write(charts[i].name + ".csv", charts[i].csv);
+    plots.push_back({charts[i].name + ".svg", drawings[i]});
+    plots.push_back({charts[i].name + ".csv", charts[i].csv});
     if (pdf) {
-      files.write(charts[i].name + ".pdf", pages[i]);
+      plots.push_back({charts[i].name + ".pdf", pdf_of(drawings[i])});
     }
   }
-  return files.commit();
+  return plots;
 }
 
 }  // namespace marti::studies

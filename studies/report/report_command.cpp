@@ -1,6 +1,11 @@
 #include "studies/report/report_command.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <span>
+#include <string_view>
+#include <vector>
 
 #include "sim/error.h"
 #include "sim/files.h"
@@ -8,35 +13,110 @@
 #include "studies/report/report_charts.h"
 #include "studies/report/report_page.h"
 #include "studies/report/vega_bundle.h"
+#include "studies/results/pending_files.h"
+#include "studies/signals_held.h"
 
 namespace marti::studies {
 
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path directory_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : "."; }
+
+bool is_page(const fs::path& file) {
+  constexpr std::string_view begin = "<!doctype html";
+  std::string text(begin.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(text.data(), static_cast<std::streamsize>(text.size()));
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return text == begin;
+}
+
+// Whatever is wrong with the name of the page is said before anything is drawn. A page may replace an older
+// page, but not results.
+void check_target(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_directory(directory_of(file), error)) {
+    throw sim::UserError(file.string() + ": cannot be written: " + directory_of(file).string() +
+                         (error ? ": " + error.message() : " is no directory"));
+  }
+  if (fs::symlink_status(file, error).type() == fs::file_type::not_found) {
+    return;
+  }
+  if (!fs::is_regular_file(file, error)) {
+    const bool unknown = error && error != std::errc::no_such_file_or_directory;  // a link to nothing
+    throw sim::UserError(file.string() +
+                         (unknown ? ": cannot be written: " + error.message()
+                                  : ": is no regular file; choose another name for the page with -o"));
+  }
+  if (!is_page(file)) {
+    throw sim::UserError(
+        file.string() +
+        ": is there and no HTML page, so no report replaces it; choose another name with -o, "
+        "or remove it");
+  }
+}
+
+void check_apart(const fs::path& file, const fs::path& directory, std::span<const Plot> plots) {
+  std::error_code ignored;
+  for (const Plot& plot : plots) {
+    if (fs::weakly_canonical(file, ignored) == fs::weakly_canonical(directory / plot.file, ignored)) {
+      throw sim::UserError(file.string() +
+                           ": is also the name of a plot; choose another name for the page with -o");
+    }
+  }
+}
+
+// The page and the plots, all or none.
+std::vector<fs::path> write_all(const fs::path& file, const std::string& page, const fs::path& directory,
+                                std::span<const Plot> plots) {
+  const SignalsHeld held;
+  PendingFiles pending_page(directory_of(file));
+  pending_page.write(file.filename().string(), page);
+  PendingFiles pending_plots(directory);
+  if (!directory.empty()) {
+    sim::make_directory(directory);
+  }
+  for (const Plot& plot : plots) {
+    pending_plots.write(plot.file, plot.content);
+  }
+  std::vector<fs::path> files = pending_plots.commit();
+  (void)pending_page.commit();
+  files.push_back(file);
+  return files;
+}
+
+}  // namespace
+
 void report_command(const ReportArguments& arguments, void (*print)(const std::string&)) {
-  namespace fs = std::filesystem;
+  if (arguments.directory.empty()) {
+    throw sim::UserError("marti report: DIR is empty; give the directory of a run, a sweep or a study");
+  }
   if (arguments.pdf && arguments.plots.empty()) {
     throw sim::UserError("--pdf: goes with --plots DIR, the directory for the files, which is missing");
   }
-  const ReportData report = read_report(arguments.directory);
-  if (!have_vega_scripts()) {
-    throw sim::UserError(
-        "marti report: this program was built without the scripts that draw charts; install node and npm "
-        "(Debian: "
-        "nodejs, npm), and configure and build again with -DMARTI_REPORT=ON");
-  }
   const fs::path file =
       arguments.output.empty() ? fs::path(arguments.directory) / "report.html" : fs::path(arguments.output);
+  const ReportData report = read_report(arguments.directory);
+  if (!have_vega_scripts()) {
+    throw sim::UserError(no_vega_scripts);
+  }
+  check_target(file);
   const std::string page = report_page(report, vega_scripts());
+  std::vector<Plot> plots;
+  if (!arguments.plots.empty()) {
+    plots = draw_plots(report.charts, arguments.plots, arguments.pdf);
+    check_apart(file, arguments.plots, plots);
+  }
   std::string text;
   for (const std::string& sentence : report.answer) {
     text += sentence + "\n";
   }
-  if (!arguments.plots.empty()) {
-    for (const fs::path& plot : write_plots(report.charts, arguments.plots, arguments.pdf)) {
-      text += "wrote " + plot.string() + "\n";
-    }
+  for (const fs::path& written : write_all(file, page, arguments.plots, plots)) {
+    text += "wrote " + written.string() + "\n";
   }
-  sim::write_file(file, page);
-  print(text + "wrote " + file.string() + "\n");
+  print(text);
 }
 
 }  // namespace marti::studies

@@ -4,6 +4,7 @@
 
 #include "sim/error.h"
 #include "sim/files.h"
+#include "sim/units.h"
 #include "studies/report/rows_csv.h"
 
 namespace marti::studies {
@@ -21,18 +22,77 @@ constexpr int deepest = 64;
   throw sim::UserError(file.string() + ": " + reason + "; remove it, or make the results again");
 }
 
-// Names by which a specification can load data, pictures or pages.
-bool asks_for_more(const Json& part, int depth) {
+// What a chart may not have: data from outside of the file, or data that are made (a sequence can be of any
+// length).
+void check_data(const fs::path& file, const Json& data) {
+  if (data.is_null()) {
+    return;
+  }
+  if (!data.is_object()) {
+    refuse(file, "has data that are no object");
+  }
+  for (const auto& [name, value] : data.items()) {
+    if (name != "values" && name != "name") {
+      refuse(file, "has data by \"" + name + "\"; a chart's data are rows under data.values");
+    }
+  }
+}
+
+// `rows`: the part lies in data.values, where names are those of columns.
+void check_part(const fs::path& file, const Json& part, bool rows, int depth) {
   if (depth > deepest) {
-    return true;
+    refuse(file, "is nested too deeply");
   }
-  if (part.is_object()) {
-    return std::any_of(part.items().begin(), part.items().end(), [depth](const auto& item) {
-      return item.key() == "url" || item.key() == "href" || asks_for_more(item.value(), depth + 1);
-    });
+  if (part.is_array()) {
+    for (const Json& each : part) {
+      check_part(file, each, rows, depth + 1);
+    }
   }
-  return part.is_array() && std::any_of(part.begin(), part.end(),
-                                        [depth](const Json& each) { return asks_for_more(each, depth + 1); });
+  if (!part.is_object()) {
+    return;
+  }
+  for (const auto& [name, value] : part.items()) {
+    if (!rows && (name == "url" || name == "href")) {
+      refuse(file, "asks for something outside of the file (" + name + ")");
+    }
+    if (rows || name != "data") {
+      check_part(file, value, rows, depth + 1);
+      continue;
+    }
+    check_data(file, value);
+    if (value.is_object() && value.contains("values")) {
+      check_part(file, value["values"], /*rows=*/true, depth + 1);
+    }
+  }
+}
+
+// Big-endian, as PNG has its numbers.
+std::uint32_t number_at(std::string_view bytes, std::size_t at) {
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    number = number << 8U | static_cast<unsigned char>(bytes[at + i]);
+  }
+  return number;
+}
+
+void check_png(const fs::path& file, std::string_view png) {
+  using namespace std::string_view_literals;
+  // Signature, length and name of the chunk of sizes; width, height.
+  constexpr std::string_view begin = "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR"sv;
+  constexpr std::string_view end = "\0\0\0\0IEND\xae\x42\x60\x82"sv;
+  constexpr std::uint32_t largest = 32768;  // image.width, image.height
+  if (!png.starts_with(begin) || png.size() < begin.size() + 8) {
+    refuse(file, "is no PNG file");
+  }
+  const std::uint32_t width = number_at(png, begin.size());
+  const std::uint32_t height = number_at(png, begin.size() + 4);
+  if (width == 0 || height == 0 || width > largest || height > largest) {
+    refuse(file, "is a PNG file of " + std::to_string(width) + " x " + std::to_string(height) +
+                     " pixels, which no image of marti has");
+  }
+  if (!png.ends_with(end)) {
+    refuse(file, "is a PNG file without its end");
+  }
 }
 
 // A name as tables and charts have it.
@@ -52,8 +112,15 @@ std::string text_in(const Json& spec, const char* name) {
 }  // namespace
 
 bool is_there(const fs::path& file) {
-  std::error_code ignored;
-  return fs::exists(file, ignored);
+  std::error_code error;
+  const fs::file_status status = fs::symlink_status(file, error);
+  if (status.type() == fs::file_type::not_found) {
+    return false;
+  }
+  if (error) {
+    throw sim::UserError(file.string() + ": cannot be read: " + error.message());
+  }
+  return true;
 }
 
 std::vector<fs::path> files_ending_in(const fs::path& directory, std::string_view ending) {
@@ -72,12 +139,17 @@ std::vector<fs::path> files_ending_in(const fs::path& directory, std::string_vie
   return files;
 }
 
-ReportImage read_image(const fs::path& file, const std::string& title) {
-  ReportImage image{file.stem().string(), title, sim::read_file(file, largest_image)};
-  if (!image.png.starts_with("\x89PNG\r\n\x1a\n")) {
-    refuse(file, "is no PNG file");
+void take_image(const fs::path& file, const std::string& title, ReportData& report) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  if (!error && size > static_cast<std::uintmax_t>(largest_image)) {
+    report.answer.push_back(file.filename().string() + " is left out of this page: it has more than " +
+                            sim::print_size(largest_image) + ".");
+    return;
   }
-  return image;
+  ReportImage image{file.stem().string(), title, sim::read_file(file, largest_image)};
+  check_png(file, image.png);
+  report.images.push_back(std::move(image));
 }
 
 ReportChart read_chart(const fs::path& file) {
@@ -86,6 +158,7 @@ ReportChart read_chart(const fs::path& file) {
   if (!chart.spec.is_object() || text_in(chart.spec, "$schema").find("vega-lite") == std::string::npos) {
     refuse(file, "is no Vega-Lite specification");
   }
+  check_part(file, chart.spec, /*rows=*/false, 0);
   const auto data = chart.spec.find("data");
   if (data == chart.spec.end() || !data->is_object() || !data->contains("values") ||
       !data->at("values").is_array()) {
@@ -94,12 +167,6 @@ ReportChart read_chart(const fs::path& file) {
   const Json& rows = data->at("values");
   if (!std::all_of(rows.begin(), rows.end(), [](const Json& row) { return row.is_object(); })) {
     refuse(file, "has rows under data.values that are no objects");
-  }
-  Json rest = chart.spec;
-  rest.erase("data");
-  rest.erase("$schema");
-  if (asks_for_more(rest, 0)) {
-    refuse(file, "asks for something outside of the file (url or href), or is nested too deeply");
   }
   const std::string name = file.filename().string();
   chart.name = plain(name.substr(0, name.find(".vl.json")));

@@ -10,18 +10,20 @@
 
 namespace marti::studies {
 
-/// Is there something of this name?
+/// Is there something of this name, be it a link to nothing? UserError when that cannot be told.
 [[nodiscard]] bool is_there(const std::filesystem::path& file);
 
 /// Paths of the files in `directory` whose names end in `ending`, by name. UserError when it cannot be read.
 [[nodiscard]] std::vector<std::filesystem::path> files_ending_in(const std::filesystem::path& directory,
                                                                  std::string_view ending);
 
-/// A PNG file of at most 16 MiB. UserError when it cannot be read or is none.
-[[nodiscard]] ReportImage read_image(const std::filesystem::path& file, const std::string& title);
+/// Takes a PNG file into the report; of one with more than 16 MiB only a sentence says that it is left out.
+/// UserError when it cannot be read, is none or has been cut off.
+void take_image(const std::filesystem::path& file, const std::string& title, ReportData& report);
 
 /// A chart that a run or a study has written. UserError unless it is a Vega-Lite specification whose rows
-/// stand in data.values, an object each, and that asks for nothing from outside the file.
+/// stand in data.values, an object each, and that has no other data: none from outside the file, none that
+/// the page would have to make.
 [[nodiscard]] ReportChart read_chart(const std::filesystem::path& file);
 
 }  // namespace marti::studies

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -16,18 +17,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::int64_t whole(const RunJson& part, std::string_view path) {
-  const Json& value = part.find(path);
-  return value.is_number_integer() && !(value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX)
-             ? std::max<std::int64_t>(value.get<std::int64_t>(), 0)
-             : 0;
-}
-
-// Counts of a file that somebody may have changed.
+// Counts of a file that somebody may have changed; add_run_charts() says which file.
 std::int64_t plus(std::int64_t a, std::int64_t b) {
   std::int64_t sum = 0;
   if (__builtin_add_overflow(a, b, &sum)) {
-    throw sim::UserError("result.json: its counts do not fit in 64 bits; run `marti run` again");
+    throw std::overflow_error("its counts do not fit in 64 bits; run `marti run` again");
   }
   return sum;
 }
@@ -35,7 +29,7 @@ std::int64_t plus(std::int64_t a, std::int64_t b) {
 std::int64_t times(std::int64_t a, std::int64_t b) {
   std::int64_t product = 0;
   if (__builtin_mul_overflow(a, b, &product)) {
-    throw sim::UserError("result.json: its counts do not fit in 64 bits; run `marti run` again");
+    throw std::overflow_error("its counts do not fit in 64 bits; run `marti run` again");
   }
   return product;
 }
@@ -287,9 +281,7 @@ Table nodes_table(const RunJson& run) {
   return table;
 }
 
-}  // namespace
-
-void add_run_charts(const RunJson& run, ReportData& report) {
+void add_all(const RunJson& run, ReportData& report) {
   add(report, cycles_table(run), "All nodes' time from 0 to the end of the frame, without remainder.");
   add(report, loss_table(run), "The parts add up to the number of nodes less the speed-up.");
   add(report, nodes_table(run), "Uneven bars are imbalance.");
@@ -300,6 +292,23 @@ void add_run_charts(const RunJson& run, ReportData& report) {
   add(report, tree_table(run));
   add(report, level_memory_table(run));
   add(report, memory_table(run));
+}
+
+}  // namespace
+
+std::int64_t whole(const RunJson& part, std::string_view path) {
+  const Json& value = part.find(path);
+  return value.is_number_integer() && !(value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX)
+             ? std::max<std::int64_t>(value.get<std::int64_t>(), 0)
+             : 0;
+}
+
+void add_run_charts(const RunJson& run, ReportData& report) {
+  try {
+    add_all(run, report);
+  } catch (const std::overflow_error& error) {
+    throw sim::UserError(run.file() + ": " + error.what());
+  }
 }
 
 }  // namespace marti::studies

@@ -36,9 +36,9 @@ Table plan_table(const RunJson& run) {
                {"unit", ColumnType::text, "", "of saved_operations"}});
   for (const auto& [name, item] : run.at("plan").items()) {
     const RunJson each(item, run.file());
-    const std::optional<double> saved = each.number("counted.operations");
+    const bool saved = each.find("counted.operations").is_number_integer();
     table.add_row({name, each.text("decision"), each.text("class"), each.text("fact"),
-                   saved ? Cell(static_cast<std::int64_t>(*saved)) : Cell(), each.text("unit")});
+                   saved ? Cell(whole(each, "counted.operations")) : Cell(), each.text("unit")});
   }
   return table;
 }
@@ -67,7 +67,7 @@ void add_images(const fs::path& directory, ReportData& report) {
       {"heat-waits.png", "Heat map: waits of each pixel"}};
   for (const auto& [name, title] : images) {
     if (is_there(directory / name)) {
-      report.images.push_back(read_image(directory / name, title));
+      take_image(directory / name, title, report);
     }
   }
 }

@@ -189,11 +189,17 @@ ReportData read_study_report(const fs::path& directory) {
   if (is_there(directory / "report.txt")) {
     take_text(directory / "report.txt", report);
   }
+  std::map<std::string, fs::path> files;  // of the charts, by name
   for (const fs::path& chart : files_ending_in(directory, ".vl.json")) {
     report.charts.push_back(read_chart(chart));
+    const auto [other, is_new] = files.emplace(report.charts.back().name, chart);
+    if (!is_new) {
+      throw sim::UserError(fmt::format("{} and {}: both would be the chart {}; rename or remove one of them",
+                                       other->second.string(), chart.string(), other->first));
+    }
   }
   for (const fs::path& image : files_ending_in(directory, ".png")) {
-    report.images.push_back(read_image(image, image.stem().string()));
+    take_image(image, image.stem().string(), report);
   }
   report.answer.push_back(fmt::format("{} tables and {} charts below; the study's own report follows them.",
                                       report.tables.size(), report.charts.size()));

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "processors/accounting.h"
+#include "sim/schema.h"
 #include "studies/report/rounded.h"
+#include "studies/sweep/sweep_keys.h"
 
 namespace marti::studies {
 
@@ -15,8 +18,23 @@ namespace {
 
 constexpr int samples_a_step = 4;
 
-// Between neighbours, and from the outer values one step as long as the one beside it.
-std::vector<double> samples_of(const ReportAxis& axis) {
+// What a configuration may have for the axis; everything if the axis is no key.
+std::pair<double, double> range_of(const ReportAxis& axis, const sim::Schema& schema) {
+  const auto number = [](const std::optional<sim::Value>& value, double otherwise) {
+    const auto* integer = value ? std::get_if<std::int64_t>(&*value) : nullptr;
+    const auto* real = value ? std::get_if<double>(&*value) : nullptr;
+    return integer != nullptr ? static_cast<double>(*integer) : real != nullptr ? *real : otherwise;
+  };
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const std::optional<std::size_t> at = schema.find(axis.name);
+  return at ? std::pair(number(schema.keys()[*at].minimum, -infinity),
+                        number(schema.keys()[*at].maximum, infinity))
+            : std::pair(-infinity, infinity);
+}
+
+// Between neighbours, and from the outer values one step as long as the one beside it, but not out of the
+// range of the key.
+std::vector<double> samples_of(const ReportAxis& axis, const sim::Schema& schema) {
   std::vector<double> values;
   for (std::size_t i = 0; i < axis.values.size(); ++i) {
     values.push_back(axis.number(i));
@@ -26,6 +44,7 @@ std::vector<double> samples_of(const ReportAxis& axis) {
                                       : std::lerp(from, to, share);
     return axis.integer ? std::round(x) : rounded(x, place_digits);
   };
+  const auto [lowest, highest] = range_of(axis, schema);
   std::vector<double> x = values;
   const std::size_t last = values.size() - 1;
   for (int i = 1; i <= samples_a_step; ++i) {
@@ -35,8 +54,10 @@ std::vector<double> samples_of(const ReportAxis& axis) {
         x.push_back(place(values[step], values[step + 1], share));
       }
     }
-    x.push_back(place(values[0], values[1], -share));
-    x.push_back(place(values[last - 1], values[last], 1.0 + share));
+    // A store may have been changed: its own values are shown wherever they are.
+    x.push_back(std::max(place(values[0], values[1], -share), std::min(lowest, values[0])));
+    x.push_back(
+        std::min(place(values[last - 1], values[last], 1.0 + share), std::max(highest, values[last])));
   }
   std::sort(x.begin(), x.end());
   x.erase(std::unique(x.begin(), x.end()), x.end());
@@ -61,14 +82,14 @@ Curve curve_of(const LineModel& line, const ReportAxis& axis, const AxisModel& m
   const auto [low, high] = reach(line, axis.logarithmic);
   for (const double x : model.x) {
     std::optional<Modelled>& sample = curve.samples.emplace_back();
-    if (x < low || x > high) {
+    if (x < low || x > high || !model.has_band(line.zone(x))) {
       continue;
     }
     sample = line.at(x);
     sample->end = rounded(sample->end, curve_digits);
     sample->base_end = rounded(sample->base_end, place_digits);
     sample->asymptote = rounded(sample->asymptote, curve_digits);
-    if (!model.has_band(sample->zone) || !std::isfinite(sample->end)) {
+    if (!std::isfinite(sample->end)) {
       sample.reset();
     }
   }
@@ -145,6 +166,7 @@ PointCounters counters_of(const ReportPoint& point, double x) {
 }
 
 std::vector<AxisModel> model_sweep(const SweepPoints& sweep, std::size_t most_samples) {
+  const sim::Schema schema = sweep_schema();
   std::vector<AxisModel> models;
   std::size_t samples = 0;
   for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
@@ -176,7 +198,7 @@ std::vector<AxisModel> model_sweep(const SweepPoints& sweep, std::size_t most_sa
     if (!model.has_band(Zone::between) && !model.has_band(Zone::beyond)) {
       continue;
     }
-    model.x = samples_of(axis);
+    model.x = samples_of(axis, schema);
     samples += model.x.size() * fitted.size();
     if (samples > most_samples) {
       break;

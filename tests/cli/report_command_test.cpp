@@ -241,6 +241,95 @@ TEST_F(ReportCommand, EscapesWhatASceneIsCalled) {
   EXPECT_EQ(page.find("<img src=x"), std::string::npos);
 }
 
+TEST_F(ReportCommand, ReplacesNothingButPages) {
+  const fs::path run = made_run();
+  const auto refused = [&](const fs::path& file, const std::string& complaint) {
+    const Outcome outcome = marti("report " + quoted(run) + " -o " + quoted(file));
+    EXPECT_EQ(outcome.status, 2) << outcome.output;
+    EXPECT_NE(outcome.output.find(file.string() + ": "), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
+  };
+  const std::string result = read(run / "result.json");
+  refused(run / "result.json", "no HTML page");
+  EXPECT_EQ(read(run / "result.json"), result);
+  write(place("empty"), "");
+  refused(place("empty"), "no HTML page");
+  refused(run, "is no regular file");
+  fs::create_symlink("none", place("link"));
+  refused(place("link"), "is no regular file");
+  write(place("old.html"), "<!doctype HTML>old");
+  EXPECT_EQ(marti("report " + quoted(run) + " -o " + quoted(place("old.html"))).status, 0);
+  EXPECT_GT(fs::file_size(place("old.html")), 500'000U);
+}
+
+TEST_F(ReportCommand, WritesPageAndPlotsTogetherOrNothing) {
+  const fs::path run = made_run();
+  const std::string plots = " --plots " + quoted(place("plots"));
+  const Outcome nowhere = marti("report " + quoted(run) + plots + " -o " + quoted(place("none/page.html")));
+  EXPECT_EQ(nowhere.status, 2);
+  EXPECT_NE(nowhere.output.find("page.html: cannot be written: "), std::string::npos) << nowhere.output;
+  EXPECT_FALSE(fs::exists(place("plots")));
+  fs::create_directory(place("plots"));
+  const Outcome both =
+      marti("report " + quoted(run) + plots + " -o " + quoted(place("run/../plots/run_cycles.svg")));
+  EXPECT_EQ(both.status, 2);
+  EXPECT_NE(both.output.find("is also the name of a plot"), std::string::npos) << both.output;
+  EXPECT_TRUE(fs::is_empty(place("plots")));
+  fs::create_directory(place("plots") / "run_tree.svg");
+  EXPECT_EQ(marti("report " + quoted(run) + plots).status, 2);
+  EXPECT_FALSE(fs::exists(run / "report.html"));
+  EXPECT_FALSE(fs::exists(place("plots") / "run_cycles.svg"));
+  fs::remove(place("plots") / "run_tree.svg");
+  const Outcome made = marti("report " + quoted(run) + plots);
+  ASSERT_EQ(made.status, 0) << made.output;
+  EXPECT_TRUE(fs::exists(run / "report.html"));
+  EXPECT_TRUE(read(place("plots") / "run_cycles.svg").starts_with("<svg "));
+  EXPECT_TRUE(fs::exists(place("plots") / "run_cycles.csv"));
+}
+
+TEST_F(ReportCommand, RefusesTwoChartsOfOneName) {
+  const std::string study = quoted(place("study"));
+  ASSERT_EQ(marti("study schemes " + quoted(fs::path(MARTI_SOURCE) / "configs" / "schemes.toml") +
+                  " --set image.width=8 --set image.height=8 -o " + study)
+                .status,
+            0);
+  const std::string chart = read(place("study") / "schemes.vl.json");
+  write(place("study") / "a.b.vl.json", chart);
+  write(place("study") / "a_b.vl.json", chart);
+  const Outcome outcome = marti("report " + study);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.output.find("a.b.vl.json and "), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("a_b.vl.json: "), std::string::npos) << outcome.output;
+}
+
+TEST_F(ReportCommand, LeavesOutALargeImageAndNamesOneThatCannotBeRead) {
+  const fs::path run = made_run();
+  fs::resize_file(run / "image.png", (16U << 20U) + 1);
+  const Outcome large = marti("report " + quoted(run));
+  EXPECT_EQ(large.status, 0) << large.output;
+  EXPECT_NE(read(run / "report.html").find("image.png is left out of this page"), std::string::npos);
+  fs::remove(run / "image.png");
+  fs::create_symlink("none", run / "image.png");
+  const Outcome dangling = marti("report " + quoted(run));
+  EXPECT_EQ(dangling.status, 2);
+  EXPECT_NE(dangling.output.find("image.png: cannot be read"), std::string::npos) << dangling.output;
+}
+
+TEST_F(ReportCommand, TakesNoSavingThatIsNoWholeNumber) {
+  const fs::path run = made_run();
+  json result = json::parse(read(run / "result.json"));
+  result["plan"].front()["counted"]["operations"] = 1e300;
+  write(run / "result.json", result.dump());
+  const Outcome outcome = marti("report " + quoted(run));
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+}
+
+TEST_F(ReportCommand, SaysThatDirIsEmpty) {
+  const Outcome outcome = marti("report ''");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.output.find("DIR is empty"), std::string::npos) << outcome.output;
+}
+
 TEST_F(ReportCommand, SaysWhatPdfNeeds) {
   const Outcome outcome = marti("report " + quoted(made_run()) + " --pdf");
   EXPECT_EQ(outcome.status, 2);

@@ -12,6 +12,7 @@
 #include "studies/report/report_files.h"
 #include "studies/report/report_page.h"
 #include "studies/report/rows_csv.h"
+#include "studies/report/run_charts.h"
 #include "studies/report/run_json.h"
 #include "studies/report/sweep_answer.h"
 #include "tests/support/temporary_directory.h"
@@ -149,18 +150,100 @@ TEST(ReadChart, TakesRowsThatStandInTheFile) {
   EXPECT_EQ(chart.csv, "a\r\n1\r\n");
   for (const char* rest :
        {R"("mark": "bar"})", R"("data": {"url": "http://x"}})", R"("data": {"values": [1]}})", R"("data": {)",
-        R"("data": {"values": []}, "layer": [{"data": {"url": "x"}}]})"}) {
+        R"("data": {"values": []}, "layer": [{"data": {"url": "x"}}]})",
+        R"("data": {"values": [], "url": "x"}})", R"("data": {"values": [], "format": {"type": "csv"}}})",
+        R"("data": {"values": []}, "layer": [{"data": {"sequence": {"start": 0, "stop": 1e9}}}]})",
+        R"("data": {"values": []}, "layer": [{"data": {"graticule": true}}]})",
+        R"("data": {"values": []}, "layer": [{"data": {"sphere": true}}]})",
+        R"("data": {"values": []}, "layer": [{"data": "x"}]})",
+        R"("data": {"values": []}, "encoding": {"href": {"field": "a"}}})"}) {
     write(file, begin + rest);
     const std::string error = user_error_of([&] { (void)read_chart(file); });
     EXPECT_NE(error.find("some.thing.vl.json"), std::string::npos) << rest << error;
   }
 }
 
-TEST(ReadImage, TakesPngOnly) {
+TEST(ReadChart, LetsRowsHaveAnyColumns) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "a.vl.json";
+  write(file,
+        R"({"$schema": "vega-lite", "data": {"name": "a", "values": [{"url": 1, "data": 2}]},
+            "layer": [{"data": {"values": [{"href": 3}]}}, {"data": null}, {"data": {"name": "a"}}]})");
+  EXPECT_EQ(read_chart(file).csv, "url,data\r\n1,2\r\n");
+  write(file, R"({"$schema": "vega-lite", "data": {"values": [{"a": )" + std::string(10'000, '[') +
+                  std::string(10'000, ']') + "}]}}");
+  EXPECT_NE(user_error_of([&] { (void)read_chart(file); }).find("nested too deeply"), std::string::npos);
+}
+
+std::string png_of(std::string_view size) {
+  using namespace std::string_literals;
+  return "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR"s + std::string(size) + "the rest\0\0\0\0IEND\xae\x42\x60\x82"s;
+}
+
+TEST(TakeImage, TakesWholePngFilesOnly) {
+  using namespace std::string_view_literals;
   const TemporaryDirectory directory;
   const fs::path file = directory.path() / "image.png";
-  write(file, "GIF89a");
-  EXPECT_NE(user_error_of([&] { (void)read_image(file, ""); }).find("no PNG"), std::string::npos);
+  ReportData report;
+  const auto error = [&](const std::string& bytes) {
+    write(file, bytes);
+    return user_error_of([&] { take_image(file, "T", report); });
+  };
+  const std::string good = png_of("\0\0\0\x10\0\0\0\x08"sv);
+  EXPECT_NE(error("GIF89a").find("is no PNG file"), std::string::npos);
+  EXPECT_NE(error(good.substr(0, 18)).find("is no PNG file"), std::string::npos);
+  EXPECT_NE(error(good.substr(0, good.size() - 1)).find("without its end"), std::string::npos);
+  EXPECT_NE(error(png_of("\0\0\0\0\0\0\0\x08"sv)).find("0 x 8"), std::string::npos);
+  EXPECT_NE(error(png_of("\0\0\0\x08\xff\xff\xff\xff"sv)).find("8 x 4294967295"), std::string::npos);
+  EXPECT_TRUE(report.images.empty());
+  EXPECT_EQ(error(good), "no UserError");
+  ASSERT_EQ(report.images.size(), 1U);
+  EXPECT_EQ(report.images.front().png, good);
+  EXPECT_TRUE(report.answer.empty());
+}
+
+TEST(TakeImage, SaysThatALargeOneIsLeftOut) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "image.png";
+  write(file, "");
+  fs::resize_file(file, (16U << 20U) + 1);
+  ReportData report;
+  take_image(file, "T", report);
+  EXPECT_TRUE(report.images.empty());
+  ASSERT_EQ(report.answer.size(), 1U);
+  EXPECT_EQ(report.answer.front(), "image.png is left out of this page: it has more than 16 MiB.");
+}
+
+TEST(IsThere, NamesALinkToNothingAndWhatMayNotBeLookedAt) {
+  const TemporaryDirectory directory;
+  EXPECT_FALSE(is_there(directory.path() / "none"));
+  fs::create_symlink("none", directory.path() / "image.png");
+  EXPECT_TRUE(is_there(directory.path() / "image.png"));
+  ReportData report;
+  const std::string error = user_error_of([&] { take_image(directory.path() / "image.png", "T", report); });
+  EXPECT_NE(error.find("image.png: cannot be read"), std::string::npos) << error;
+  const std::string loop = (directory.path() / "loop").string();
+  fs::create_symlink("loop", loop);  // root may look at everything, but not follow this
+  const std::string looped = user_error_of([&] { (void)is_there(fs::path(loop) / "result.json"); });
+  EXPECT_NE(looped.find("loop/result.json: cannot be read: "), std::string::npos) << looped;
+}
+
+TEST(RunCharts, NameTheFileWhoseCountsAreTooLarge) {
+  const RunJson run(
+      Json::parse(R"({"machine": {"references": {"node": {"hits": 9223372036854775807, "misses": 1}}}})"),
+      "some/result.json");
+  ReportData report;
+  const std::string error = user_error_of([&] { add_run_charts(run, report); });
+  EXPECT_EQ(error.find("some/result.json: its counts do not fit"), 0U) << error;
+}
+
+TEST(RunCharts, TakeWholeNumbersThatFit) {
+  const RunJson run(Json::parse(R"({"a": 7, "b": 1e300, "c": -1, "d": 18446744073709551615, "e": "7"})"),
+                    "f");
+  EXPECT_EQ(whole(run, "a"), 7);
+  for (const char* field : {"b", "c", "d", "e", "none"}) {
+    EXPECT_EQ(whole(run, field), 0) << field;
+  }
 }
 
 TEST(RunJson, IsReadWithCare) {

@@ -61,6 +61,31 @@ TEST(ClosedNetworkEnd, NoMoreNodesWorkThanThereArePackets) {
   EXPECT_DOUBLE_EQ(closed_network_end(counters), closed_network_end(bus_machine(4, 1)));
 }
 
+TEST(AsymptoticEnd, IsABoundWhereNodesDoNotShareEvenly) {
+  PointCounters counters = bus_machine(5, 1);
+  counters.reads = 0.0;
+  counters.clusters = 2;  // of 3 and 2 nodes
+  counters.links = 2;
+  EXPECT_DOUBLE_EQ(asymptotic_end(counters), 110'000.0 / 2 / 3);
+  counters.packets = 4.4;  // interpolated
+  EXPECT_DOUBLE_EQ(asymptotic_end(counters), 110'000.0 / 2 / 3);
+  counters.packets = 4.0 * (1.0 + 1e-15);
+  EXPECT_DOUBLE_EQ(asymptotic_end(counters), 110'000.0 / 2 / 2);
+}
+
+TEST(ClosedNetworkEnd, HasNoMoreQueuesThanAConfiguration) {
+  PointCounters counters = bus_machine(4, 1);
+  counters.banks = 65536;
+  counters.bank_busy = 10'000.0;
+  const double end = closed_network_end(counters);
+  for (const double banks : {2e9, 1e300}) {
+    counters.banks = banks;
+    EXPECT_DOUBLE_EQ(closed_network_end(counters), end) << banks;
+  }
+  counters.banks = -1e300;
+  EXPECT_DOUBLE_EQ(closed_network_end(counters), closed_network_end(bus_machine(4, 1)));
+}
+
 TEST(ClosedNetworkEnd, ClustersShareTheWork) {
   PointCounters counters = bus_machine(8, 1);
   counters.clusters = 2;
@@ -187,6 +212,28 @@ TEST(ModelSweep, ReachesOneStepBeyondThePoints) {
     EXPECT_NEAR(sample->end, exact, 1e-4 * exact) << model.x[i];
   }
   EXPECT_NEAR(model.curves.at("*").saturation.value(), 11.0, 1e-9);
+}
+
+TEST(ModelSweep, KeepsToTheRangeOfTheKey) {
+  SweepPoints sweep = sweep_over_nodes({2, 256, 65536});
+  sweep.axes.front().name = "memory.banks";
+  const std::vector<AxisModel> models = model_sweep(sweep);
+  ASSERT_EQ(models.size(), 1U);
+  EXPECT_EQ(models.front().x.front(), 1.0);
+  EXPECT_EQ(models.front().x.back(), 65536.0);
+}
+
+TEST(ModelSweep, GoesNowhereWithoutABand) {
+  // Either end is many steps of its neighbours away, so that only the error between points is measured.
+  const std::vector<AxisModel> models = model_sweep(sweep_over_nodes({1, 30, 31, 900}));
+  ASSERT_EQ(models.size(), 1U);
+  const AxisModel& model = models.front();
+  ASSERT_TRUE(model.has_band(Zone::between));
+  ASSERT_FALSE(model.has_band(Zone::beyond));
+  for (std::size_t i = 0; i < model.x.size(); ++i) {
+    EXPECT_EQ(model.curves.at("*").samples[i].has_value(), model.x[i] >= 1.0 && model.x[i] <= 900.0)
+        << model.x[i];
+  }
 }
 
 TEST(ModelSweep, SaysNothingWithoutAMeasuredError) {
