@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -48,11 +49,9 @@ fs::path nearest_file(const fs::path& file) {
       }
     }
   }
-  if (const std::string_view name = sim::nearest_name(file.filename().string(), names_in(parent, false));
-      !name.empty()) {
-    return parent / name;
-  }
-  return {};
+  const std::vector<std::string> names = names_in(parent, false);
+  const std::string_view near = sim::nearest_name(file.filename().string(), names);
+  return near.empty() ? fs::path() : parent / near;
 }
 
 }  // namespace
