@@ -129,7 +129,7 @@ std::string tables_html(const ReportData& report) {
 }
 
 std::string provenance_html(const ReportData& report) {
-  std::string html = "<table><tbody>\n";
+  std::string html = "<table class=\"facts\"><tbody>\n";
   for (const auto& [what, value] : report.provenance) {
     html += "<tr><th scope=\"row\">" + html_text(what) + "</th><td>" + html_text(value) + "</td></tr>\n";
   }

@@ -5,7 +5,8 @@ import { join } from "node:path";
 
 const program = process.env.MARTI_PROGRAM;
 const configs = join(process.env.MARTI_SOURCE, "configs");
-const work = process.env.MARTI_WORK;
+// Paths stand in the page: one word of this one is wider than a phone.
+const work = join(process.env.MARTI_WORK, "results-of-a-directory-with-a-very-long-name-without-a-space");
 
 export function marti(...args) {
   return execFileSync(program, args, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
