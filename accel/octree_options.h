@@ -32,6 +32,7 @@ struct LevelStatistics {
   std::uint64_t overfull_leaves = 0;  ///< leaves with more than max_objects entries
 
   [[nodiscard]] std::uint64_t nodes() const { return branches + leaves; }
+  bool operator==(const LevelStatistics&) const = default;
 };
 
 }  // namespace marti::accel

@@ -13,12 +13,16 @@ struct TopologyNode {
   std::uint32_t count = 0;  ///< branch: number of children; leaf: number of entries
   std::uint8_t level = 1;   ///< the root is level 1
   bool leaf = true;
+
+  bool operator==(const TopologyNode&) const = default;
 };
 
 /// What it took to make a node's children when the tree was built.
 struct SplitWork {
   std::uint32_t listed = 0;    ///< triangles the node listed
   std::uint32_t overlaps = 0;  ///< triangle against box tests run to sort them into children; 0 for a leaf
+
+  bool operator==(const SplitWork&) const = default;
 };
 
 /// Nodes in breadth-first order (node 0 is the root); entries are primitive ids, leaf by leaf in node
@@ -28,6 +32,8 @@ struct Topology {
   std::vector<std::uint32_t> entries;
   /// One for each node of a tree; empty for structures that are not built by splitting nodes.
   std::vector<SplitWork> work;
+
+  bool operator==(const Topology&) const = default;
 };
 
 }  // namespace marti::accel

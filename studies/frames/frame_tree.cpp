@@ -1,6 +1,5 @@
 #include "studies/frames/frame_tree.h"
 
-#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -14,18 +13,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-bool same_tree(const accel::Topology& a, const accel::Topology& b) {
-  const auto same_node = [](const accel::TopologyNode& x, const accel::TopologyNode& y) {
-    return x.first == y.first && x.count == y.count && x.level == y.level && x.leaf == y.leaf;
-  };
-  const auto same_work = [](const accel::SplitWork& x, const accel::SplitWork& y) {
-    return x.listed == y.listed && x.overlaps == y.overlaps;
-  };
-  return std::equal(a.nodes.begin(), a.nodes.end(), b.nodes.begin(), b.nodes.end(), same_node) &&
-         a.entries == b.entries &&
-         std::equal(a.work.begin(), a.work.end(), b.work.begin(), b.work.end(), same_work);
 }
 
 }  // namespace
@@ -46,7 +33,7 @@ FrameTree make_frame_tree(const FrameTree* before, const scenes::Scene& scene,
   tree.update = accel::update_octree(old, *tree.triangles);
   accel::Octree updated(tree.triangles, options, old.frame(), tree.update->build);
   tree.update_seconds = seconds_since(updating);
-  sim::ensure(same_tree(updated.topology(), fresh.topology()),
+  sim::ensure(updated.topology() == fresh.topology(),
               "an updated octree differs from one built from nothing");
   tree.octree = std::make_shared<const accel::StructureOf<accel::Octree>>(std::move(updated));
   return tree;

@@ -48,20 +48,6 @@ processors::LogRow strip_row(const std::vector<bool>& materials, const processor
   return kept;
 }
 
-bool same_nodes(const accel::Topology& a, const accel::Topology& b) {
-  if (a.nodes.size() != b.nodes.size() || a.entries != b.entries) {
-    return false;
-  }
-  for (std::size_t i = 0; i < a.nodes.size(); ++i) {
-    const accel::TopologyNode& x = a.nodes[i];
-    const accel::TopologyNode& y = b.nodes[i];
-    if (x.first != y.first || x.count != y.count || x.level != y.level || x.leaf != y.leaf) {
-      return false;
-    }
-  }
-  return true;
-}
-
 std::string difference_of_images(const processors::Image& a, const processors::Image& b) {
   std::size_t different = 0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
@@ -208,7 +194,7 @@ std::string difference_of(const processors::WorkLog& a, const processors::WorkLo
       a.lights != b.lights || a.texture_begin != b.texture_begin || a.rows.size() != b.rows.size()) {
     return "the work logs are of other databases";
   }
-  if (!same_nodes(a.topology, b.topology)) {
+  if (a.topology.nodes != b.topology.nodes || a.topology.entries != b.topology.entries) {
     return "the work logs are of other trees";
   }
   for (std::size_t y = 0; y < a.rows.size(); ++y) {

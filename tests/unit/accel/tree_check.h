@@ -14,44 +14,7 @@
 namespace marti::tests {
 
 inline bool same_nodes(const accel::Topology& a, const accel::Topology& b) {
-  if (a.nodes.size() != b.nodes.size() || a.entries != b.entries) {
-    return false;
-  }
-  for (std::size_t n = 0; n < a.nodes.size(); ++n) {
-    const accel::TopologyNode& x = a.nodes[n];
-    const accel::TopologyNode& y = b.nodes[n];
-    if (x.first != y.first || x.count != y.count || x.level != y.level || x.leaf != y.leaf) {
-      return false;
-    }
-  }
-  return true;
-}
-
-inline bool same_work(const std::vector<accel::SplitWork>& a, const std::vector<accel::SplitWork>& b) {
-  if (a.size() != b.size()) {
-    return false;
-  }
-  for (std::size_t n = 0; n < a.size(); ++n) {
-    if (a[n].listed != b[n].listed || a[n].overlaps != b[n].overlaps) {
-      return false;
-    }
-  }
-  return true;
-}
-
-inline bool same_levels(const std::vector<accel::LevelStatistics>& a,
-                        const std::vector<accel::LevelStatistics>& b) {
-  if (a.size() != b.size()) {
-    return false;
-  }
-  for (std::size_t l = 0; l < a.size(); ++l) {
-    if (a[l].branches != b[l].branches || a[l].leaves != b[l].leaves ||
-        a[l].empty_leaves != b[l].empty_leaves || a[l].entries != b[l].entries ||
-        a[l].overfull_leaves != b[l].overfull_leaves) {
-      return false;
-    }
-  }
-  return true;
+  return a.nodes == b.nodes && a.entries == b.entries;
 }
 
 /// A queue of nodes, one split after the other: the definition of the tree.
