@@ -4,18 +4,14 @@
 #include <string_view>
 
 #include "sim/error.h"
-#include "sim/files.h"
 #include "studies/compare/figures.h"
+#include "studies/results/run_json.h"
 
 namespace marti::studies {
 
 namespace {
 
-using Json = nlohmann::json;
-
-constexpr std::int64_t most_bytes = std::int64_t{256} << 20U;
-constexpr int schema = 1;
-constexpr int deepest = 32;  // a result is not nearly as deep
+using Json = nlohmann::ordered_json;
 
 // What the sums beside it say already, and sentences made of other figures.
 bool is_left_out(const std::string& path) {
@@ -41,19 +37,16 @@ class Flattener {
  public:
   Flattener(const std::string& file, Figures& figures) : file_(file), figures_(figures) {}
 
-  void add(const Json& value, const std::string& path, bool in_list, int depth) {
-    if (depth > deepest) {
-      throw sim::UserError(file_ + ": " + path + ": is nested too deeply for a result");
-    }
+  void add(const Json& value, const std::string& path, bool in_list) {
     if (is_left_out(path) || value.is_null()) {
       return;
     }
     if (value.is_object()) {
       for (const auto& [key, part] : value.items()) {
-        add(part, path.empty() ? key : path + "." + key, in_list, depth + 1);
+        add(part, path.empty() ? key : path + "." + key, in_list);
       }
     } else if (value.is_array()) {
-      add_list(value, path, in_list, depth);
+      add_list(value, path, in_list);
     } else if (in_list) {
       add_to_sum(value, path);
     } else {
@@ -75,16 +68,15 @@ class Flattener {
     return value.is_string() ? value.get<std::string>() : value.dump();
   }
 
-  void add_list(const Json& list, const std::string& path, bool in_list, int depth) {
+  void add_list(const Json& list, const std::string& path, bool in_list) {
     std::size_t index = 0;
     for (const Json& element : list) {
       if (element.is_object()) {
         const auto name = element.find("name");
         const bool named = !in_list && name != element.end() && name->is_string();
-        add(element, path + "[" + (named ? name->get<std::string>() : "") + "]", in_list || !named,
-            depth + 1);
+        add(element, path + "[" + (named ? name->get<std::string>() : "") + "]", in_list || !named);
       } else if (!element.is_array() && !in_list) {
-        add(element, path + "[" + std::to_string(index) + "]", false, depth + 1);
+        add(element, path + "[" + std::to_string(index) + "]", false);
       }
       ++index;
     }
@@ -112,26 +104,16 @@ class Flattener {
   Figures& figures_;
 };
 
-[[noreturn]] void refuse(const std::string& file, const std::string& reason) {
-  throw sim::UserError(file + ": " + reason + "; expected is the result.json of `marti run CONFIG -o DIR`");
-}
-
-const Json& part(const Json& object, const char* name, const std::string& file) {
-  const auto at = object.find(name);
-  if (at == object.end() || !at->is_object()) {
-    refuse(file, "has no object \"" + std::string(name) + "\"");
-  }
-  return *at;
-}
-
-void read_settings(const Json& result, const std::string& file,
-                   std::map<std::string, std::string>& settings) {
-  for (const auto& [key, setting] : part(part(result, "config", file), "keys", file).items()) {
-    if (!setting.is_object() || !setting.contains("value") || !setting["value"].is_string()) {
-      refuse(file, "config.keys." + key + " has no text \"value\"");
+std::map<std::string, std::string> settings_of(const RunJson& run) {
+  std::map<std::string, std::string> settings;
+  for (const auto& [key, setting] : run.at("config.keys").items()) {
+    const auto value = setting.is_object() ? setting.find("value") : setting.end();
+    if (value == setting.end() || !value->is_string()) {
+      run.refuse("config.keys." + key + " has no text \"value\"");
     }
-    settings[key] = setting["value"].get<std::string>();
+    settings[key] = value->get<std::string>();
   }
+  return settings;
 }
 
 struct Renamed {
@@ -217,34 +199,17 @@ std::string renamed_as_in_sweep(std::string_view name) {
 }  // namespace
 
 ComparedResult read_run(const std::filesystem::path& path, const std::string& name) {
-  const std::string file = path.string();
-  const Json json = Json::parse(sim::read_file(path, most_bytes), nullptr, false);
-  if (json.is_discarded()) {
-    refuse(file, "is not JSON");
-  }
-  if (!json.is_object()) {
-    refuse(file, "is no JSON object");
-  }
-  const Json& marti = part(json, "marti", file);
-  const auto found = marti.find("schema");
-  if (found == marti.end() || !found->is_number_integer()) {
-    refuse(file, "has no number \"marti.schema\"");
-  }
-  if (*found != schema) {
-    throw sim::UserError(file + ": is a result of schema " + found->dump() +
-                         ", but this program reads schema " + std::to_string(schema) +
-                         "; compare it with the program that wrote it");
-  }
+  const RunJson run = read_run_json(path);
   ComparedResult result;
   result.name = name;
-  const auto version = marti.find("version");
-  result.version = version != marti.end() && version->is_string() ? version->get<std::string>() : "unknown";
-  read_settings(json, file, result.settings);
-  Flattener flattener(file, result.figures);
-  (void)part(json, "machine", file);
-  for (const auto& [key, value] : json.items()) {
+  const Json& version = run.find("marti.version");
+  result.version = version.is_string() ? version.get<std::string>() : "unknown";
+  result.settings = settings_of(run);
+  Flattener flattener(run.file(), result.figures);
+  (void)run.at("machine");
+  for (const auto& [key, value] : run.json().items()) {
     if (key != "marti" && key != "config") {
-      flattener.add(value, key, false, 1);
+      flattener.add(value, key, false);
     }
   }
   return result;

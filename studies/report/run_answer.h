@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/report/run_json.h"
+#include "studies/results/run_json.h"
 
 namespace marti::studies {
 

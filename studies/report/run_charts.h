@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "studies/report/report_charts.h"
-#include "studies/report/run_json.h"
+#include "studies/results/run_json.h"
 
 namespace marti::studies {
 

@@ -7,7 +7,7 @@
 #include "studies/report/report_kinds.h"
 #include "studies/report/run_answer.h"
 #include "studies/report/run_charts.h"
-#include "studies/report/run_json.h"
+#include "studies/results/run_json.h"
 
 namespace marti::studies {
 
@@ -75,7 +75,8 @@ void add_images(const fs::path& directory, ReportData& report) {
 }  // namespace
 
 ReportData read_run_report(const fs::path& directory) {
-  const RunJson run = read_run_json(directory / "result.json");
+  const RunJson run = read_run_json(directory / "result.json", {"config.keys", "scene", "structure", "image",
+                                                                "work_log", "plan", "machine"});
   ReportData report;
   report.kind = "run";
   report.title = fmt::format("Run of {} on {}", run.text("scene.name"), machine_text(run));

@@ -8,21 +8,6 @@ namespace marti::studies {
 
 namespace {
 
-void append_text(std::string& out, const std::string& text) {
-  if (!text.empty() && text.find_first_of(",\"\r\n") == std::string::npos) {
-    out += text;
-    return;
-  }
-  out += '"';
-  for (const char c : text) {
-    if (c == '"') {
-      out += '"';
-    }
-    out += c;
-  }
-  out += '"';
-}
-
 void append_real(std::string& out, double value) {
   if (std::isnan(value)) {
     out += "nan";
@@ -39,11 +24,25 @@ void append_cell(std::string& out, const Cell& cell) {
   } else if (const auto* real = std::get_if<double>(&cell)) {
     append_real(out, *real);
   } else if (const auto* text = std::get_if<std::string>(&cell)) {
-    append_text(out, *text);
+    out += csv_text(*text);
   }
 }
 
 }  // namespace
+
+std::string csv_text(const std::string& text) {
+  if (!text.empty() && text.find_first_of(",\"\r\n") == std::string::npos) {
+    return text;
+  }
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') {
+      quoted += '"';
+    }
+    quoted += c;
+  }
+  return quoted + '"';
+}
 
 std::string csv_of(const Table& table) {
   std::string out;

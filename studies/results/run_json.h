@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace marti::studies {
 
@@ -32,6 +34,9 @@ class RunJson {
   /// The objects of a list; none when it is not there or no list. Whatever else is in it is passed over.
   [[nodiscard]] std::vector<RunJson> list(std::string_view path) const;
 
+  /// Throws UserError: the file's name, `reason`, and what file is expected.
+  [[noreturn]] void refuse(const std::string& reason) const;
+
   [[nodiscard]] const nlohmann::ordered_json& json() const { return json_; }
   [[nodiscard]] const std::string& file() const { return file_; }
 
@@ -40,7 +45,9 @@ class RunJson {
   std::string file_;
 };
 
-/// Throws UserError when the file cannot be read, is no result of a run, or is one of another schema.
-[[nodiscard]] RunJson read_run_json(const std::filesystem::path& file);
+/// A `result.json`. Throws UserError when the file cannot be read, is no result of a run, is one of another
+/// schema, or lacks one of the objects `parts`.
+[[nodiscard]] RunJson read_run_json(const std::filesystem::path& file,
+                                    std::initializer_list<const char*> parts = {});
 
 }  // namespace marti::studies

@@ -1,7 +1,8 @@
-#include "studies/report/run_json.h"
+#include "studies/results/run_json.h"
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "sim/error.h"
@@ -15,7 +16,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t most_bytes = std::int64_t{256} << 20U;
 constexpr int schema = 1;
-constexpr int deepest = 32;  // a result is not nearly as deep
+// A result is not nearly as deep, and its objects have not nearly as many fields.
+constexpr std::size_t deepest = 32;
+constexpr std::size_t most_fields = 2000;
 
 const Json none;
 
@@ -24,9 +27,11 @@ const Json none;
                        "; expected is the result.json of `marti run CONFIG -o DIR`: run it again");
 }
 
-// Whoever walks a result may do so by recursion.
-void check_depth(const std::string& file, const std::string& text) {
-  int depth = 0;
+// Whoever walks a result may do so by recursion, and an object that keeps its fields in order takes them in
+// by the square of their number.
+void check_shape(const std::string& file, const std::string& text) {
+  std::array<std::size_t, deepest + 1> fields{};  // [depth] of the object there
+  std::size_t depth = 0;
   bool quoted = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -36,11 +41,16 @@ void check_depth(const std::string& file, const std::string& text) {
     } else if (c == '"') {
       quoted = true;
     } else if (c == '{' || c == '[') {
-      if (++depth > deepest) {
+      if (depth == deepest) {
         refuse(file, "is nested too deeply for a result");
       }
+      fields[++depth] = 0;
+    } else if (c == ':') {
+      if (++fields[depth] > most_fields) {
+        refuse(file, "has an object with too many fields for a result");
+      }
     } else if (c == '}' || c == ']') {
-      --depth;
+      depth -= depth > 0 ? 1 : 0;
     }
   }
 }
@@ -68,10 +78,12 @@ const Json& RunJson::find(std::string_view path) const {
 const Json& RunJson::at(std::string_view path) const {
   const Json& part = find(path);
   if (!part.is_object()) {
-    refuse(file_, "has no object \"" + std::string(path) + "\"");
+    refuse("has no object \"" + std::string(path) + "\"");
   }
   return part;
 }
+
+void RunJson::refuse(const std::string& reason) const { studies::refuse(file_, reason); }
 
 std::optional<double> RunJson::number(std::string_view path) const {
   const Json& value = find(path);
@@ -92,7 +104,7 @@ std::optional<double> RunJson::optional_number(std::string_view path, double low
 double RunJson::required_number(std::string_view path, double low, double high) const {
   const std::optional<double> found = number(path);
   if (!found || *found < low || *found > high) {
-    refuse(file_, fmt::format("has no number \"{}\" from {:g} to {:g}", path, low, high));
+    refuse(fmt::format("has no number \"{}\" from {:g} to {:g}", path, low, high));
   }
   return *found;
 }
@@ -120,13 +132,16 @@ std::vector<RunJson> RunJson::list(std::string_view path) const {
   return parts;
 }
 
-RunJson read_run_json(const std::filesystem::path& path) {
+RunJson read_run_json(const std::filesystem::path& path, std::initializer_list<const char*> parts) {
   const std::string file = path.string();
   const std::string text = sim::read_file(path, most_bytes);
-  check_depth(file, text);
+  check_shape(file, text);
   RunJson run(Json::parse(text, nullptr, false), file);
   if (run.json().is_discarded()) {
     refuse(file, "is not JSON");
+  }
+  if (!run.json().is_object()) {
+    refuse(file, "is no JSON object with a number \"marti.schema\"");
   }
   const Json& found = run.find("marti.schema");
   if (!found.is_number_integer()) {
@@ -135,9 +150,9 @@ RunJson read_run_json(const std::filesystem::path& path) {
   if (found != schema) {
     throw sim::UserError(file + ": is a result of schema " + found.dump() +
                          ", but this program reads schema " + std::to_string(schema) +
-                         "; report it with the program that wrote it");
+                         "; read it with the program that wrote it");
   }
-  for (const char* part : {"config.keys", "scene", "structure", "image", "work_log", "plan", "machine"}) {
+  for (const char* part : parts) {
     (void)run.at(part);
   }
   return run;
