@@ -8,14 +8,11 @@
 #include <vector>
 
 #include "sim/nearest.h"
+#include "studies/command_tree.h"
 
 namespace marti::studies {
 
 namespace {
-
-std::vector<const CLI::App*> subcommands_of(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App* command) { return !command->get_name().empty(); });
-}
 
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
@@ -38,14 +35,11 @@ struct Reached {
 Reached reached_by(const CLI::App& app, std::span<const std::string> words) {
   Reached reached{&app, "", words};
   while (!reached.rest.empty()) {
-    const std::vector<const CLI::App*> commands = subcommands_of(*reached.command);
-    const auto found = std::find_if(commands.begin(), commands.end(), [&](const CLI::App* command) {
-      return command->get_name() == reached.rest.front();
-    });
-    if (found == commands.end()) {
+    const CLI::App* found = find_subcommand(*reached.command, reached.rest.front());
+    if (found == nullptr) {
       break;
     }
-    reached.command = *found;
+    reached.command = found;
     reached.name += (reached.name.empty() ? "" : " ") + reached.rest.front();
     reached.rest = reached.rest.subspan(1);
   }

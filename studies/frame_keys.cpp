@@ -172,4 +172,12 @@ FrameConfig read_frame(sim::Config& config) {
   return frame;
 }
 
+FrameConfig read_one_frame(sim::Config& config) {
+  FrameConfig frame = read_frame(config);
+  if (frame.frames.count > 1) {
+    config.fail("frames.count", "the study renders one frame, that of frames.first");
+  }
+  return frame;
+}
+
 }  // namespace marti::studies

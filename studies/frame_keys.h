@@ -47,4 +47,7 @@ void declare_frame_keys(sim::Schema& schema);
 /// Throws UserError naming file, line and key.
 [[nodiscard]] FrameConfig read_frame(sim::Config& config);
 
+/// The same for a study of one frame: refuses several.
+[[nodiscard]] FrameConfig read_one_frame(sim::Config& config);
+
 }  // namespace marti::studies

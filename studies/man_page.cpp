@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "studies/command_tree.h"
 #include "studies/version.h"
 
 namespace marti::studies {
@@ -33,8 +34,6 @@ std::string escaped(std::string_view text) {
 std::string bold(std::string_view text) { return "\\fB" + escaped(text) + "\\fR"; }
 std::string italic(std::string_view text) { return "\\fI" + escaped(text) + "\\fR"; }
 
-bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
-
 // "-o DIR, --output DIR" in roff.
 std::string names_of(const CLI::Option& option) {
   std::string text;
@@ -52,10 +51,6 @@ std::string names_of(const CLI::Option& option) {
     add("--" + name);
   }
   return text;
-}
-
-std::vector<const CLI::App*> subcommands_of(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App* command) { return !command->get_name().empty(); });
 }
 
 // Every command has --help: it is named once, for the program.

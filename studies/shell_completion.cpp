@@ -8,6 +8,7 @@
 
 #include "scenes/procedural.h"
 #include "sim/schema.h"
+#include "studies/command_tree.h"
 #include "studies/plan/plan.h"
 #include "studies/sweep/sweep_metrics.h"
 #include "studies/sweep/sweep_row.h"
@@ -106,23 +107,12 @@ const CLI::Option* find_option(const CLI::App& command, const std::string& word)
   return nullptr;
 }
 
-bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
-
 // The command that the words lead to, the option whose value comes next, and the positional arguments given.
 struct Place {
   const CLI::App* command = nullptr;
   const CLI::Option* awaiting = nullptr;
   std::size_t positionals = 0;
 };
-
-const CLI::App* find_subcommand(const CLI::App& command, const std::string& word) {
-  for (const CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; })) {
-    if (subcommand->get_name() == word) {
-      return subcommand;
-    }
-  }
-  return nullptr;
-}
 
 Place place_after(const CLI::App& app, std::span<const std::string> words) {
   Place place{&app};
@@ -162,7 +152,7 @@ std::string completions(const CLI::App& app, const sim::Schema& schema, std::spa
     return candidates.text();
   }
   if (!begun.starts_with('-')) {
-    for (const CLI::App* subcommand : place.command->get_subcommands([](const CLI::App*) { return true; })) {
+    for (const CLI::App* subcommand : subcommands_of(*place.command)) {
       candidates.add(subcommand->get_name());
     }
     std::size_t position = 0;

@@ -124,10 +124,7 @@ processors::MachineConfig machine_with(const processors::MachineConfig& machine,
 
 ErrorConfig read_error(sim::Config& config) {
   ErrorConfig error;
-  error.frame = read_frame(config);
-  if (error.frame.frames.count > 1) {
-    config.fail("frames.count", "the study renders one frame, that of frames.first");
-  }
+  error.frame = read_one_frame(config);
   for (const sim::Value& name : config.values("error.families")) {
     const auto at = std::find(family_names.begin(), family_names.end(), std::get<std::string>(name));
     const auto family = static_cast<ErrorFamily>(at - family_names.begin());

@@ -1,4 +1,4 @@
-// How figures stand in an answer's sentences.
+// How figures and their names stand in sentences and headings.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +8,12 @@
 #include "studies/text_units.h"
 
 namespace marti::studies {
+
+/// A figure's name as words: "bank access" for "bank_access".
+[[nodiscard]] inline std::string words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
 
 /// "1.234 ms" for picoseconds; below 0 and beyond 2^62 the nearest of them.
 [[nodiscard]] inline std::string time_text(double ps) {

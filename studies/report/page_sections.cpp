@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/base64.h"
+#include "studies/report/answer_text.h"
 #include "studies/report/html_text.h"
 
 namespace marti::studies {
@@ -20,13 +21,6 @@ std::string cell_text(const Cell& cell) {
   }
   const auto* text = std::get_if<std::string>(&cell);
   return text == nullptr ? "" : *text;
-}
-
-std::string words(std::string name) {
-  for (char& c : name) {
-    c = c == '_' ? ' ' : c;
-  }
-  return name;
 }
 
 std::string table_html(const Table& table) {

@@ -95,21 +95,20 @@ void check_png(const fs::path& file, std::string_view png) {
   }
 }
 
-// A name as tables and charts have it.
-std::string plain(std::string name) {
-  for (char& c : name) {
-    const bool kept = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
-    c = kept ? c : '_';
-  }
-  return name;
-}
-
 std::string text_in(const Json& spec, const char* name) {
   const auto at = spec.find(name);
   return at != spec.end() && at->is_string() ? at->get<std::string>() : std::string();
 }
 
 }  // namespace
+
+std::string plain_name(std::string name) {
+  for (char& c : name) {
+    const bool kept = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    c = kept ? c : '_';
+  }
+  return name;
+}
 
 bool is_there(const fs::path& file) {
   std::error_code error;
@@ -169,7 +168,7 @@ ReportChart read_chart(const fs::path& file) {
     refuse(file, "has rows under data.values that are no objects");
   }
   const std::string name = file.filename().string();
-  chart.name = plain(name.substr(0, name.find(".vl.json")));
+  chart.name = plain_name(name.substr(0, name.find(".vl.json")));
   chart.title = text_in(chart.spec, "title");
   chart.title = chart.title.empty() ? chart.name : chart.title;
   chart.csv = csv_of_rows(rows);

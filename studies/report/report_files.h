@@ -10,6 +10,10 @@
 
 namespace marti::studies {
 
+/// A name as charts, files and elements of the page have it: other than lower-case letters and digits become
+/// '_'.
+[[nodiscard]] std::string plain_name(std::string name);
+
 /// Is there something of this name, be it a link to nothing? UserError when that cannot be told.
 [[nodiscard]] bool is_there(const std::filesystem::path& file);
 

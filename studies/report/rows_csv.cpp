@@ -5,6 +5,8 @@
 #include <set>
 #include <vector>
 
+#include "studies/results/csv.h"
+
 namespace marti::studies {
 
 namespace {
@@ -15,16 +17,8 @@ std::string cell_of(const Json& value) {
   if (value.is_null()) {
     return {};
   }
-  std::string text = value.is_string() ? value.get<std::string>()
-                                       : value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (!text.empty() && text.find_first_of(",\"\r\n") == std::string::npos) {
-    return text;
-  }
-  std::string quoted = "\"";
-  for (const char c : text) {
-    quoted += c == '"' ? "\"\"" : std::string(1, c);
-  }
-  return quoted + "\"";
+  return csv_text(value.is_string() ? value.get<std::string>()
+                                    : value.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace

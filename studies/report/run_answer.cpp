@@ -15,13 +15,6 @@ constexpr double longest = 0x1p62;     // of times, ps
 constexpr double most_nodes = 0x1p24;  // of a machine, and so of its clusters
 constexpr double most_figure = 1e12;   // of ratios: far beyond any
 
-std::string words(std::string name) {
-  for (char& c : name) {
-    c = c == '_' ? ' ' : c;
-  }
-  return name;
-}
-
 std::string with_capital(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') {
     text[0] = static_cast<char>(text[0] - 'a' + 'A');

@@ -219,14 +219,25 @@ class Frames {
   std::map<std::string, std::size_t> numbers_;
 };
 
+// A machine's settings by key: every machine has some.
+std::map<std::string, std::string> settings_of(const SweepReader& reader, const std::filesystem::path& store,
+                                               std::int64_t ordinal, std::int64_t machine) {
+  const std::vector<std::pair<std::string, std::string>> settings = reader.settings(machine);
+  if (settings.empty()) {
+    refuse(store, ordinal, fmt::format("its machine {} is not in the store", machine));
+  }
+  return {settings.begin(), settings.end()};
+}
+
 // Settings that all machines of the sweep share, and what each says of its queues.
 class Settings {
  public:
-  explicit Settings(const SweepReader& reader) : reader_(reader) {}
+  Settings(const SweepReader& reader, std::filesystem::path store)
+      : reader_(reader), store_(std::move(store)) {}
 
   void add(ReportPoint& point) {
-    const std::vector<std::pair<std::string, std::string>> settings = reader_.settings(point.machine);
-    const std::map<std::string, std::string> by_key(settings.begin(), settings.end());
+    const std::map<std::string, std::string> by_key =
+        settings_of(reader_, store_, point.ordinal, point.machine);
     const auto value = [&](const char* key) {
       const auto at = by_key.find(key);
       return at == by_key.end() ? std::string() : at->second;
@@ -255,6 +266,7 @@ class Settings {
 
  private:
   const SweepReader& reader_;
+  std::filesystem::path store_;
   std::map<std::string, std::string> shared_;
   bool begun_ = false;
 };
@@ -354,14 +366,13 @@ SweepPoints read_sweep_points(const std::filesystem::path& store) {
   sweep.version = reader.version();
   const std::vector<std::string> names = wanted_figures(reader);
   std::vector<std::vector<Cell>> values;
-  Settings settings(reader);
+  Settings settings(reader, store);
   Frames frames(reader);
   reader.for_each_point(names, [&](const StoredPoint& stored, std::span<const Cell> cells) {
     ++sweep.planned;
-    if (reader.settings(stored.machine).empty()) {
-      refuse(store, stored.ordinal, fmt::format("its machine {} is not in the store", stored.machine));
-    }
     if (!stored.done) {
+      (void)settings_of(reader, store, stored.ordinal,
+                        stored.machine);  // refuses a machine that is not there
       return;
     }
     check_point(store, stored, reader.axes());

@@ -8,6 +8,7 @@
 
 #include "studies/report/chart_library.h"
 #include "studies/report/explorer.h"
+#include "studies/report/report_files.h"
 #include "studies/report/report_kinds.h"
 #include "studies/report/sweep_answer.h"
 #include "studies/report/sweep_model.h"
@@ -57,11 +58,6 @@ const std::vector<std::string>& hit_ratios() {
   static const std::vector<std::string> names = {"hit_ratio", "hit_ratio_node", "hit_ratio_list",
                                                  "hit_ratio_primitive", "hit_ratio_material"};
   return names;
-}
-
-std::string plain(std::string name) {
-  std::replace(name.begin(), name.end(), '.', '_');
-  return name;
 }
 
 // Axes along which hit ratios are worth a chart of their own.
@@ -290,7 +286,7 @@ ReportData read_sweep_report(const std::filesystem::path& directory) {
     if (bears_on_caches(sweep.axes[i].name)) {
       charts.add_slice({"hit_ratio", "Hit ratio",
                         "Of all references of the first level, and by kind of record.", hit_ratios()},
-                       i, "hit_ratio_" + plain(sweep.axes[i].name));
+                       i, "hit_ratio_" + plain_name(sweep.axes[i].name));
     }
   }
   if (sweep.points.size() > 1) {

@@ -92,10 +92,7 @@ sim::Schema schemes_schema() {
 
 SchemesConfig read_schemes(sim::Config& config) {
   SchemesConfig schemes;
-  schemes.frame = read_frame(config);
-  if (schemes.frame.frames.count > 1) {
-    config.fail("frames.count", "the study renders one frame, that of frames.first");
-  }
+  schemes.frame = read_one_frame(config);
   schemes.nodes = ascending(config, "schemes.nodes");
   schemes.cell_levels = ascending(config, "schemes.cell_levels");
   schemes.cell_objects = static_cast<std::uint32_t>(config.integer("schemes.cell_objects"));

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "accel/watertight.h"
 #include "studies/stability/geometry_oracles.h"
+#include "studies/stability/kernel_check.h"
 
 namespace marti::studies {
 
@@ -62,13 +62,6 @@ CaseOutcome edge_antisymmetry(const CaseSize& size) {
   return none_wrong(tally, "edges seen differently from their two sides");
 }
 
-Hit test_one(const Ray& ray, const TriangleCorners& triangle) {
-  const RaySetup<double> setup(ray);
-  Best<double> best(setup);
-  (void)accel::intersect(setup, triangle, 0, best);
-  return best.hit();
-}
-
 CaseOutcome closed_fans(const CaseSize& size) {
   Random random(5);
   Tally tally;
@@ -100,23 +93,6 @@ CaseOutcome closed_fans(const CaseSize& size) {
   return none_wrong(tally, "rays through the common corner lost");
 }
 
-/// A ray that has a good chance of hitting, and a triangle.
-struct Aimed {
-  Ray ray;
-  TriangleCorners triangle;
-};
-
-Aimed random_aimed(Random& random) {
-  const glm::dvec3 a = random.direction();
-  const glm::dvec3 b = random.direction();
-  const glm::dvec3 c = random.direction();
-  Ray ray{2.0 * random.direction(), {}};
-  const double u = random.unit();
-  const double v = random.unit();
-  ray.direction = (1 - u) * a + u * (1 - v) * b + u * v * c + 0.1 * random.direction() - ray.origin;
-  return {ray, corners(a, b, c)};
-}
-
 /// Changes each coordinate of origin, direction and corners.
 template <class Change>
 Aimed changed(const Aimed& aimed, const Change& change) {
@@ -133,11 +109,22 @@ Aimed changed(const Aimed& aimed, const Change& change) {
   return other;
 }
 
-CaseOutcome power_of_two(const CaseSize& size) {
-  Random random(7);
+/// Whether `same(aimed, random)` holds of rays and triangles made from the seed; `otherwise` says what went
+/// wrong.
+template <class Same>
+CaseOutcome unchanged(std::uint64_t seed, const CaseSize& size, const Same& same,
+                      const char* otherwise = "hits changed") {
+  Random random(seed);
   Tally tally;
   for (std::uint32_t k = 0; k < 10 * size.rays; ++k) {
     const Aimed aimed = random_aimed(random);
+    tally.add(same(aimed, random));
+  }
+  return none_wrong(tally, otherwise);
+}
+
+CaseOutcome power_of_two(const CaseSize& size) {
+  return unchanged(7, size, [](const Aimed& aimed, Random& random) {
     const int exponent = static_cast<int>(random.below(61)) - 30;
     // Only places are scaled, not the direction: t is scaled with them.
     const Aimed scaled = changed(aimed, [&](const glm::dvec3& p, bool place) {
@@ -146,50 +133,37 @@ CaseOutcome power_of_two(const CaseSize& size) {
     });
     Hit expected = test_one(aimed.ray, aimed.triangle);
     expected.t = std::ldexp(expected.t, exponent);
-    tally.add(same_hit(expected, test_one(scaled.ray, scaled.triangle)));
-  }
-  return none_wrong(tally, "hits changed");
+    return same_hit(expected, test_one(scaled.ray, scaled.triangle));
+  });
 }
 
 CaseOutcome turned_axes(const CaseSize& size) {
-  Random random(8);
-  Tally tally;
-  for (std::uint32_t k = 0; k < 10 * size.rays; ++k) {
-    const Aimed aimed = random_aimed(random);
+  return unchanged(8, size, [](const Aimed& aimed, Random& /*random*/) {
     const Aimed turned = changed(aimed, [](const glm::dvec3& p, bool) { return glm::dvec3(p.z, p.x, p.y); });
-    tally.add(same_hit(test_one(aimed.ray, aimed.triangle), test_one(turned.ray, turned.triangle)));
-  }
-  return none_wrong(tally, "hits changed");
+    return same_hit(test_one(aimed.ray, aimed.triangle), test_one(turned.ray, turned.triangle));
+  });
 }
 
 CaseOutcome mirrored(const CaseSize& size) {
-  Random random(9);
-  Tally tally;
-  for (std::uint32_t k = 0; k < 10 * size.rays; ++k) {
-    const Aimed aimed = random_aimed(random);
+  return unchanged(9, size, [](const Aimed& aimed, Random& random) {
     const auto axis = static_cast<int>(random.below(3));
     const Aimed other = changed(aimed, [axis](glm::dvec3 p, bool) {
       p[axis] = -p[axis];
       return p;
     });
-    const Hit expected = test_one(aimed.ray, aimed.triangle);
-    tally.add(same_hit(expected, test_one(other.ray, other.triangle)));
-  }
-  return none_wrong(tally, "hits changed");
+    return same_hit(test_one(aimed.ray, aimed.triangle), test_one(other.ray, other.triangle));
+  });
 }
 
 CaseOutcome corner_order(const CaseSize& size) {
-  Random random(10);
-  Tally tally;
-  for (std::uint32_t k = 0; k < 10 * size.rays; ++k) {
-    const Aimed aimed = random_aimed(random);
+  const auto same = [](const Aimed& aimed, Random& /*random*/) {
     const TriangleCorners& t = aimed.triangle;
     const bool hit = test_one(aimed.ray, t).found();
     const TriangleCorners rotated{t[3], t[4], t[5], t[6], t[7], t[8], t[0], t[1], t[2]};
     const TriangleCorners reversed{t[6], t[7], t[8], t[3], t[4], t[5], t[0], t[1], t[2]};
-    tally.add(test_one(aimed.ray, rotated).found() == hit && test_one(aimed.ray, reversed).found() == hit);
-  }
-  return none_wrong(tally, "hits appeared or vanished");
+    return test_one(aimed.ray, rotated).found() == hit && test_one(aimed.ray, reversed).found() == hit;
+  };
+  return unchanged(10, size, same, "hits appeared or vanished");
 }
 
 CaseOutcome degenerate_triangles(const CaseSize& size) {

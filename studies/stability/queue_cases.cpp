@@ -116,15 +116,20 @@ double exponential(Random& random, double mean) { return -mean * std::log(1.0 - 
 
 constexpr int arrivals = 1'000'000;
 
-/// M/D/1: random arrivals at one bank.
-CaseOutcome fixed_service(double load, double limit) {
-  constexpr std::int64_t service = 10'000;
+/// A bank that serves in a fixed time, of so many ticks.
+memory::BankConfig one_bank(std::int64_t service) {
   memory::BankConfig config;
   config.count = 1;
   config.clock = sim::Clock::from_period(1);
   config.access_cycles = service;
   config.busy_cycles = service;
-  memory::Banks bank(config);
+  return config;
+}
+
+/// M/D/1: random arrivals at one bank.
+CaseOutcome fixed_service(double load, double limit) {
+  constexpr std::int64_t service = 10'000;
+  memory::Banks bank(one_bank(service));
   Random random(72);
   double now = 0.0;
   for (int k = 0; k < arrivals; ++k) {
@@ -140,12 +145,7 @@ CaseOutcome fixed_service(double load, double limit) {
 CaseOutcome tick_by_tick() {
   constexpr std::int64_t service = 8;
   constexpr double p = 0.1;
-  memory::BankConfig config;
-  config.count = 1;
-  config.clock = sim::Clock::from_period(1);
-  config.access_cycles = service;
-  config.busy_cycles = service;
-  memory::Banks bank(config);
+  memory::Banks bank(one_bank(service));
   Random random(73);
   for (sim::Ticks now = 0; now < 10 * sim::Ticks{arrivals}; ++now) {
     if (random.unit() < p) {

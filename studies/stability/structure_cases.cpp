@@ -1,6 +1,5 @@
 // Cases of rays: whatever their direction and origin, every structure gives brute force's hits.
 #include <array>
-#include <bit>
 #include <memory>
 #include <utility>
 
@@ -8,6 +7,7 @@
 
 #include "accel/mailbox.h"
 #include "studies/stability/geometry_oracles.h"
+#include "studies/stability/kernel_check.h"
 
 namespace marti::studies {
 
@@ -43,19 +43,6 @@ CaseOutcome moved_and_scaled(double offset, double scale, const CaseSize& size) 
   }
   return none_wrong(disagreements(std::move(soup), size.rays, 24), "rays differ");
 }
-
-/// Counts tests.
-struct TestCounter {
-  std::uint64_t tests = 0;
-  void branch(std::uint32_t /*node*/) {}
-  void leaf(std::uint32_t /*node*/, std::uint32_t tested, std::uint32_t /*entries*/) { tests += tested; }
-  void mailed_leaf(std::uint32_t /*node*/, std::uint32_t read, std::uint32_t /*entries*/,
-                   const std::uint32_t* tested) {
-    for (std::uint32_t k = 0; k < read; k += 32) {
-      tests += static_cast<std::uint64_t>(std::popcount(tested[k / 32]));
-    }
-  }
-};
 
 CaseOutcome mailboxes(const CaseSize& size) {
   const auto triangles = std::make_shared<const TriangleSet>(hostile_soup(0.0, 25, true));

@@ -18,6 +18,7 @@
 #include "accel/mailbox.h"
 #include "accel/structure.h"
 #include "scenes/procedural.h"
+#include "studies/stability/kernel_check.h"
 #include "tests/contract/hostile.h"
 
 namespace marti::tests {
@@ -27,19 +28,7 @@ using accel::Hit;
 using accel::Ray;
 using accel::Structure;
 using accel::TriangleSet;
-
-/// Counts tests.
-struct TestCounter {
-  std::uint64_t tests = 0;
-  void branch(std::uint32_t /*node*/) {}
-  void leaf(std::uint32_t /*node*/, std::uint32_t tested, std::uint32_t /*entries*/) { tests += tested; }
-  void mailed_leaf(std::uint32_t /*node*/, std::uint32_t read, std::uint32_t /*entries*/,
-                   const std::uint32_t* tested) {
-    for (std::uint32_t k = 0; k < read; k += 32) {
-      tests += static_cast<std::uint64_t>(std::popcount(tested[k / 32]));
-    }
-  }
-};
+using studies::TestCounter;
 
 /// A structure and how it was made.
 struct Built {

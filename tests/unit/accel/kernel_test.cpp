@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "accel/watertight.h"
+#include "studies/stability/kernel_check.h"
 #include "tests/contract/hostile.h"
 
 namespace marti::tests {
@@ -17,14 +17,9 @@ using accel::Hit;
 using accel::Ray;
 using accel::RaySetup;
 using accel::TriangleCorners;
-
-template <class Real = double>
-Hit test_one(const Ray& ray, const TriangleCorners& triangle, std::uint32_t id = 0) {
-  const RaySetup<Real> setup(ray);
-  Best<Real> best(setup);
-  accel::intersect(setup, triangle, id, best);
-  return best.hit();
-}
+using studies::Aimed;
+using studies::random_aimed;
+using studies::test_one;
 
 const TriangleCorners unit_triangle = corners({0, 0, 2}, {1, 0, 2}, {0, 1, 2});
 
@@ -107,28 +102,12 @@ TEST(Kernel, FansAreClosedAtTheirApex) {
   }
 }
 
-/// A ray that has a good chance of hitting, and a triangle.
-struct Case {
-  Ray ray;
-  TriangleCorners triangle;
-};
-Case random_case(Random& random) {
-  const glm::dvec3 a = random.direction();
-  const glm::dvec3 b = random.direction();
-  const glm::dvec3 c = random.direction();
-  Ray ray{2.0 * random.direction(), {}};
-  const double u = random.unit();
-  const double v = random.unit();
-  ray.direction = (1 - u) * a + u * (1 - v) * b + u * v * c + 0.1 * random.direction() - ray.origin;
-  return {ray, corners(a, b, c)};
-}
-
 TEST(Kernel, TurningTheAxesChangesNothing) {
   Random random(7);
   int hits = 0;
   for (int k = 0; k < 300000; ++k) {
-    const Case original = random_case(random);
-    Case turned = original;
+    const Aimed original = random_aimed(random);
+    Aimed turned = original;
     for (int a = 0; a < 3; ++a) {
       turned.ray.origin[(a + 1) % 3] = original.ray.origin[a];
       turned.ray.direction[(a + 1) % 3] = original.ray.direction[a];
@@ -148,8 +127,8 @@ TEST(Kernel, TurningTheAxesChangesNothing) {
 TEST(Kernel, MirroringChangesNothing) {
   Random random(9);
   for (int k = 0; k < 300000; ++k) {
-    const Case original = random_case(random);
-    Case mirrored = original;
+    const Aimed original = random_aimed(random);
+    Aimed mirrored = original;
     const auto axis = static_cast<std::size_t>(k % 3);
     mirrored.ray.origin[static_cast<int>(axis)] *= -1.0;
     mirrored.ray.direction[static_cast<int>(axis)] *= -1.0;
@@ -166,7 +145,7 @@ TEST(Kernel, MirroringChangesNothing) {
 TEST(Kernel, OrderOfCornersDecidesNothing) {
   Random random(11);
   for (int k = 0; k < 300000; ++k) {
-    const Case c = random_case(random);
+    const Aimed c = random_aimed(random);
     const TriangleCorners& t = c.triangle;
     const TriangleCorners turned{t[3], t[4], t[5], t[6], t[7], t[8], t[0], t[1], t[2]};
     const TriangleCorners flipped{t[3], t[4], t[5], t[0], t[1], t[2], t[6], t[7], t[8]};
@@ -214,7 +193,7 @@ TEST(Kernel, HitsLieOnTheTriangleEvenEdgeOn) {
 TEST(Kernel, SpeedOfTheRayOnlyScalesTheParameter) {
   Random random(17);
   for (int k = 0; k < 100000; ++k) {
-    const Case c = random_case(random);
+    const Aimed c = random_aimed(random);
     const Hit expected = test_one(c.ray, c.triangle);
     Ray fast = c.ray;
     const int power = static_cast<int>(random.below(400)) - 200;

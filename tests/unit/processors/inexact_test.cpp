@@ -7,25 +7,15 @@
 
 #include "processors/replay.h"
 #include "sim/error.h"
+#include "tests/support/equal_results.h"
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {
 namespace {
 
 void expect_equal(const MachineResult& a, const MachineResult& b) {
-  ASSERT_EQ(a.end, b.end);
+  test::expect_equal(a, b);
   ASSERT_EQ(a.events, b.events);
-  ASSERT_EQ(a.nodes.size(), b.nodes.size());
-  for (std::size_t n = 0; n < a.nodes.size(); ++n) {
-    ASSERT_EQ(a.nodes[n].time, b.nodes[n].time) << "node " << n;
-    ASSERT_EQ(a.nodes[n].references.hits, b.nodes[n].references.hits);
-    ASSERT_EQ(a.nodes[n].references.misses, b.nodes[n].references.misses);
-    ASSERT_EQ(a.nodes[n].packets, b.nodes[n].packets);
-  }
-  for (std::size_t c = 0; c < a.clusters.size(); ++c) {
-    ASSERT_EQ(a.clusters[c].interconnect.busy, b.clusters[c].interconnect.busy);
-    ASSERT_EQ(a.clusters[c].interconnect.waits.sum, b.clusters[c].interconnect.waits.sum);
-  }
 }
 
 // A random machine that a sample can be taken of.

@@ -9,42 +9,13 @@
 #include "memory/line_set.h"
 #include "memory/tags.h"
 #include "processors/replay.h"
+#include "tests/support/equal_results.h"
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {
 namespace {
 
 constexpr ReplayOptions everything = {.keep_lookups = true, .keep_read_events = true};
-
-void expect_same(const MachineResult& a, const MachineResult& b) {
-  ASSERT_EQ(a.end, b.end);
-  ASSERT_EQ(a.nodes.size(), b.nodes.size());
-  for (std::size_t n = 0; n < a.nodes.size(); ++n) {
-    ASSERT_EQ(a.nodes[n].time, b.nodes[n].time) << "node " << n;
-    ASSERT_EQ(a.nodes[n].references.hits, b.nodes[n].references.hits) << "node " << n;
-    ASSERT_EQ(a.nodes[n].references.misses, b.nodes[n].references.misses) << "node " << n;
-    ASSERT_EQ(a.nodes[n].finish, b.nodes[n].finish);
-    ASSERT_EQ(a.nodes[n].packets, b.nodes[n].packets);
-  }
-  ASSERT_EQ(a.clusters.size(), b.clusters.size());
-  for (std::size_t c = 0; c < a.clusters.size(); ++c) {
-    const memory::InterconnectStatistics& x = a.clusters[c].interconnect;
-    const memory::InterconnectStatistics& y = b.clusters[c].interconnect;
-    ASSERT_EQ(x.reads, y.reads);
-    ASSERT_EQ(x.writes, y.writes);
-    ASSERT_EQ(x.bytes, y.bytes);
-    ASSERT_EQ(x.busy, y.busy);
-    ASSERT_EQ(x.waits.count, y.waits.count);
-    ASSERT_EQ(x.waits.sum, y.waits.sum);
-    ASSERT_EQ(x.waits.histogram.percentile(95), y.waits.histogram.percentile(95));
-    ASSERT_EQ(x.waits.histogram.count(), y.waits.histogram.count());
-  }
-  ASSERT_EQ(a.l2.caches.size(), b.l2.caches.size());
-  for (std::size_t i = 0; i < a.l2.caches.size(); ++i) {
-    ASSERT_EQ(a.l2.caches[i].hits, b.l2.caches[i].hits);
-    ASSERT_EQ(a.l2.caches[i].misses, b.l2.caches[i].misses);
-  }
-}
 
 // A machine whose caches may hold all of a random log's database and whose reads may be free of waiting.
 MachineConfig roomy_machine(test::Random& random) {
@@ -73,7 +44,7 @@ RC_GTEST_PROP(LeftOut, ChangesNoResult, (std::uint64_t seed)) {
   const MachineConfig machine = roomy_machine(random);
   const MachineResult less = replay(log, machine);
   const MachineResult all = replay(log, machine, everything);
-  expect_same(less, all);
+  test::expect_equal(less, all);
   RC_ASSERT(!::testing::Test::HasFatalFailure());
   RC_ASSERT(!all.left_out.lookups && !all.left_out.read_events);
   RC_ASSERT(less.left_out.read_events == (why_read_events(machine) == nullptr));

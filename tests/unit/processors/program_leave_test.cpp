@@ -1,14 +1,16 @@
 // Rays that leave a surface: outwards from a convex closed mesh they must hit nothing, inwards they must hit
 // the other side, at every scale and far from the origin.
+#include <array>
 #include <cmath>
-#include <map>
 #include <random>
 #include <tuple>
+#include <utility>
 
 #include <gtest/gtest.h>
 
 #include "processors/program/shading.h"
 #include "program_scenes.h"
+#include "studies/stability/icosphere.h"
 
 namespace marti::processors {
 namespace {
@@ -16,42 +18,19 @@ namespace {
 /// A sphere of radius `scale` about (offset, offset, offset): an icosahedron with each triangle divided
 /// `levels` times into four, wound counter-clockwise seen from outside.
 scenes::Scene icosphere(int levels, double scale, double offset) {
-  const double g = (1.0 + std::sqrt(5.0)) / 2.0;
-  std::vector<glm::dvec3> points = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
-                                    {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
-                                    {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  std::vector<std::array<std::uint32_t, 3>> faces = {
-      {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
-  for (glm::dvec3& p : points) {
-    p = glm::normalize(p);
-  }
-  for (int level = 0; level < levels; ++level) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
-    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [at, added] =
-          middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(points.size()));
-      if (added) {
-        points.push_back(glm::normalize(points[a] + points[b]));
-      }
-      return at->second;
-    };
-    std::vector<std::array<std::uint32_t, 3>> finer;
-    for (const auto& [a, b, c] : faces) {
-      const std::uint32_t ab = middle(a, b);
-      const std::uint32_t bc = middle(b, c);
-      const std::uint32_t ca = middle(c, a);
-      finer.insert(finer.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
-    }
-    faces = std::move(finer);
-  }
+  const studies::Icosphere sphere(levels);
   scenes::Scene scene;
   scene.materials.emplace_back();
-  for (const glm::dvec3& p : points) {
+  for (const glm::dvec3& p : sphere.vertices) {
     scene.positions.push_back(p * scale + glm::dvec3(offset));
   }
-  for (const auto& face : faces) {
+  for (std::array<std::uint32_t, 3> face : sphere.faces) {
+    const glm::dvec3& a = sphere.vertices[face[0]];
+    const glm::dvec3& b = sphere.vertices[face[1]];
+    const glm::dvec3& c = sphere.vertices[face[2]];
+    if (glm::dot(glm::cross(b - a, c - a), a) < 0.0) {
+      std::swap(face[1], face[2]);
+    }
     scene.triangles.push_back({face, 0, static_cast<std::uint32_t>(scene.polygons++)});
   }
   return scene;

@@ -13,36 +13,11 @@
 #include "processors/step_time.h"
 #include "processors/stripped_log.h"
 #include "sim/error.h"
+#include "tests/support/equal_results.h"
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {
 namespace {
-
-void expect_equal(const MachineResult& a, const MachineResult& b) {
-  ASSERT_EQ(a.end, b.end);
-  ASSERT_EQ(a.nodes.size(), b.nodes.size());
-  for (std::size_t n = 0; n < a.nodes.size(); ++n) {
-    ASSERT_EQ(a.nodes[n].time, b.nodes[n].time) << "node " << n;
-    ASSERT_EQ(a.nodes[n].references.hits, b.nodes[n].references.hits);
-    ASSERT_EQ(a.nodes[n].references.misses, b.nodes[n].references.misses);
-    ASSERT_EQ(a.nodes[n].finish, b.nodes[n].finish);
-  }
-  ASSERT_EQ(a.clusters.size(), b.clusters.size());
-  for (std::size_t c = 0; c < a.clusters.size(); ++c) {
-    ASSERT_EQ(a.clusters[c].interconnect.busy, b.clusters[c].interconnect.busy);
-    ASSERT_EQ(a.clusters[c].interconnect.waits.sum, b.clusters[c].interconnect.waits.sum);
-    ASSERT_EQ(a.clusters[c].interconnect.waits.max, b.clusters[c].interconnect.waits.max);
-    for (std::size_t i = 0; i < a.clusters[c].banks.size(); ++i) {
-      ASSERT_EQ(a.clusters[c].banks[i].waits.sum, b.clusters[c].banks[i].waits.sum);
-      ASSERT_EQ(a.clusters[c].banks[i].accesses, b.clusters[c].banks[i].accesses);
-    }
-  }
-  ASSERT_EQ(a.l2.caches.size(), b.l2.caches.size());
-  for (std::size_t i = 0; i < a.l2.caches.size(); ++i) {
-    ASSERT_EQ(a.l2.caches[i].hits, b.l2.caches[i].hits);
-    ASSERT_EQ(a.l2.caches[i].misses, b.l2.caches[i].misses);
-  }
-}
 
 RC_GTEST_PROP(Replay, RunningAheadEqualsAnEventForEveryReference, (std::uint64_t seed)) {
   test::Random random(seed);
@@ -52,7 +27,7 @@ RC_GTEST_PROP(Replay, RunningAheadEqualsAnEventForEveryReference, (std::uint64_t
   test::add_random_second_level(random, machine);
   const MachineResult ahead = replay(log, machine);
   const MachineResult stepped = replay(log, machine, {.step_by_step = true});
-  expect_equal(ahead, stepped);
+  test::expect_equal(ahead, stepped);
   RC_ASSERT(!::testing::Test::HasFatalFailure());
   RC_ASSERT(ahead.events <= stepped.events);
 }
@@ -70,7 +45,7 @@ RC_GTEST_PROP(Replay, AStrippedLogGivesTheSameResult, (std::uint64_t seed)) {
     return;
   }
   const MachineResult whole = replay(log, machine);
-  expect_equal(whole, replay(log, machine, {.stripped = stripped.get()}));
+  test::expect_equal(whole, replay(log, machine, {.stripped = stripped.get()}));
   RC_ASSERT(!::testing::Test::HasFatalFailure());
   // Other ways, clocks and machines around the caches share it.
   MachineConfig other = test::random_machine(random);
@@ -89,7 +64,7 @@ RC_GTEST_PROP(Replay, AStrippedLogGivesTheSameResult, (std::uint64_t seed)) {
     other.cache.cache.replacement = memory::Replacement::lru;
   }
   if (StrippedLog::key_of(other) == stripped->key()) {
-    expect_equal(replay(log, other), replay(log, other, {.stripped = stripped.get()}));
+    test::expect_equal(replay(log, other), replay(log, other, {.stripped = stripped.get()}));
     RC_ASSERT(!::testing::Test::HasFatalFailure());
   }
 }
@@ -99,7 +74,7 @@ RC_GTEST_PROP(Replay, TheOrderOfTheFirstEventsDoesNotMatter, (std::uint64_t seed
   const WorkLog log = test::random_log(random, 9, 7);
   MachineConfig machine = test::random_machine(random);
   test::add_random_second_level(random, machine);
-  expect_equal(replay(log, machine), replay(log, machine, {.start_seed = random() | 1U}));
+  test::expect_equal(replay(log, machine), replay(log, machine, {.start_seed = random() | 1U}));
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 
