@@ -24,6 +24,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
   # GCC bug 105329: false warnings about operator+ of std::string.
   target_compile_options(marti_options INTERFACE -Wno-restrict)
 endif()
+if(CMAKE_UNITY_BUILD)
+  # Files that are compiled as one see each other's local names.
+  target_compile_options(marti_options INTERFACE -Wno-shadow -Wno-subobject-linkage)
+endif()
 if(MARTI_SANITIZE)
   target_compile_options(marti_options INTERFACE
     -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -59,17 +63,21 @@ function(marti_add_library folder)
   endif()
 endfunction()
 
-# marti_add_test(<name> SOURCES ... [LIBS ...] [TIMEOUT seconds]): one GoogleTest program; each of its
-# tests is a CTest test, which may take TIMEOUT seconds (120), and five times that under the sanitizers.
+# marti_add_test(<name> SOURCES ... [ALONE sources...] [LIBS ...] [TIMEOUT seconds]): one GoogleTest program; each
+# of its tests is a CTest test, which may take TIMEOUT seconds (120), and five times that under the sanitizers.
+# ALONE: sources whose local names are those of others, which a unity build does not join with these.
 function(marti_add_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;ALONE;LIBS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
   if(MARTI_SANITIZE)
     math(EXPR ARG_TIMEOUT "5 * ${ARG_TIMEOUT}")  # they slow some tests down by thirty
   endif()
-  add_executable(${name} ${ARG_SOURCES})
+  add_executable(${name} ${ARG_SOURCES} ${ARG_ALONE})
+  if(ARG_ALONE)
+    set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} marti_options GTest::gtest_main)
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${ARG_TIMEOUT})
 endfunction()

@@ -27,12 +27,11 @@ file(WRITE "${OUTPUT}.new" "// Made by cmake/embed_charts.cmake.
 
 namespace marti::studies {
 
-namespace {
-constexpr std::array<ChartSpecification, ${count}> charts{{
+std::span<const ChartSpecification> ${FUNCTION}() {
+  static constexpr std::array<ChartSpecification, ${count}> charts{{
 ${entries}}};
-}  // namespace
-
-std::span<const ChartSpecification> ${FUNCTION}() { return charts; }
+  return charts;
+}
 
 }  // namespace marti::studies
 ")

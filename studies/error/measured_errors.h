@@ -16,11 +16,11 @@ namespace marti::studies {
 struct MeasuredError {
   std::size_t method = 0;  ///< index into simulator_methods()
   std::uint32_t nodes_to = 0;
-  double share = 1.0;    ///< processor time over that of exact replay
-  double covered = 0.0;  ///< share of cases in widened intervals, of the figure of which it is least
-  Figures allowance;     ///< what the method's own half-width is to be widened by, so that 95 % of errors are
-                         ///< covered
-  Figures own;           ///< the method's own half-width, as it was on average
+  double share = 1.0;        ///< processor time over that of exact replay
+  double covered = 0.0;      ///< share of cases in widened intervals, of the figure of which it is least
+  MachineFigures allowance;  ///< what the method's own half-width is to be widened by, so that 95 % of errors
+                             ///< are covered
+  MachineFigures own;        ///< the method's own half-width, as it was on average
 };
 
 /// The file as it was built into the program.

@@ -115,7 +115,7 @@ void add_ranks(const SimulatorStudy& study, std::size_t method, MethodErrors& er
       if (study.cases[number].scene != scene) {
         continue;
       }
-      const Figures& exact = study.truth[number].value;
+      const MachineFigures& exact = study.truth[number].value;
       const std::optional<Estimate>& estimate = study.estimates[method][number];
       const double end = estimate ? estimate->value[Figure::end] : exact[Figure::end];
       const auto nodes = static_cast<double>(study.cases[number].nodes);

@@ -6,8 +6,8 @@
 
 namespace marti::studies {
 
-Figures figures_of(const processors::MachineConfig& machine, const processors::MachineResult& result) {
-  Figures figures;
+MachineFigures figures_of(const processors::MachineConfig& machine, const processors::MachineResult& result) {
+  MachineFigures figures;
   figures[Figure::end] = static_cast<double>(result.end);
   figures[Figure::misses] = static_cast<double>(result.references().all_misses());
   figures[Figure::use] = utilisation_of(machine, result).interconnect.value_or(0.0);

@@ -23,11 +23,11 @@ inline constexpr std::array<std::string_view, figure_count> figure_names = {"end
                                                                             "use", "wait"};
 
 /// One value for each figure. Of a machine alone the speed-up is 0: it takes two.
-class Figures {
+class MachineFigures {
  public:
   double& operator[](Figure figure) { return values_[static_cast<std::size_t>(figure)]; }
   double operator[](Figure figure) const { return values_[static_cast<std::size_t>(figure)]; }
-  friend bool operator==(const Figures&, const Figures&) = default;
+  friend bool operator==(const MachineFigures&, const MachineFigures&) = default;
 
  private:
   std::array<double, figure_count> values_{};
@@ -36,16 +36,16 @@ class Figures {
 /// What an estimate says: values, the half-widths of the 95 % intervals that the method itself states
 /// (relative as errors are; 0 where it states none), and the work that it took.
 struct Estimate {
-  Figures value;
-  Figures half_width;
+  MachineFigures value;
+  MachineFigures half_width;
   double references = 0.0;   ///< lines touched by the machine in the whole frame; the method's own figure
   std::uint64_t events = 0;  ///< handled to get it
   std::uint64_t words = 0;   ///< of the log, walked to get it
 };
 
 /// Of a replay of all packets.
-[[nodiscard]] Figures figures_of(const processors::MachineConfig& machine,
-                                 const processors::MachineResult& result);
+[[nodiscard]] MachineFigures figures_of(const processors::MachineConfig& machine,
+                                        const processors::MachineResult& result);
 
 /// The error of an estimate: relative, or for `use` a difference. With a true value of 0: 0 when the estimate
 /// is 0 too, else infinite.

@@ -65,7 +65,7 @@ double interpolate(Curve curve, std::span<const double> xs, std::span<const doub
          ys[piece + 1] * t * t * (3.0 - 2.0 * t) + h * right * t * t * (t - 1.0);
 }
 
-Estimate estimate_between(Curve curve, std::span<const double> xs, std::span<const Figures> machines,
+Estimate estimate_between(Curve curve, std::span<const double> xs, std::span<const MachineFigures> machines,
                           double x) {
   std::vector<double> log_xs;
   for (const double value : xs) {
@@ -75,7 +75,7 @@ Estimate estimate_between(Curve curve, std::span<const double> xs, std::span<con
   for (std::size_t i = 0; i < figure_count; ++i) {
     const auto figure = static_cast<Figure>(i);
     std::vector<double> ys;
-    for (const Figures& machine : machines) {
+    for (const MachineFigures& machine : machines) {
       ys.push_back(machine[figure]);
     }
     const auto known = std::find(xs.begin(), xs.end(), x);

@@ -21,6 +21,6 @@ enum class Curve : std::uint8_t { linear, cubic };
 /// All figures at `x`, of machines whose sizes are `xs`, all positive: over log x, and of log y where all
 /// values of a figure are positive; others by straight lines of y over log x.
 [[nodiscard]] Estimate estimate_between(Curve curve, std::span<const double> xs,
-                                        std::span<const Figures> machines, double x);
+                                        std::span<const MachineFigures> machines, double x);
 
 }  // namespace marti::studies

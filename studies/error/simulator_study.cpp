@@ -168,7 +168,7 @@ class SceneStudy {
       return;
     }
     std::vector<double> sizes;
-    std::vector<Figures> machines;
+    std::vector<MachineFigures> machines;
     for (std::size_t i = 0; i < count; ++i) {
       if (i != at) {
         sizes.push_back(size_at(method, i));

@@ -1,7 +1,6 @@
 // The ranks of a program that was built with MPI.
 #include <mpi.h>
 
-#include <chrono>
 #include <exception>
 #include <list>
 #include <thread>
@@ -20,7 +19,6 @@ namespace {
 constexpr std::size_t most_at_once = std::size_t{1} << 29U;
 constexpr int size_tag = 1;
 constexpr int part_tag = 2;
-constexpr auto pause = std::chrono::milliseconds(1);
 
 int whole(std::size_t number) { return static_cast<int>(number); }
 

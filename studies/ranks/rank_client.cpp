@@ -21,7 +21,6 @@ namespace {
 
 using Kind = SweepMessage::Kind;
 
-constexpr auto pause = std::chrono::milliseconds(1);
 constexpr auto patience = std::chrono::seconds(30);  // for rank 0 to end the job
 
 /// Between the workers and the main thread: tasks one way, results the other.

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <deque>
 #include <exception>
 #include <map>
@@ -21,7 +20,6 @@ namespace {
 
 using Kind = SweepMessage::Kind;
 
-constexpr auto pause = std::chrono::milliseconds(1);
 // A task takes much longer than a message, and a small part of what is left.
 constexpr std::int64_t longest_task = 250'000'000;  // ns
 constexpr std::int64_t tasks_left = 4;              // for each worker, at least

@@ -1,6 +1,7 @@
 // The processes of one job, and messages between them: MPI, as far as a sweep needs it.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -9,6 +10,9 @@
 #include <string_view>
 
 namespace marti::studies {
+
+/// How long one that waits for another process sleeps before it looks again.
+inline constexpr auto pause = std::chrono::milliseconds(1);
 
 /// Made at most once in a process, and used by one thread, the one that has made it. Nothing here waits for
 /// another process without sleeping, but for beginning and end.

@@ -13,8 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string small = " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
-const std::string counting = quoted(fs::path(MARTI_SOURCE) / "configs" / "second-level.toml") + small;
+const std::string counting = quoted(fs::path(MARTI_SOURCE) / "configs" / "second-level.toml") + small_teapot;
 
 TEST(CacheCommand, WhatIsCountedAddsUpInTheResultAndInItsTable) {
   const TemporaryDirectory directory;

@@ -14,12 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string small = " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
-
 TEST(Command, StudyOfOperationsWritesItsTables) {
   const TemporaryDirectory directory;
-  const Outcome outcome =
-      marti("study operations -o " + quoted(directory.path() / "study") + small + " --set image.max_depth=2");
+  const Outcome outcome = marti("study operations -o " + quoted(directory.path() / "study") + small_teapot +
+                                " --set image.max_depth=2");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   for (const char* word : {"bsp, push-point", "grid, octree's cells", "per unit length", "HERO"}) {
     EXPECT_NE(outcome.output.find(word), std::string::npos) << word;
@@ -39,7 +37,7 @@ TEST(Command, WalksAndMailboxesChangeTimesAndNoImage) {
   const fs::path config = directory.path() / "walks.toml";
   write(config, "[machine]\nnodes = 4\n");
   const auto run = [&](const std::string& options) {
-    const Outcome outcome = marti("run " + quoted(config) + small + " --json" + options);
+    const Outcome outcome = marti("run " + quoted(config) + small_teapot + " --json" + options);
     EXPECT_EQ(outcome.status, 0) << outcome.output;
     return nlohmann::json::parse(outcome.output);
   };
@@ -68,7 +66,7 @@ TEST(Command, EveryShippedConfigurationRuns) {
     const auto is_of = [&](const char* section) { return text.find(section) != std::string::npos; };
     if (!is_of("[paper]") && !is_of("[schemes]") && !is_of("[error]")) {
       ++configurations;
-      const Outcome outcome = marti("run " + quoted(entry.path()) + small + " --set frames.count=1");
+      const Outcome outcome = marti("run " + quoted(entry.path()) + small_teapot + " --set frames.count=1");
       EXPECT_EQ(outcome.status, 0) << entry.path() << "\n" << outcome.output;
       for (const char* line : {"frame time", "speed-up", "hit ratio", "limited by"}) {
         EXPECT_NE(outcome.output.find(line), std::string::npos) << entry.path() << " lacks " << line;
@@ -83,8 +81,8 @@ TEST(Command, ARunWritesItsFilesAndTheSameBytesAgain) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
   const fs::path a = directory.path() / "a";
   const fs::path b = directory.path() / "b" / "deeper";
-  ASSERT_EQ(marti("run " + quoted(config) + small + " -o " + quoted(a)).status, 0);
-  ASSERT_EQ(marti("run " + quoted(config) + small + " -o " + quoted(b)).status, 0);
+  ASSERT_EQ(marti("run " + quoted(config) + small_teapot + " -o " + quoted(a)).status, 0);
+  ASSERT_EQ(marti("run " + quoted(config) + small_teapot + " -o " + quoted(b)).status, 0);
   for (const char* name : {"image.exr", "image.png", "result.json"}) {
     EXPECT_FALSE(read(a / name).empty()) << name;
   }
@@ -95,7 +93,7 @@ TEST(Command, ARunWritesItsFilesAndTheSameBytesAgain) {
 
 TEST(Command, JsonHoldsTheConservationLaws) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
-  const Outcome outcome = marti("run --json " + quoted(config) + small);
+  const Outcome outcome = marti("run --json " + quoted(config) + small_teapot);
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   const nlohmann::json result = nlohmann::json::parse(outcome.output);
   const nlohmann::json& machine = result["machine"];
@@ -215,11 +213,11 @@ TEST(Command, AnAssignmentMaySwitchOffWhatTheFileDescribes) {
   for (const char* assignment :
        {"cache.organisation=none", "cache.organisation=split", "structure.kind=none", "structure.kind=bsp",
         "structure.kind=grid", "interconnect.kind=ideal", "interconnect.kind=crossbar"}) {
-    const Outcome outcome = marti("run " + quoted(config) + small + " --set " + assignment);
+    const Outcome outcome = marti("run " + quoted(config) + small_teapot + " --set " + assignment);
     EXPECT_EQ(outcome.status, 0) << assignment << "\n" << outcome.output;
   }
   const Outcome both =
-      marti("run " + quoted(config) + small + " --set cache.organisation=none --set cache.size=1KiB");
+      marti("run " + quoted(config) + small_teapot + " --set cache.organisation=none --set cache.size=1KiB");
   EXPECT_EQ(both.status, 2) << "what the same command line gives must be used";
 }
 
@@ -227,9 +225,10 @@ TEST(Command, ARefusalLeavesEarlierResultsAlone) {
   const TemporaryDirectory directory;
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
   const fs::path out = directory.path() / "out";
-  ASSERT_EQ(marti("run " + quoted(config) + small + " -o " + quoted(out)).status, 0);
+  ASSERT_EQ(marti("run " + quoted(config) + small_teapot + " -o " + quoted(out)).status, 0);
   const std::string before = read(out / "result.json");
-  EXPECT_EQ(marti("run " + quoted(config) + small + " --set cache.size=17 -o " + quoted(out)).status, 2);
+  EXPECT_EQ(marti("run " + quoted(config) + small_teapot + " --set cache.size=17 -o " + quoted(out)).status,
+            2);
   EXPECT_EQ(read(out / "result.json"), before);
 }
 
@@ -237,7 +236,8 @@ TEST(Command, UnwritablePlacesAreTheUsersAffair) {
   const TemporaryDirectory directory;
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
   write(directory.path() / "file", "in the way");
-  const Outcome blocked = marti("run " + quoted(config) + small + " -o " + quoted(directory.path() / "file"));
+  const Outcome blocked =
+      marti("run " + quoted(config) + small_teapot + " -o " + quoted(directory.path() / "file"));
   EXPECT_EQ(blocked.status, 2) << blocked.output;
   // Files larger than a few blocks cannot be written, as on a full disk.
   const Outcome full =

@@ -12,15 +12,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string small = quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") +
-                          " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
+const std::string small_run = quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") +
+                              " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
 
 TEST(CompareCommand, ListsWhatDiffersBetweenTwoRuns) {
   const TemporaryDirectory directory;
   const std::string a = quoted(directory.path() / "a");
   const std::string b = quoted(directory.path() / "b");
-  ASSERT_EQ(marti("run " + small + " -o " + a).status, 0);
-  ASSERT_EQ(marti("run " + small + " --set cache.size=1KiB -o " + b).status, 0);
+  ASSERT_EQ(marti("run " + small_run + " -o " + a).status, 0);
+  ASSERT_EQ(marti("run " + small_run + " --set cache.size=1KiB -o " + b).status, 0);
   const Outcome same = marti("compare " + a + " " + a);
   EXPECT_EQ(same.status, 0) << same.output;
   EXPECT_NE(same.output.find("configuration  0 settings differ"), std::string::npos) << same.output;

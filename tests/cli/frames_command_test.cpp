@@ -12,17 +12,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path shipped = fs::path(MARTI_SOURCE) / "configs" / "animation.toml";
-const std::string small =
-    quoted(shipped) + " --set image.width=24 --set image.height=16 --set frames.count=2 --set frames.rate=2";
+const fs::path shipped_frames = fs::path(MARTI_SOURCE) / "configs" / "animation.toml";
+const std::string small_frames =
+    quoted(shipped_frames) +
+    " --set image.width=24 --set image.height=16 --set frames.count=2 --set frames.rate=2";
 // Without anything that moves, and quick.
-const std::string still = small + " --set scene.source=tetra:2";
+const std::string still = small_frames + " --set scene.source=tetra:2";
 
 TEST(FramesCommand, WritesTablesChartAndImages) {
   const TemporaryDirectory directory;
   const fs::path a = directory.path() / "a";
   const fs::path b = directory.path() / "b";
-  const Outcome outcome = marti("study frames " + small + " -o " + quoted(a));
+  const Outcome outcome = marti("study frames " + small_frames + " -o " + quoted(a));
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   for (const char* text : {"swing.glb", "partial_dynamic", "All frames together", "frame-0001.png"}) {
     EXPECT_NE(outcome.output.find(text), std::string::npos) << text;
@@ -33,7 +34,7 @@ TEST(FramesCommand, WritesTablesChartAndImages) {
     EXPECT_TRUE(fs::exists(a / name)) << name;
   }
   EXPECT_FALSE(fs::exists(a / "frame-0002.png"));
-  ASSERT_EQ(marti("study frames " + small + " -o " + quoted(b)).status, 0);
+  ASSERT_EQ(marti("study frames " + small_frames + " -o " + quoted(b)).status, 0);
   for (const auto& entry : fs::directory_iterator(a)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with("host") && name != "results.sqlite") {
@@ -49,7 +50,7 @@ TEST(FramesCommand, WrongInputIsTwoAndOlderResultsStay) {
   const std::string before = read(out / "cycles.csv") + read(out / "frame-0001.png");
   const auto files = std::distance(fs::directory_iterator(out), {});
   const auto refused = [&](const std::string& options, const std::string& complaint) {
-    const Outcome outcome = marti("study frames " + small + options);
+    const Outcome outcome = marti("study frames " + small_frames + options);
     EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.output;
     EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
   };
@@ -72,10 +73,10 @@ TEST(FramesCommand, WrongInputIsTwoAndOlderResultsStay) {
 }
 
 TEST(FramesCommand, ARunOfSeveralFramesIsSentThere) {
-  const Outcome several = marti("run " + quoted(shipped));
+  const Outcome several = marti("run " + quoted(shipped_frames));
   EXPECT_EQ(several.status, 2);
   EXPECT_NE(several.output.find("marti study frames"), std::string::npos) << several.output;
-  const Outcome verify = marti("run " + small + " --set frames.count=1 --set frames.verify=false");
+  const Outcome verify = marti("run " + small_frames + " --set frames.count=1 --set frames.verify=false");
   EXPECT_EQ(verify.status, 2);
   EXPECT_NE(verify.output.find("frames.verify"), std::string::npos) << verify.output;
 }

@@ -13,12 +13,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string small = " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
-
 TEST(MachineCommand, ThePipelineTakesTheStepsOfTheImageSchemeAndSaysHowBusyItsStagesAre) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "pipeline.toml";
   const auto result_of = [&](const fs::path& file) {
-    const Outcome outcome = marti("run --json " + quoted(file) + small);
+    const Outcome outcome = marti("run --json " + quoted(file) + small_teapot);
     EXPECT_EQ(outcome.status, 0) << outcome.output;
     return nlohmann::json::parse(outcome.output);
   };
@@ -43,7 +41,7 @@ TEST(MachineCommand, ThePipelineTakesTheStepsOfTheImageSchemeAndSaysHowBusyItsSt
 TEST(MachineCommand, APipelineIsLimitedByItsSlowestStage) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "pipeline.toml";
   const auto machine_with = [&](const std::string& stages) {
-    const Outcome outcome = marti("run --json " + quoted(config) + small + stages);
+    const Outcome outcome = marti("run --json " + quoted(config) + small_teapot + stages);
     EXPECT_EQ(outcome.status, 0) << outcome.output;
     return nlohmann::json::parse(outcome.output)["machine"];
   };
@@ -59,7 +57,7 @@ TEST(MachineCommand, APipelineIsLimitedByItsSlowestStage) {
 TEST(MachineCommand, TheImageDoesNotDependOnTheMachineNorOnTheStructure) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
   const auto hashes = [&](const std::string& options) {
-    const Outcome outcome = marti("run --json " + quoted(config) + small + options);
+    const Outcome outcome = marti("run --json " + quoted(config) + small_teapot + options);
     EXPECT_EQ(outcome.status, 0) << outcome.output;
     const nlohmann::json result = nlohmann::json::parse(outcome.output);
     return result["image"]["image_hash"].get<std::string>() + result["image"]["hit_hash"].get<std::string>();
@@ -77,7 +75,7 @@ TEST(MachineCommand, TheImageDoesNotDependOnTheMachineNorOnTheStructure) {
 TEST(MachineCommand, TheImageDoesNotDependOnHowTheTreeIsBuilt) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
   const auto result = [&](const std::string& options) {
-    const Outcome outcome = marti("run --json " + quoted(config) + small + options);
+    const Outcome outcome = marti("run --json " + quoted(config) + small_teapot + options);
     EXPECT_EQ(outcome.status, 0) << outcome.output;
     return nlohmann::json::parse(outcome.output);
   };
@@ -100,7 +98,7 @@ TEST(MachineCommand, TheImageDoesNotDependOnHowTheTreeIsBuilt) {
 TEST(MachineCommand, ADistributedDatabaseReportsItsMessagesAndMemories) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "distributed.toml";
   for (const char* kind : {"mesh", "ideal"}) {
-    const std::string options = small + std::string(" --set network.kind=") + kind;
+    const std::string options = small_teapot + std::string(" --set network.kind=") + kind;
     const Outcome outcome = marti("run --json " + quoted(config) + options);
     ASSERT_EQ(outcome.status, 0) << outcome.output;
     const nlohmann::json machine = nlohmann::json::parse(outcome.output)["machine"];

@@ -17,13 +17,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string small = " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
-const std::string machine = quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") + small;
+const std::string observed_run = quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") + small_teapot;
 
 TEST(ObserveCommand, ARunRecordsATimelineAndHeatMaps) {
   const TemporaryDirectory directory;
   const Outcome outcome =
-      marti("run " + machine + " --set record.timeline=true --set record.heat_maps=true -o " +
+      marti("run " + observed_run + " --set record.timeline=true --set record.heat_maps=true -o " +
             quoted(directory.path() / "out"));
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   for (const char* line :
@@ -57,24 +56,24 @@ TEST(ObserveCommand, RecordingChangesNoResultAndNeedsADirectory) {
   const TemporaryDirectory directory;
   const fs::path plain = directory.path() / "plain";
   const fs::path watched = directory.path() / "watched";
-  ASSERT_EQ(marti("run " + machine + " -o " + quoted(plain)).status, 0);
-  ASSERT_EQ(marti("run " + machine + " --set record.heat_maps=true -o " + quoted(watched)).status, 0);
+  ASSERT_EQ(marti("run " + observed_run + " -o " + quoted(plain)).status, 0);
+  ASSERT_EQ(marti("run " + observed_run + " --set record.heat_maps=true -o " + quoted(watched)).status, 0);
   auto a = nlohmann::json::parse(read(plain / "result.json"));
   auto b = nlohmann::json::parse(read(watched / "result.json"));
   EXPECT_EQ(a["machine"], b["machine"]);
   for (const char* key : {"record.timeline", "record.heat_maps"}) {
-    const Outcome outcome = marti("run " + machine + " --set " + key + "=true");
+    const Outcome outcome = marti("run " + observed_run + " --set " + key + "=true");
     EXPECT_EQ(outcome.status, 2);
     EXPECT_NE(outcome.output.find("give one with -o"), std::string::npos) << outcome.output;
   }
-  const Outcome unused = marti("run " + machine + " --set record.timeline_events=5 -o " + quoted(plain));
+  const Outcome unused = marti("run " + observed_run + " --set record.timeline_events=5 -o " + quoted(plain));
   EXPECT_EQ(unused.status, 2);
   EXPECT_NE(unused.output.find("record.timeline = false"), std::string::npos) << unused.output;
-  const Outcome large = marti("run " + machine + " --set record.heat_maps=true --set image.width=32768" +
+  const Outcome large = marti("run " + observed_run + " --set record.heat_maps=true --set image.width=32768" +
                               " --set image.height=32768 -o " + quoted(plain));
   EXPECT_EQ(large.status, 2);
   EXPECT_NE(large.output.find("maps of this image take about 64 GiB"), std::string::npos) << large.output;
-  const Outcome backwards = marti("run " + machine +
+  const Outcome backwards = marti("run " + observed_run +
                                   " --set record.timeline=true --set record.timeline_from=2ms"
                                   " --set record.timeline_to=1ms -o " +
                                   quoted(plain));
@@ -117,7 +116,8 @@ Counts simulate(const fs::path& file, std::uint64_t size, std::uint64_t line, st
 
 TEST(TraceCommand, GivesAnotherSimulatorTheHitsAndMissesOfEachNode) {
   const TemporaryDirectory directory;
-  const std::string options = machine + " --set machine.nodes=3 --set cache.size=2KiB --set cache.ways=2";
+  const std::string options =
+      observed_run + " --set machine.nodes=3 --set cache.size=2KiB --set cache.ways=2";
   const Outcome run = marti("run " + options + " --json");
   ASSERT_EQ(run.status, 0) << run.output;
   const Outcome trace = marti("trace " + options + " --format din -o " + quoted(directory.path()));
@@ -143,13 +143,13 @@ TEST(TraceCommand, SaysWhyItCannotAndLeavesNothing) {
     EXPECT_NE(outcome.output.find(why), std::string::npos) << outcome.output;
     EXPECT_TRUE(!fs::exists(directory.path() / "out") || fs::is_empty(directory.path() / "out"));
   };
-  refused(machine + " --limit 1KiB", "more than --limit = 1 KiB");
-  refused(machine + " --limit 5kB", "--limit");
-  refused(machine + " --nodes 3-16", "no node 16");
-  refused(machine + " --format xml", "xml");
-  refused(machine + " --set build.sharing=shared", "build.sharing");
+  refused(observed_run + " --limit 1KiB", "more than --limit = 1 KiB");
+  refused(observed_run + " --limit 5kB", "--limit");
+  refused(observed_run + " --nodes 3-16", "no node 16");
+  refused(observed_run + " --format xml", "xml");
+  refused(observed_run + " --set build.sharing=shared", "build.sharing");
   const Outcome full =
-      shell("trap '' XFSZ; ulimit -f 8; " + quoted(MARTI_PROGRAM) + " trace " + machine + out);
+      shell("trap '' XFSZ; ulimit -f 8; " + quoted(MARTI_PROGRAM) + " trace " + observed_run + out);
   EXPECT_EQ(full.status, 2) << full.output;
   EXPECT_NE(full.output.find("cannot be written"), std::string::npos) << full.output;
   EXPECT_TRUE(fs::is_empty(directory.path() / "out"));

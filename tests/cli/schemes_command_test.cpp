@@ -12,17 +12,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path shipped = fs::path(MARTI_SOURCE) / "configs" / "schemes.toml";
-const std::string small = quoted(shipped) +
-                          " --set scene.source=tetra:3 --set image.width=24 --set image.height=16"
-                          " --set 'schemes.nodes=[1,4,9]' --set 'schemes.cell_levels=[2,4,6]'"
-                          " --set schemes.stage_nodes=6";
+const fs::path shipped_schemes = fs::path(MARTI_SOURCE) / "configs" / "schemes.toml";
+const std::string small_schemes = quoted(shipped_schemes) +
+                                  " --set scene.source=tetra:3 --set image.width=24 --set image.height=16"
+                                  " --set 'schemes.nodes=[1,4,9]' --set 'schemes.cell_levels=[2,4,6]'"
+                                  " --set schemes.stage_nodes=6";
 
 TEST(SchemesCommand, WritesTablesAndChartsAndTheSameBytesAgain) {
   const TemporaryDirectory directory;
   const fs::path a = directory.path() / "a";
   const fs::path b = directory.path() / "b";
-  const Outcome outcome = marti("study schemes " + small + " -o " + quoted(a));
+  const Outcome outcome = marti("study schemes " + small_schemes + " -o " + quoted(a));
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   for (const char* text : {"Speed-up over one node", "pipeline", "space", "The paper's statements"}) {
     EXPECT_NE(outcome.output.find(text), std::string::npos) << text;
@@ -32,7 +32,7 @@ TEST(SchemesCommand, WritesTablesAndChartsAndTheSameBytesAgain) {
         "schemes_efficiency.vl.json", "stages.vl.json", "cells.vl.json", "results.sqlite"}) {
     EXPECT_TRUE(fs::exists(a / name)) << name;
   }
-  ASSERT_EQ(marti("study schemes " + small + " -o " + quoted(b)).status, 0);
+  ASSERT_EQ(marti("study schemes " + small_schemes + " -o " + quoted(b)).status, 0);
   for (const auto& entry : fs::directory_iterator(a)) {
     const std::string name = entry.path().filename().string();
     if (name != "results.sqlite") {
@@ -45,7 +45,7 @@ TEST(SchemesCommand, WrongInputIsTwoAndSaysWhere) {
   const TemporaryDirectory directory;
   const std::string out = " -o " + quoted(directory.path() / "out");
   const auto refused = [&](const std::string& options, const std::string& complaint) {
-    const Outcome outcome = marti("study schemes " + small + out + options);
+    const Outcome outcome = marti("study schemes " + small_schemes + out + options);
     EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.output;
     EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
   };

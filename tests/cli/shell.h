@@ -34,6 +34,10 @@ inline std::string quoted(const std::filesystem::path& path) { return "'" + path
 
 inline Outcome marti(const std::string& arguments) { return shell(quoted(MARTI_PROGRAM) + " " + arguments); }
 
+/// Settings of a run that takes no time.
+inline const std::string small_teapot =
+    " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
+
 inline std::string read(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;

@@ -13,14 +13,14 @@ namespace {
 namespace fs = std::filesystem;
 
 // All cases are tests of their own, without the command.
-const std::string small =
+const std::string small_cases =
     " --set stability.rays=100 --set stability.nodes=64"
     " --set 'stability.only=[\"leaks-at-1e6\",\"zero-latencies\"]'";
 
 TEST(StabilityCommand, PrintsAndWritesItsTables) {
   const TemporaryDirectory directory;
   const fs::path out = directory.path() / "out";
-  const Outcome outcome = marti("study stability" + small + " -o " + quoted(out));
+  const Outcome outcome = marti("study stability" + small_cases + " -o " + quoted(out));
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   for (const char* text :
        {"what_could_go_wrong", "leaks-at-1e6", "zero-latencies", "Floats beside doubles", " 0 failed"}) {

@@ -12,11 +12,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path shipped = fs::path(MARTI_SOURCE) / "configs" / "paper.toml";
+const fs::path shipped_paper = fs::path(MARTI_SOURCE) / "configs" / "paper.toml";
 
 // The shipped study with scenes that take no time.
-const std::string small =
-    quoted(shipped) +
+const std::string small_paper =
+    quoted(shipped_paper) +
     " --set image.width=24 --set image.height=16"
     " --set 'paper.scenes=[\"tetra:2\"]'"
     " --set 'paper.run_scenes=[\"teapot:2:pot\",\"teapot:2:pot\"]'"
@@ -26,12 +26,12 @@ TEST(Study, ThePaperWritesTablesChartsAndADatabase) {
   const TemporaryDirectory directory;
   const fs::path a = directory.path() / "a";
   const fs::path b = directory.path() / "b";
-  const Outcome outcome = marti("study paper " + small + " -o " + quoted(a));
+  const Outcome outcome = marti("study paper " + small_paper + " -o " + quoted(a));
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   for (const char* text : {"Table 1", "Figure 3", "The paper's statements", "results.sqlite"}) {
     EXPECT_NE(outcome.output.find(text), std::string::npos) << text;
   }
-  ASSERT_EQ(marti("study paper " + small + " -o " + quoted(b)).status, 0);
+  ASSERT_EQ(marti("study paper " + small_paper + " -o " + quoted(b)).status, 0);
   int compared = 0;
   for (const auto& entry : fs::directory_iterator(a)) {
     const std::string name = entry.path().filename().string();
@@ -48,10 +48,10 @@ TEST(Study, ThePaperWritesTablesChartsAndADatabase) {
 TEST(Study, WrongInputIsTwoAndOlderResultsStay) {
   const TemporaryDirectory directory;
   const fs::path out = directory.path() / "out";
-  ASSERT_EQ(marti("study paper " + small + " -o " + quoted(out)).status, 0);
+  ASSERT_EQ(marti("study paper " + small_paper + " -o " + quoted(out)).status, 0);
   const std::string before = read(out / "table1.csv") + read(out / "results.sqlite");
   const auto refused = [&](const std::string& options, const std::string& complaint) {
-    const Outcome outcome = marti("study paper " + small + options);
+    const Outcome outcome = marti("study paper " + small_paper + options);
     EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.output;
     EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
   };
@@ -76,12 +76,12 @@ TEST(Study, WrongInputIsTwoAndOlderResultsStay) {
 TEST(Study, AFullDiskLeavesTheOldResults) {
   const TemporaryDirectory directory;
   const fs::path out = directory.path() / "out";
-  ASSERT_EQ(marti("study paper " + small + " -o " + quoted(out)).status, 0);
+  ASSERT_EQ(marti("study paper " + small_paper + " -o " + quoted(out)).status, 0);
   const std::string before = read(out / "table1.csv") + read(out / "results.sqlite");
   const auto files = std::distance(fs::directory_iterator(out), {});
   // Files larger than a few blocks cannot be written, as on a full disk: the database cannot.
-  const Outcome full = shell("ulimit -f 8; trap '' XFSZ; " + quoted(MARTI_PROGRAM) + " study paper " + small +
-                             " --set node.clock=40MHz -o " + quoted(out));
+  const Outcome full = shell("ulimit -f 8; trap '' XFSZ; " + quoted(MARTI_PROGRAM) + " study paper " +
+                             small_paper + " --set node.clock=40MHz -o " + quoted(out));
   EXPECT_EQ(full.status, 2) << full.output;
   EXPECT_EQ(read(out / "table1.csv") + read(out / "results.sqlite"), before);
   EXPECT_EQ(std::distance(fs::directory_iterator(out), {}), files) << "nothing may be left behind";
@@ -89,7 +89,7 @@ TEST(Study, AFullDiskLeavesTheOldResults) {
 
 TEST(Study, ShippedConfigurationNamesWhatExists) {
   // Read by another command, the study's own section is not known.
-  const Outcome run = marti("run " + quoted(shipped));
+  const Outcome run = marti("run " + quoted(shipped_paper));
   EXPECT_EQ(run.status, 2);
   EXPECT_NE(run.output.find("paper"), std::string::npos) << run.output;
 }

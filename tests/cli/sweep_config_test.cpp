@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string small = " --set image.width=16 --set image.height=16";
+const std::string small_image = " --set image.width=16 --set image.height=16";
 
 TEST(SweepConfig, RunAndTraceTakeTheFilesOwnMachine) {
   const TemporaryDirectory directory;
@@ -24,11 +24,12 @@ TEST(SweepConfig, RunAndTraceTakeTheFilesOwnMachine) {
   write(sweep, machine +
                    "[sweep]\nfilter = \"cache.ways < 3\"\n[sweep.axes]\nmachine.nodes = [1, 2]\n"
                    "anything = \"goes\"\n[prices]\nnode = 3\n");
-  const Outcome expected = marti("run " + quoted(plain) + small);
-  const Outcome found = marti("run " + quoted(sweep) + small);
+  const Outcome expected = marti("run " + quoted(plain) + small_image);
+  const Outcome found = marti("run " + quoted(sweep) + small_image);
   EXPECT_EQ(found.status, 0) << found.output;
   EXPECT_EQ(found.output, expected.output);
-  const Outcome trace = marti("trace " + quoted(sweep) + small + " -o " + quoted(directory.path() / "trace"));
+  const Outcome trace =
+      marti("trace " + quoted(sweep) + small_image + " -o " + quoted(directory.path() / "trace"));
   EXPECT_EQ(trace.status, 0) << trace.output;
 }
 

@@ -11,17 +11,17 @@
 namespace marti::tests {
 namespace {
 
-__extension__ using Wide = __int128;
+__extension__ using Int128 = __int128;
 using Point = std::array<std::int64_t, 3>;
 
 /// Separating axes on integers, closed: exact while coordinates stay below 2^39.
 bool exact_overlap(const std::array<Point, 3>& triangle, const Point& half) {
-  const auto separated = [&](const std::array<Wide, 3>& axis) {
-    Wide lo = 0;
-    Wide hi = 0;
-    Wide r = 0;
+  const auto separated = [&](const std::array<Int128, 3>& axis) {
+    Int128 lo = 0;
+    Int128 hi = 0;
+    Int128 r = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      Wide p = 0;
+      Int128 p = 0;
       for (std::size_t a = 0; a < 3; ++a) {
         p += axis[a] * triangle[c][a];
       }
@@ -33,20 +33,20 @@ bool exact_overlap(const std::array<Point, 3>& triangle, const Point& half) {
     }
     return lo > r || hi < -r;
   };
-  std::array<std::array<Wide, 3>, 3> edge{};
+  std::array<std::array<Int128, 3>, 3> edge{};
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t a = 0; a < 3; ++a) {
       edge[c][a] = triangle[(c + 1) % 3][a] - triangle[c][a];
     }
   }
   for (std::size_t a = 0; a < 3; ++a) {
-    std::array<Wide, 3> axis{};
+    std::array<Int128, 3> axis{};
     axis[a] = 1;
     if (separated(axis)) {
       return false;
     }
     for (const auto& e : edge) {
-      std::array<Wide, 3> cross{};
+      std::array<Int128, 3> cross{};
       cross[(a + 1) % 3] = -e[(a + 2) % 3];
       cross[(a + 2) % 3] = e[(a + 1) % 3];
       if (separated(cross)) {
@@ -54,9 +54,9 @@ bool exact_overlap(const std::array<Point, 3>& triangle, const Point& half) {
       }
     }
   }
-  const std::array<Wide, 3> normal{edge[0][1] * edge[1][2] - edge[0][2] * edge[1][1],
-                                   edge[0][2] * edge[1][0] - edge[0][0] * edge[1][2],
-                                   edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0]};
+  const std::array<Int128, 3> normal{edge[0][1] * edge[1][2] - edge[0][2] * edge[1][1],
+                                     edge[0][2] * edge[1][0] - edge[0][0] * edge[1][2],
+                                     edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0]};
   return !separated(normal);
 }
 

@@ -179,7 +179,7 @@ TEST(Interpolation, StraightLinesAreExactByBothCurves) {
 // A power law is a straight line of logarithms.
 TEST(Interpolation, PowerLawsBetweenMachinesAreExact) {
   const std::vector<double> nodes = {1.0, 4.0, 64.0};
-  std::vector<Figures> machines(3);
+  std::vector<MachineFigures> machines(3);
   for (std::size_t i = 0; i < 3; ++i) {
     machines[i][Figure::end] = 1e12 / nodes[i];
     machines[i][Figure::misses] = 1000.0 * std::sqrt(nodes[i]);

@@ -32,7 +32,7 @@ TEST(MeasuredErrors, CoverEveryMethodThatAnswersAlone) {
     EXPECT_LE(error.covered, 1.0);
     if (error.method == 0) {
       EXPECT_EQ(error.share, 1.0);
-      EXPECT_EQ(error.allowance, Figures());
+      EXPECT_EQ(error.allowance, MachineFigures());
     }
   }
 }

@@ -105,10 +105,10 @@ RC_GTEST_PROP(Sample, OfEverythingIsExact, (std::uint64_t seed)) {
   test::Random random(seed);
   const processors::WorkLog log = test::random_log(random, 12, 10);
   const MachineConfig machine = plain_machine(random);
-  const Figures exact = figures_of(machine, processors::replay(log, machine));
+  const MachineFigures exact = figures_of(machine, processors::replay(log, machine));
   const Estimate sampled = estimate_by_sample(log, machine, {.one_in = 1, .seed = seed});
   RC_ASSERT(sampled.value == exact);
-  RC_ASSERT(sampled.half_width == Figures());
+  RC_ASSERT(sampled.half_width == MachineFigures());
 }
 
 // Packets of one node, warmed by all before: nothing but chance is left, and the interval is about that.
@@ -118,7 +118,7 @@ TEST(Sample, IntervalsOfManySeedsCoverTheTruth) {
   MachineConfig machine = plain_machine(random);
   machine.packets = {2, 2, processors::PacketOrder::scanline};
   machine.nodes = 1;
-  const Figures exact = figures_of(machine, processors::replay(log, machine));
+  const MachineFigures exact = figures_of(machine, processors::replay(log, machine));
   for (const std::uint64_t one_in : {4, 16}) {
     int times = 0;
     int misses = 0;
@@ -203,7 +203,7 @@ RC_GTEST_PROP(Analytic, OneNodeWithAnIdealInterconnectIsExact, (std::uint64_t se
   machine.interconnect.kind = memory::InterconnectKind::ideal;
   machine.interconnect.latency_cycles = test::pick(random, 0, 90);
   machine.write_buffer = 120;  // one for each pixel: it never fills
-  const Figures exact = figures_of(machine, processors::replay(log, machine));
+  const MachineFigures exact = figures_of(machine, processors::replay(log, machine));
   const memory::CacheShape shape = memory::shape_of(machine.cache.cache);
   const Estimate estimate = estimate_analytically(log, machine, {&shape, 1}, {.walked_nodes = 1})[0];
   RC_ASSERT(estimate.value[Figure::misses] == exact[Figure::misses]);
