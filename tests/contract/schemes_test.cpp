@@ -8,12 +8,14 @@
 #include "processors/program/ray_tree.h"
 #include "processors/replay.h"
 #include "sim/error.h"
+#include "tests/support/equal_results.h"
 #include "tests/support/logged_samples.h"
 #include "tests/support/random_flow.h"
 
 namespace marti::processors {
 namespace {
 
+using test::expect_equal;
 using test::pick;
 using test::Random;
 
@@ -71,37 +73,6 @@ void expect_steps(const WorkLog& log, const MachineConfig& machine, const Machin
   EXPECT_EQ(steps.cuts, static_cast<std::int64_t>(totals.cuts));
   EXPECT_EQ(steps.passes, static_cast<std::int64_t>(totals.passes));
   EXPECT_EQ(steps.pixels, machine.scheme == Scheme::image ? std::int64_t{log.width} * log.height : 0);
-}
-
-template <class S>
-void expect_same_counters(const S& a, const S& b) {
-  sim::for_each_counter(a, [&](const sim::Counter<S>& counter, std::int64_t value) {
-    EXPECT_EQ(value, b.*counter.member) << counter.name;
-  });
-}
-
-void expect_equal(const MachineResult& a, const MachineResult& b) {
-  ASSERT_EQ(a.end, b.end);
-  ASSERT_EQ(a.nodes.size(), b.nodes.size());
-  for (std::size_t n = 0; n < a.nodes.size(); ++n) {
-    ASSERT_EQ(a.nodes[n].time, b.nodes[n].time) << "node " << n;
-    ASSERT_EQ(a.nodes[n].references.hits, b.nodes[n].references.hits);
-    ASSERT_EQ(a.nodes[n].references.misses, b.nodes[n].references.misses);
-    expect_same_counters(a.nodes[n].steps, b.nodes[n].steps);
-    expect_same_counters(a.nodes[n], b.nodes[n]);
-  }
-  for (std::size_t c = 0; c < a.clusters.size(); ++c) {
-    expect_same_counters(a.clusters[c].interconnect, b.clusters[c].interconnect);
-  }
-  ASSERT_EQ(a.flow.nodes.size(), b.flow.nodes.size());
-  for (std::size_t n = 0; n < a.flow.nodes.size(); ++n) {
-    expect_same_counters(a.flow.nodes[n], b.flow.nodes[n]);
-  }
-  for (std::size_t c = 0; c < a.flow.networks.size(); ++c) {
-    expect_same_counters(a.flow.networks[c], b.flow.networks[c]);
-    expect_same_counters(a.flow.networks[c].waits, b.flow.networks[c].waits);
-  }
-  EXPECT_EQ(a.flow.most_in_flight, b.flow.most_in_flight);
 }
 
 // Lines touched of each kind of record; without a cache every one is a miss.

@@ -4,12 +4,31 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "processors/replay.h"
+#include "sim/statistics.h"
 
 namespace marti::test {
 
-/// Equal times, packets and references of every node, and equal counters and waits of all that nodes share.
+template <class S>
+void expect_equal_counters(const S& a, const S& b) {
+  sim::for_each_counter(a, [&](const sim::Counter<S>& counter, std::int64_t value) {
+    ASSERT_EQ(value, b.*counter.member) << counter.name;
+  });
+}
+
+template <class S>
+void expect_equal_counters(const std::vector<S>& a, const std::vector<S>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    expect_equal_counters(a[i], b[i]);
+  }
+}
+
+/// Equal times, packets, references and steps of every node, and equal counters and waits of all that nodes
+/// share.
 inline void expect_equal(const processors::MachineResult& a, const processors::MachineResult& b) {
   ASSERT_EQ(a.end, b.end);
   ASSERT_EQ(a.nodes.size(), b.nodes.size());
@@ -18,32 +37,32 @@ inline void expect_equal(const processors::MachineResult& a, const processors::M
     ASSERT_EQ(a.nodes[n].references.hits, b.nodes[n].references.hits) << "node " << n;
     ASSERT_EQ(a.nodes[n].references.misses, b.nodes[n].references.misses) << "node " << n;
     ASSERT_EQ(a.nodes[n].finish, b.nodes[n].finish) << "node " << n;
-    ASSERT_EQ(a.nodes[n].packets, b.nodes[n].packets) << "node " << n;
+    expect_equal_counters(a.nodes[n].steps, b.nodes[n].steps);
   }
+  expect_equal_counters(a.nodes, b.nodes);
   ASSERT_EQ(a.clusters.size(), b.clusters.size());
   for (std::size_t c = 0; c < a.clusters.size(); ++c) {
     const memory::InterconnectStatistics& x = a.clusters[c].interconnect;
     const memory::InterconnectStatistics& y = b.clusters[c].interconnect;
-    ASSERT_EQ(x.reads, y.reads);
-    ASSERT_EQ(x.writes, y.writes);
-    ASSERT_EQ(x.bytes, y.bytes);
-    ASSERT_EQ(x.busy, y.busy);
-    ASSERT_EQ(x.waits.count, y.waits.count);
-    ASSERT_EQ(x.waits.sum, y.waits.sum);
-    ASSERT_EQ(x.waits.max, y.waits.max);
+    expect_equal_counters(x, y);
+    expect_equal_counters(x.waits, y.waits);
     ASSERT_EQ(x.waits.histogram.percentile(95), y.waits.histogram.percentile(95));
-    ASSERT_EQ(x.waits.histogram.count(), y.waits.histogram.count());
     ASSERT_EQ(a.clusters[c].banks.size(), b.clusters[c].banks.size());
     for (std::size_t i = 0; i < a.clusters[c].banks.size(); ++i) {
-      ASSERT_EQ(a.clusters[c].banks[i].waits.sum, b.clusters[c].banks[i].waits.sum);
+      expect_equal_counters(a.clusters[c].banks[i].waits, b.clusters[c].banks[i].waits);
       ASSERT_EQ(a.clusters[c].banks[i].accesses, b.clusters[c].banks[i].accesses);
     }
   }
-  ASSERT_EQ(a.l2.caches.size(), b.l2.caches.size());
-  for (std::size_t i = 0; i < a.l2.caches.size(); ++i) {
-    ASSERT_EQ(a.l2.caches[i].hits, b.l2.caches[i].hits);
-    ASSERT_EQ(a.l2.caches[i].misses, b.l2.caches[i].misses);
+  expect_equal_counters(a.l2.caches, b.l2.caches);
+  ASSERT_EQ(a.build.start_up, b.build.start_up);
+  expect_equal_counters(a.build.nodes, b.build.nodes);
+  expect_equal_counters(a.build.levels, b.build.levels);
+  expect_equal_counters(a.flow.nodes, b.flow.nodes);
+  expect_equal_counters(a.flow.networks, b.flow.networks);
+  for (std::size_t c = 0; c < a.flow.networks.size(); ++c) {
+    expect_equal_counters(a.flow.networks[c].waits, b.flow.networks[c].waits);
   }
+  ASSERT_EQ(a.flow.most_in_flight, b.flow.most_in_flight);
 }
 
 }  // namespace marti::test

@@ -1,4 +1,4 @@
-// The samples of a logged pixel, found the simple way.
+// Words of a log: that of a ray, and the samples of a pixel, found the simple way.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,11 @@
 #include "processors/program/work_log.h"
 
 namespace marti::test {
+
+/// The word that begins a ray.
+constexpr std::uint32_t ray_word(processors::RayKind kind, std::uint32_t bounce) {
+  return processors::make_word(processors::Step::ray, static_cast<std::uint32_t>(kind) | bounce << 2U);
+}
 
 /// The words of each of a pixel's samples: a log with one has them together, others begin a sample with each
 /// camera ray.

@@ -11,51 +11,11 @@
 #include "processors/replay.h"
 #include "processors/step_time.h"
 #include "sim/error.h"
+#include "tests/support/equal_results.h"
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {
 namespace {
-
-template <class S>
-void expect_equal_counters(const S& a, const S& b) {
-  sim::for_each_counter(a, [&](const sim::Counter<S>& counter, std::int64_t value) {
-    ASSERT_EQ(value, b.*counter.member) << counter.name;
-  });
-}
-
-void expect_equal(const MachineResult& a, const MachineResult& b) {
-  ASSERT_EQ(a.end, b.end);
-  ASSERT_EQ(a.nodes.size(), b.nodes.size());
-  for (std::size_t n = 0; n < a.nodes.size(); ++n) {
-    ASSERT_EQ(a.nodes[n].time, b.nodes[n].time) << "node " << n;
-    ASSERT_EQ(a.nodes[n].references.hits, b.nodes[n].references.hits);
-    ASSERT_EQ(a.nodes[n].references.misses, b.nodes[n].references.misses);
-    ASSERT_EQ(a.nodes[n].finish, b.nodes[n].finish);
-    ASSERT_EQ(a.nodes[n].packets, b.nodes[n].packets);
-    expect_equal_counters(a.nodes[n].steps, b.nodes[n].steps);
-  }
-  ASSERT_EQ(a.clusters.size(), b.clusters.size());
-  for (std::size_t c = 0; c < a.clusters.size(); ++c) {
-    expect_equal_counters(a.clusters[c].interconnect, b.clusters[c].interconnect);
-    expect_equal_counters(a.clusters[c].interconnect.waits, b.clusters[c].interconnect.waits);
-    for (std::size_t i = 0; i < a.clusters[c].banks.size(); ++i) {
-      expect_equal_counters(a.clusters[c].banks[i].waits, b.clusters[c].banks[i].waits);
-    }
-  }
-  ASSERT_EQ(a.l2.caches.size(), b.l2.caches.size());
-  for (std::size_t i = 0; i < a.l2.caches.size(); ++i) {
-    expect_equal_counters(a.l2.caches[i], b.l2.caches[i]);
-  }
-  ASSERT_EQ(a.build.start_up, b.build.start_up);
-  ASSERT_EQ(a.build.nodes.size(), b.build.nodes.size());
-  for (std::size_t n = 0; n < a.build.nodes.size(); ++n) {
-    expect_equal_counters(a.build.nodes[n], b.build.nodes[n]);
-  }
-  ASSERT_EQ(a.build.levels.size(), b.build.levels.size());
-  for (std::size_t level = 0; level < a.build.levels.size(); ++level) {
-    expect_equal_counters(a.build.levels[level], b.build.levels[level]);
-  }
-}
 
 struct Case {
   WorkLog log;
@@ -96,7 +56,7 @@ RC_GTEST_PROP(Dynamic, RunningAheadEqualsAnEventForEveryReference, (std::uint64_
     const MachineResult ahead = replay(c.log, c.machine, c.options);
     c.options.step_by_step = true;
     const MachineResult stepped = replay(c.log, c.machine, c.options);
-    expect_equal(ahead, stepped);
+    test::expect_equal(ahead, stepped);
     RC_ASSERT(!::testing::Test::HasFatalFailure());
     RC_ASSERT(ahead.events <= stepped.events);
   }
@@ -107,7 +67,7 @@ RC_GTEST_PROP(Dynamic, TheOrderOfTheFirstEventsDoesNotMatter, (std::uint64_t see
   Case c = random_case(random);
   const MachineResult plain = replay(c.log, c.machine, c.options);
   c.options.start_seed = random() | 1U;
-  expect_equal(plain, replay(c.log, c.machine, c.options));
+  test::expect_equal(plain, replay(c.log, c.machine, c.options));
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 
@@ -122,7 +82,7 @@ RC_GTEST_PROP(Dynamic, ATreeThatIsKeptIsATreeThatIsGiven, (std::uint64_t seed)) 
   RC_ASSERT(kept.build.all_levels().partial == 0);
   kept.build = {};
   c.machine.build.sharing = Sharing::given;
-  expect_equal(kept, replay(c.log, c.machine));
+  test::expect_equal(kept, replay(c.log, c.machine));
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 
@@ -137,7 +97,7 @@ RC_GTEST_PROP(Dynamic, AFullInitialTreeIsBuildingBeforehandHoweverItIsShared, (s
     const bool in_order = c.machine.placement == Placement::shared && !writes_done_later(c.machine);
     if (sharing == Sharing::private_trees || in_order) {
       c.machine.build.sharing = sharing;
-      expect_equal(replay(c.log, c.machine, c.options), none);
+      test::expect_equal(replay(c.log, c.machine, c.options), none);
       RC_ASSERT(!::testing::Test::HasFatalFailure());
     }
   }
@@ -216,7 +176,7 @@ RC_GTEST_PROP(Dynamic, OneNodeBuildsThePrivateTreeThatItWouldShare, (std::uint64
   RC_ASSERT(a.entries == b.entries);
   RC_ASSERT(a.written_bytes == b.written_bytes);
   RC_ASSERT(a.locks == a.splits && b.locks == 0);
-  expect_equal_counters(shared.steps(), own.steps());
+  test::expect_equal_counters(shared.steps(), own.steps());
   for (std::size_t level = 0; level < shared.build.levels.size(); ++level) {
     RC_ASSERT(shared.build.levels[level].branches == own.build.levels[level].branches);
     RC_ASSERT(shared.build.levels[level].leaves == own.build.levels[level].leaves);
@@ -231,7 +191,7 @@ RC_GTEST_PROP(Dynamic, WhatTheRaysDoDoesNotDependOnHowTheTreeIsBuilt, (std::uint
   Case c = random_case(random);
   const MachineResult built = replay(c.log, c.machine, c.options);
   c.machine.build.sharing = Sharing::given;
-  expect_equal_counters(built.steps(), replay(c.log, c.machine).steps());
+  test::expect_equal_counters(built.steps(), replay(c.log, c.machine).steps());
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 

@@ -1,7 +1,6 @@
 // Whole frames: the same bytes on any number of threads and with any structure, and logs that keep their
 // rules and say what happened.
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -19,11 +18,7 @@ namespace marti::processors {
 namespace {
 
 using test::Built;
-
-bool same_bytes(const Image& a, const Image& b) {
-  return a.width == b.width && a.height == b.height &&
-         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
-}
+using test::same_bytes;
 
 bool same_rows(const WorkLog& a, const WorkLog& b) {
   if (a.rows.size() != b.rows.size()) {

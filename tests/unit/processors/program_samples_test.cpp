@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <set>
 #include <utility>
@@ -21,11 +20,7 @@ namespace marti::processors {
 namespace {
 
 using test::Built;
-
-bool same_bytes(const Image& a, const Image& b) {
-  return a.pixels.size() == b.pixels.size() &&
-         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(a.pixels[0])) == 0;
-}
+using test::same_bytes;
 
 TEST(SamplePoints, OneLiesInTheCentreWhateverTheSeed) {
   for (const std::uint64_t seed : {0, 1, 77}) {

@@ -1,6 +1,7 @@
 // Small scenes built by hand, and their rendering in one call.
 #pragma once
 
+#include <cstring>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -60,6 +61,11 @@ inline scenes::Scene looking_down(double height) {
 /// One pixel: the ray through the middle of the view.
 inline RenderOptions one_pixel(std::uint32_t max_depth = 1) {
   return {.width = 1, .height = 1, .max_depth = max_depth};
+}
+
+inline bool same_bytes(const Image& a, const Image& b) {
+  return a.width == b.width && a.height == b.height &&
+         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
 }
 
 }  // namespace marti::processors::test

@@ -12,9 +12,7 @@
 namespace marti::processors {
 namespace {
 
-constexpr std::uint32_t ray_word(RayKind kind, std::uint32_t bounce) {
-  return make_word(Step::ray, static_cast<std::uint32_t>(kind) | bounce << 2U);
-}
+using test::ray_word;
 
 std::vector<std::uint32_t> children_of(const std::vector<LoggedRay>& rays, std::uint32_t ray) {
   std::vector<std::uint32_t> children;

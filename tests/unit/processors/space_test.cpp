@@ -8,6 +8,7 @@
 
 #include "processors/step_time.h"
 #include "sim/error.h"
+#include "tests/support/logged_samples.h"
 #include "tests/support/naive_space.h"
 #include "tests/support/random_flow.h"
 #include "tests/support/user_error.h"
@@ -233,9 +234,7 @@ MachineConfig two_nodes() {
   return machine;
 }
 
-constexpr std::uint32_t ray_word(RayKind kind, std::uint32_t bounce) {
-  return make_word(Step::ray, static_cast<std::uint32_t>(kind) | bounce << 2U);
-}
+using test::ray_word;
 
 constexpr std::uint32_t reference = 10;
 

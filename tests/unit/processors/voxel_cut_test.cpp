@@ -1,7 +1,6 @@
 // The voxel cut against the exact walk, closed forms and the rules of its log.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
 
@@ -22,17 +21,13 @@ namespace marti::processors {
 namespace {
 
 using test::Built;
+using test::same_bytes;
 
 double real(double lo, double hi) { return lo + (hi - lo) * *rc::gen::inRange(0, 1'000'001) / 1e6; }
 glm::dvec3 point(double size) { return {real(-size, size), real(-size, size), real(-size, size)}; }
 
 const accel::Octree& octree_of(const Built& built) {
   return dynamic_cast<const accel::StructureOf<accel::Octree>&>(*built.structure).concrete();
-}
-
-bool same_bytes(const Image& a, const Image& b) {
-  return a.pixels.size() == b.pixels.size() &&
-         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
 }
 
 // A scene seen from `factor` times as far away.

@@ -17,13 +17,16 @@
 #include "scenes/open.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
+#include "tests/unit/scenes/loaded_scene.h"
 
 namespace marti::scenes {
 namespace {
 
 using nlohmann::json;
 using testing::animate;
+using testing::corner;
 using testing::GltfFile;
+using testing::has_note;
 
 class GltfAnimation : public ::testing::Test {
  protected:
@@ -36,20 +39,7 @@ class GltfAnimation : public ::testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-glm::dvec3 corner(const Scene& scene, std::size_t triangle, std::size_t i) {
-  return scene.positions[scene.triangles[triangle].vertex[i]];
-}
-
 bool same_bits(const glm::dvec3& a, const glm::dvec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
-bool has_note(const Scene& scene, const std::string& part) {
-  for (const std::string& note : scene.notes) {
-    if (note.find(part) != std::string::npos) {
-      return true;
-    }
-  }
-  return false;
-}
 
 TEST_F(GltfAnimation, AQuarterTurnAtHalfTimeIsFortyFiveDegrees) {
   GltfFile file = GltfFile::square();

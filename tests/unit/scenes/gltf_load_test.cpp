@@ -12,11 +12,14 @@
 #include "scenes/open.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
+#include "tests/unit/scenes/loaded_scene.h"
 
 namespace marti::scenes {
 namespace {
 
+using testing::corner;
 using testing::GltfFile;
+using testing::has_note;
 
 class GltfLoad : public ::testing::Test {
  protected:
@@ -28,10 +31,6 @@ class GltfLoad : public ::testing::Test {
   }
   test::TemporaryDirectory directory_;
 };
-
-glm::dvec3 corner(const Scene& scene, std::size_t triangle, std::size_t i) {
-  return scene.positions[scene.triangles[triangle].vertex[i]];
-}
 
 /// The corners of all triangles in order.
 std::vector<glm::dvec3> corners(const Scene& scene) {
@@ -47,15 +46,6 @@ std::vector<glm::dvec3> corners(const Scene& scene) {
 glm::dvec3 normal_of(const Scene& scene, std::size_t t) {
   return glm::normalize(
       glm::cross(corner(scene, t, 1) - corner(scene, t, 0), corner(scene, t, 2) - corner(scene, t, 0)));
-}
-
-bool has_note(const Scene& scene, const std::string& part) {
-  for (const std::string& note : scene.notes) {
-    if (note.find(part) != std::string::npos) {
-      return true;
-    }
-  }
-  return false;
 }
 
 TEST_F(GltfLoad, BothContainersAndAllKindsOfBuffers) {
