@@ -75,10 +75,11 @@ void run_within_command(const RunArguments& arguments, sim::Config& config) {
   if (!arguments.keep.empty() || arguments.verify_plan) {
     throw sim::UserError("--keep and --verify-plan are for exact runs; leave --within out");
   }
-  if (!arguments.directory.empty() || arguments.json) {
+  if (!arguments.directory.empty()) {
     throw sim::UserError(
-        "--within gives estimates of some figures, for people: result.json and what else --output and --json "
-        "give are for exact runs; leave --within out");
+        "--within gives estimates of some figures: result.json and what else --output gives are for exact "
+        "runs; "
+        "leave --within out, or take --json");
   }
   double tolerance = 0.0;
   try {
@@ -86,7 +87,7 @@ void run_within_command(const RunArguments& arguments, sim::Config& config) {
   } catch (const sim::UserError& error) {
     throw sim::UserError("--within: " + std::string(error.what()));
   }
-  print(studies::run_within(config, tolerance));
+  print(studies::run_within(config, tolerance, arguments.json));
 }
 
 void run_command(const RunArguments& arguments) {

@@ -36,14 +36,6 @@ Json named(const Names& names, const Values& values) {
   return object;
 }
 
-Json config_json(const RunResult& r) {
-  Json keys = Json::object();
-  for (const sim::EffectiveValue& value : r.values) {
-    keys[value.key] = {{"value", value.value}, {"given", value.given}};
-  }
-  return {{"file", r.config_name}, {"keys", keys}};
-}
-
 Json scene_json(const RunResult& r) {
   const scenes::SceneFacts& s = r.functional.scene;
   Json bounds = nullptr;
@@ -250,7 +242,7 @@ std::string json_of(const RunResult& r) {
     machine["contexts"] = context_json(r.machine, timed.contexts, timed.nodes.size() <= most_listed);
   }
   const Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
-                       {"config", config_json(r)},
+                       {"config", config_json(r.config_name, r.values)},
                        {"scene", scene_json(r)},
                        {"structure", structure_json(r)},
                        {"image", image_json(r)},

@@ -18,7 +18,7 @@
 #include "studies/machine_keys.h"
 #include "studies/record_keys.h"
 #include "studies/run_result.h"
-#include "studies/text_units.h"
+#include "studies/within_output.h"
 
 namespace marti::studies {
 
@@ -37,7 +37,7 @@ constexpr double most_analytic_use = 0.25;
 // Both half-widths together. That of the interconnect's use is measured in points, on machines that may use
 // it less; it is at least what the misses and the frame time leave open, which are relative.
 void widen(Estimate& estimate, const MeasuredError& measured, std::uint32_t nodes) {
-  Figures& half = estimate.half_width;
+  MachineFigures& half = estimate.half_width;
   for (std::size_t i = 0; i < figure_count; ++i) {
     const auto figure = static_cast<Figure>(i);
     half[figure] += measured.allowance[figure];
@@ -49,7 +49,7 @@ void widen(Estimate& estimate, const MeasuredError& measured, std::uint32_t node
   }
 }
 
-double width_of(const Figures& half_width) {
+double width_of(const MachineFigures& half_width) {
   return std::max(half_width[Figure::end], half_width[Figure::speed_up]);
 }
 
@@ -62,57 +62,9 @@ const MeasuredError* find(const std::vector<MeasuredError>& errors, std::size_t 
   return found == errors.end() ? nullptr : &*found;
 }
 
-std::string bar(std::string value, double half_width, std::string low, std::string high) {
-  return std::isfinite(half_width) ? fmt::format("{:<14}+- {:<8} {} to {}\n", value,
-                                                 fmt::format("{:.2g} %", 100.0 * half_width), low, high)
-                                   : fmt::format("{:<14}error not known\n", value);
-}
-
-std::string time_bar(double ticks, double half_width) {
-  const auto text = [](double value) { return seconds(std::llround(value)); };
-  return bar(text(ticks), half_width, text(ticks / (1.0 + half_width)),
-             half_width < 1.0 ? text(ticks / (1.0 - half_width)) : "any time");
-}
-
-std::string number_bar(double value, double half_width, int digits) {
-  const auto text = [digits](double number) { return fmt::format("{:.{}f}", number, digits); };
-  return bar(text(value), half_width, text(value / (1.0 + half_width)),
-             half_width < 1.0 ? text(value / (1.0 - half_width)) : "any number");
-}
-
-// A figure in percent, with its half-width in points.
-std::string points_bar(double percent, double half_width, std::string_view what) {
-  const std::string value = fmt::format("{:.2f} %{}", percent, what);
-  return std::isfinite(half_width) ? fmt::format("{:<14}+- {:.2g} points\n", value, half_width)
-                                   : fmt::format("{:<14}error not known\n", value);
-}
-
-std::string text_of(const EstimatedRun& run, double tolerance, std::uint32_t nodes) {
-  const Method& method = simulator_methods()[run.method];
-  const Figures& value = run.machine.value;
-  const Figures& half = run.machine.half_width;
-  const double share =
-      run.machine.references > 0.0 ? 100.0 * value[Figure::misses] / run.machine.references : 0.0;
-  std::string text = fmt::format(
-      "\nestimate      {}, {}: not exact, asked for within {:g} %\n"
-      "rests on      errors that `marti study error` measured against exact replay on machines of up to {} "
-      "nodes with the bus and the banks of configs/error.toml, of which 95 % are covered{}\n\n",
-      method.name(), method.knob(), 100.0 * tolerance, run.nodes_to,
-      method.kind == MethodKind::sampled ? ", and the spread of this run's own sample" : "");
-  text += "frame time    " + time_bar(value[Figure::end], half[Figure::end]);
-  text += fmt::format("speed-up      {}", number_bar(value[Figure::speed_up], half[Figure::speed_up], 2));
-  text += fmt::format("  on {} node{}\n", nodes, nodes == 1 ? "" : "s");
-  text += "one node      " + time_bar(run.one_node.value[Figure::end], run.one_node.half_width[Figure::end]);
-  text += "misses        " + number_bar(value[Figure::misses], half[Figure::misses], 0);
-  text += "hit ratio     " + points_bar(100.0 - share, share * half[Figure::misses], "");
-  text += "interconnect  " + points_bar(100.0 * value[Figure::use], 100.0 * half[Figure::use], " busy");
-  text += "mean wait     " + time_bar(value[Figure::wait], half[Figure::wait]);
-  text += "\nall else is told by exact replay: run without --within\n";
-  return text;
-}
-
-std::string exact_text(const RunResult& result, const std::string& reason) {
-  return summary_of(result) + fmt::format("\nmethod        exact replay, no error: {}\n", reason);
+std::string exact_output(const RunResult& result, const std::string& reason, bool json) {
+  return json ? json_of(result)
+              : summary_of(result) + fmt::format("\nmethod        exact replay, no error: {}\n", reason);
 }
 
 }  // namespace
@@ -208,7 +160,7 @@ std::optional<EstimatedRun> estimate_within(const processors::WorkLog& log,
   return std::nullopt;
 }
 
-std::string run_within(sim::Config& config, double tolerance) {
+std::string run_within(sim::Config& config, double tolerance, bool json) {
   FrameConfig frame = read_frame(config);
   refuse_several_frames(config, frame.frames);
   const processors::MachineConfig machine = read_machine(config);
@@ -229,19 +181,25 @@ std::string run_within(sim::Config& config, double tolerance) {
     reason = "nothing else is within 0 %";
   }
   if (reason) {
-    return exact_text(run(config), *reason);
+    return exact_output(run(config), *reason, json);
   }
   RunResult result;
+  result.config_name = config.name();
+  result.values = config.effective_values();
   result.frame_config = frame;
+  result.machine = machine;
   result.functional = run_functional(frame);
   const std::optional<EstimatedRun> estimated =
       estimate_within(*result.functional.frame.log, machine, tolerance);
   if (!estimated) {
-    return exact_text(
+    return exact_output(
         run(config, {}, {}, std::move(result.functional)),
-        fmt::format("no cheaper method has been measured to be within {:g} % here", 100.0 * tolerance));
+        fmt::format("no cheaper method has been measured to be within {:g} % here", 100.0 * tolerance), json);
   }
-  return scene_summary_of(result) + text_of(*estimated, tolerance, machine.nodes);
+  if (json) {
+    return estimate_json(result, *estimated, tolerance);
+  }
+  return scene_summary_of(result) + estimate_text(*estimated, tolerance, machine.nodes);
 }
 
 }  // namespace marti::studies

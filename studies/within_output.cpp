@@ -1,0 +1,111 @@
+#include "studies/within_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "studies/error/simulator_methods.h"
+#include "studies/json_parts.h"
+#include "studies/text_units.h"
+#include "studies/version.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string bar(std::string value, double half_width, std::string low, std::string high) {
+  return std::isfinite(half_width) ? fmt::format("{:<14}+- {:<8} {} to {}\n", value,
+                                                 fmt::format("{:.2g} %", 100.0 * half_width), low, high)
+                                   : fmt::format("{:<14}error not known\n", value);
+}
+
+std::string time_bar(double ticks, double half_width) {
+  const auto text = [](double value) { return seconds(std::llround(value)); };
+  return bar(text(ticks), half_width, text(ticks / (1.0 + half_width)),
+             half_width < 1.0 ? text(ticks / (1.0 - half_width)) : "any time");
+}
+
+std::string number_bar(double value, double half_width, int digits) {
+  const auto text = [digits](double number) { return fmt::format("{:.{}f}", number, digits); };
+  return bar(text(value), half_width, text(value / (1.0 + half_width)),
+             half_width < 1.0 ? text(value / (1.0 - half_width)) : "any number");
+}
+
+// A figure in percent, with its half-width in points.
+std::string points_bar(double percent, double half_width, std::string_view what) {
+  const std::string value = fmt::format("{:.2f} %{}", percent, what);
+  return std::isfinite(half_width) ? fmt::format("{:<14}+- {:.2g} points\n", value, half_width)
+                                   : fmt::format("{:<14}error not known\n", value);
+}
+
+// What JSON cannot say is nothing.
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json figures_json(const Estimate& estimate, bool with_speed_up) {
+  Json figures = Json::object();
+  for (std::size_t i = 0; i < figure_count; ++i) {
+    const auto figure = static_cast<Figure>(i);
+    if (figure == Figure::speed_up && !with_speed_up) {
+      continue;
+    }
+    const double value = estimate.value[figure];
+    const double half = estimate.half_width[figure];
+    const bool difference = figure == Figure::use;
+    const double low = difference ? std::max(0.0, value - half) : value / (1.0 + half);
+    const double high = difference   ? std::min(1.0, value + half)
+                        : half < 1.0 ? value / (1.0 - half)
+                                     : HUGE_VAL;
+    figures[std::string(figure_names[i])] = {
+        {"value", finite(value)}, {"half_width", finite(half)}, {"low", finite(low)}, {"high", finite(high)}};
+  }
+  return figures;
+}
+
+}  // namespace
+
+std::string estimate_text(const EstimatedRun& run, double tolerance, std::uint32_t nodes) {
+  const Method& method = simulator_methods()[run.method];
+  const MachineFigures& value = run.machine.value;
+  const MachineFigures& half = run.machine.half_width;
+  const double share =
+      run.machine.references > 0.0 ? 100.0 * value[Figure::misses] / run.machine.references : 0.0;
+  std::string text = fmt::format(
+      "\nestimate      {}, {}: not exact, asked for within {:g} %\n"
+      "rests on      errors that `marti study error` measured against exact replay on machines of up to {} "
+      "nodes with the bus and the banks of configs/error.toml, of which 95 % are covered{}\n\n",
+      method.name(), method.knob(), 100.0 * tolerance, run.nodes_to,
+      method.kind == MethodKind::sampled ? ", and the spread of this run's own sample" : "");
+  text += "frame time    " + time_bar(value[Figure::end], half[Figure::end]);
+  text += fmt::format("speed-up      {}", number_bar(value[Figure::speed_up], half[Figure::speed_up], 2));
+  text += fmt::format("  on {} node{}\n", nodes, nodes == 1 ? "" : "s");
+  text += "one node      " + time_bar(run.one_node.value[Figure::end], run.one_node.half_width[Figure::end]);
+  text += "misses        " + number_bar(value[Figure::misses], half[Figure::misses], 0);
+  text += "hit ratio     " + points_bar(100.0 - share, share * half[Figure::misses], "");
+  text += "interconnect  " + points_bar(100.0 * value[Figure::use], 100.0 * half[Figure::use], " busy");
+  text += "mean wait     " + time_bar(value[Figure::wait], half[Figure::wait]);
+  text += "\nall else is told by exact replay: run without --within\n";
+  return text;
+}
+
+std::string estimate_json(const RunResult& result, const EstimatedRun& run, double tolerance) {
+  const Method& method = simulator_methods()[run.method];
+  const Json json = {{"marti", {{"version", version}}},
+                     {"config", config_json(result.config_name, result.values)},
+                     {"estimate",
+                      {{"method", method.name()},
+                       {"knob", method.knob()},
+                       {"tolerance", tolerance},
+                       {"measured_nodes_to", run.nodes_to},
+                       {"nodes", result.machine.nodes},
+                       {"references", finite(run.machine.references)},
+                       {"machine", figures_json(run.machine, true)},
+                       {"one_node", figures_json(run.one_node, false)}}}};
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace marti::studies
