@@ -26,7 +26,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
 endif()
 if(CMAKE_UNITY_BUILD)
   # Files that are compiled as one see each other's local names.
-  target_compile_options(marti_options INTERFACE -Wno-shadow -Wno-subobject-linkage)
+  target_compile_options(marti_options INTERFACE
+    -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()
 if(MARTI_SANITIZE)
   target_compile_options(marti_options INTERFACE

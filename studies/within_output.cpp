@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <utility>
 
 #include "studies/error/simulator_methods.h"
 #include "studies/json_parts.h"
@@ -43,8 +44,20 @@ std::string points_bar(double percent, double half_width, std::string_view what)
                                    : fmt::format("{:<14}error not known\n", value);
 }
 
-// What JSON cannot say is nothing.
+// What JSON has no number for is null.
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+// Where a figure's interval begins and ends: infinite where nothing bounds it, not a number where the error
+// is not known.
+std::pair<double, double> interval(Figure figure, double value, double half_width) {
+  if (!std::isfinite(half_width)) {
+    return {NAN, NAN};
+  }
+  if (figure == Figure::use) {
+    return {std::max(0.0, value - half_width), std::min(1.0, value + half_width)};
+  }
+  return {value / (1.0 + half_width), half_width < 1.0 ? value / (1.0 - half_width) : HUGE_VAL};
+}
 
 Json figures_json(const Estimate& estimate, bool with_speed_up) {
   Json figures = Json::object();
@@ -54,14 +67,12 @@ Json figures_json(const Estimate& estimate, bool with_speed_up) {
       continue;
     }
     const double value = estimate.value[figure];
-    const double half = estimate.half_width[figure];
-    const bool difference = figure == Figure::use;
-    const double low = difference ? std::max(0.0, value - half) : value / (1.0 + half);
-    const double high = difference   ? std::min(1.0, value + half)
-                        : half < 1.0 ? value / (1.0 - half)
-                                     : HUGE_VAL;
-    figures[std::string(figure_names[i])] = {
-        {"value", finite(value)}, {"half_width", finite(half)}, {"low", finite(low)}, {"high", finite(high)}};
+    const double half_width = estimate.half_width[figure];
+    const auto [low, high] = interval(figure, value, half_width);
+    figures[std::string(figure_names[i])] = {{"value", finite(value)},
+                                             {"half_width", finite(half_width)},
+                                             {"low", finite(low)},
+                                             {"high", finite(high)}};
   }
   return figures;
 }

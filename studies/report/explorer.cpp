@@ -109,7 +109,7 @@ void add_sample(Table& table, const AxisModel& model, const Modelled& sample, do
 }
 
 // The outer points are in two zones, so that their curves meet.
-void add_model_rows(Table& table, const AxisModel& model, const Curve& curve, double first, double last,
+void add_model_rows(Table& table, const AxisModel& model, const ModelCurve& curve, double first, double last,
                     double ideal) {
   for (std::size_t i = 0; i < model.x.size(); ++i) {
     if (!curve.samples[i]) {
@@ -138,7 +138,7 @@ void add_mark(Table& table, const std::string& kind, const std::string& zone, do
 }
 
 // Where the curve leaves its exact points behind.
-void add_zones(Table& table, const AxisModel& model, const Curve& curve, double first, double last) {
+void add_zones(Table& table, const AxisModel& model, const ModelCurve& curve, double first, double last) {
   double low = first;
   double high = last;
   for (std::size_t i = 0; i < model.x.size(); ++i) {
@@ -168,7 +168,7 @@ std::optional<double> shown(const ExplorerField& field, const ReportPoint& point
   return field.exact ? value : rounded(value, figure_digits);
 }
 
-std::vector<ExplorerField> explorer_fields(const SweepPoints& sweep) {
+std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
   std::vector<ExplorerField> fields = {
       {"end", "ms", "frame time", ms_a_ps, true},
       {"speed_up", "1", "speed-up over the base machine", 1.0, true},
@@ -202,7 +202,7 @@ std::vector<ExplorerField> explorer_fields(const SweepPoints& sweep) {
   return fields;
 }
 
-Table explorer_rows(const SweepPoints& sweep, const AxisModel* model, std::size_t axis,
+Table explorer_rows(const ReportPoints& sweep, const AxisModel* model, std::size_t axis,
                     const ReportPoint& through) {
   Table table = rows_table();
   const std::string key = line_key(through, axis);
@@ -262,7 +262,7 @@ Json channel_of(const ReportAxis& axis) {
   return channel;
 }
 
-Json explorer_json(const SweepPoints& sweep, std::span<const AxisModel> models, const Chosen& chosen,
+Json explorer_json(const ReportPoints& sweep, std::span<const AxisModel> models, const Chosen& chosen,
                    std::size_t axis) {
   Json json = {
       {"axis", axis}, {"start", chosen.knee}, {"fastest", chosen.fastest}, {"no_model", error_note(nullptr)}};

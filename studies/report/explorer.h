@@ -26,19 +26,19 @@ struct ExplorerField {
 [[nodiscard]] std::optional<double> shown(const ExplorerField& field, const ReportPoint& point);
 
 /// Those that at least one point has.
-[[nodiscard]] std::vector<ExplorerField> explorer_fields(const SweepPoints& sweep);
+[[nodiscard]] std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep);
 
 /// "explorer": exact points of the line through `through` along `axis`, the model's curve with its band, and
 /// where it extrapolates. The page makes the same rows of explorer_json() (studies/report/page/explorer.js).
 /// `model` may be null: points only.
-[[nodiscard]] Table explorer_rows(const SweepPoints& sweep, const AxisModel* model, std::size_t axis,
+[[nodiscard]] Table explorer_rows(const ReportPoints& sweep, const AxisModel* model, std::size_t axis,
                                   const ReportPoint& through);
 
 /// How an axis stands in a chart: the members of Vega-Lite's channel definition.
 [[nodiscard]] nlohmann::ordered_json channel_of(const ReportAxis& axis);
 
 /// See docs/report.md.
-[[nodiscard]] nlohmann::ordered_json explorer_json(const SweepPoints& sweep,
+[[nodiscard]] nlohmann::ordered_json explorer_json(const ReportPoints& sweep,
                                                    std::span<const AxisModel> models, const Chosen& chosen,
                                                    std::size_t axis);
 

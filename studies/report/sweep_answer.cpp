@@ -20,7 +20,7 @@ double price_of(const ReportPoint& point) { return point.figure("price"); }
 
 // The point of the front farthest below the line between its ends. A price of 0 has no logarithm: prices are
 // taken as they are then.
-std::size_t knee_of(const SweepPoints& sweep, const std::vector<std::size_t>& front) {
+std::size_t knee_of(const ReportPoints& sweep, const std::vector<std::size_t>& front) {
   const bool free = price_of(sweep.points[front.front()]) <= 0.0;  // the cheapest
   const auto place = [&](std::size_t i) {
     const ReportPoint& point = sweep.points[i];
@@ -48,7 +48,7 @@ struct Advice {
   std::string text;
 };
 
-Advice advice(const SweepPoints& sweep, const ReportPoint& from) {
+Advice advice(const ReportPoints& sweep, const ReportPoint& from) {
   struct Step {
     std::string text;
     double gain;
@@ -91,7 +91,7 @@ Advice advice(const SweepPoints& sweep, const ReportPoint& from) {
 }
 
 // Values that all machines of a frame share and other machines have not: "image.width = 512".
-std::string frame_text(const SweepPoints& sweep, std::size_t frame) {
+std::string frame_text(const ReportPoints& sweep, std::size_t frame) {
   std::string text;
   for (std::size_t axis = 0; axis < sweep.axes.size(); ++axis) {
     std::set<std::size_t> values;
@@ -151,7 +151,7 @@ std::string speed_text(const ReportPoint& point) {
 
 }  // namespace
 
-Chosen choose(const SweepPoints& sweep) {
+Chosen choose(const ReportPoints& sweep) {
   const auto shortest = std::min_element(
       sweep.points.begin(), sweep.points.end(),
       [](const ReportPoint& a, const ReportPoint& b) { return a.figure("end") < b.figure("end"); });
@@ -173,7 +173,7 @@ Chosen choose(const SweepPoints& sweep) {
   return chosen;
 }
 
-std::string place_text(const SweepPoints& sweep, const ReportPoint& point) {
+std::string place_text(const ReportPoints& sweep, const ReportPoint& point) {
   std::string text;
   for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
     text += (i == 0 ? "" : ", ") + sweep.axes[i].name + " = " + sweep.axes[i].texts[point.place[i]];
@@ -186,7 +186,7 @@ std::string limit_sentence(const ReportPoint& point) {
   return finding ? finding->sentence : std::string();
 }
 
-std::vector<std::string> answer_of(const SweepPoints& sweep, const Chosen& chosen) {
+std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chosen) {
   const ReportPoint& fastest = sweep.points[chosen.fastest];
   const ReportPoint& knee = sweep.points[chosen.knee];
   const std::string unit = sweep.priced ? "at a price of" : "with a node count of";

@@ -10,7 +10,7 @@
 
 namespace marti::studies {
 
-/// Indices into SweepPoints::points.
+/// Indices into ReportPoints::points.
 struct Chosen {
   std::size_t fastest = 0;         ///< the shortest frame; of equal ones the cheapest, then the first
   std::size_t knee = 0;            ///< of the front, the machine where more money begins to buy less
@@ -21,16 +21,16 @@ struct Chosen {
 /// compared. The price is the cost by [prices], or the number of nodes where all costs are equal. The knee is
 /// the point of the front that lies farthest below the line from its first to its last, both in logarithms;
 /// the price as it is where a machine of the front is free.
-[[nodiscard]] Chosen choose(const SweepPoints& sweep);
+[[nodiscard]] Chosen choose(const ReportPoints& sweep);
 
 /// "machine.nodes = 16, cache.size = 16 KiB".
-[[nodiscard]] std::string place_text(const SweepPoints& sweep, const ReportPoint& point);
+[[nodiscard]] std::string place_text(const ReportPoints& sweep, const ReportPoint& point);
 
 /// What limits a machine of the image scheme: the sentence of find_limit (studies/scaling.h), as `marti run`
 /// says it. Empty for a machine of another scheme, because a store lacks how busy its stages and nodes are;
 /// for one of more than 65,536 nodes; and where the store has no times.
 [[nodiscard]] std::string limit_sentence(const ReportPoint& point);
 
-[[nodiscard]] std::vector<std::string> answer_of(const SweepPoints& sweep, const Chosen& chosen);
+[[nodiscard]] std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chosen);
 
 }  // namespace marti::studies

@@ -77,8 +77,8 @@ std::pair<double, double> reach(const LineModel& line, bool logarithmic) {
   return {low - std::abs(low) * rounding, high + std::abs(high) * rounding};
 }
 
-Curve curve_of(const LineModel& line, const ReportAxis& axis, const AxisModel& model) {
-  Curve curve;
+ModelCurve curve_of(const LineModel& line, const ReportAxis& axis, const AxisModel& model) {
+  ModelCurve curve;
   const auto [low, high] = reach(line, axis.logarithmic);
   for (const double x : model.x) {
     std::optional<Modelled>& sample = curve.samples.emplace_back();
@@ -165,7 +165,7 @@ PointCounters counters_of(const ReportPoint& point, double x) {
   return counters;
 }
 
-std::vector<AxisModel> model_sweep(const SweepPoints& sweep, std::size_t most_samples) {
+std::vector<AxisModel> model_sweep(const ReportPoints& sweep, std::size_t most_samples) {
   const sim::Schema schema = sweep_schema();
   std::vector<AxisModel> models;
   std::size_t samples = 0;

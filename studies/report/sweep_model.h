@@ -15,7 +15,7 @@
 namespace marti::studies {
 
 /// Samples of the model along a line; nothing where it does not reach.
-struct Curve {
+struct ModelCurve {
   std::vector<std::optional<Modelled>> samples;  ///< one for each of AxisModel::x
   std::optional<double> saturation;              ///< nodes of a cluster, on an axis of nodes
 };
@@ -25,7 +25,7 @@ struct AxisModel {
   std::vector<double> x;  ///< ascending: the axis' values, some between them, and one step beyond either end
   ModelError end[2];      ///< by Zone
   ModelError speed_up[2];
-  std::map<std::string, Curve> curves;  ///< by line_key()
+  std::map<std::string, ModelCurve> curves;  ///< by line_key()
   [[nodiscard]] bool has_band(Zone zone) const { return end[static_cast<std::size_t>(zone)].is_known(); }
 };
 
@@ -40,6 +40,7 @@ struct AxisModel {
 
 /// One for each numeric axis that has a line of three points or more. Axes are left out, the last first, when
 /// all curves together have more than `most_samples`.
-[[nodiscard]] std::vector<AxisModel> model_sweep(const SweepPoints& sweep, std::size_t most_samples = 60'000);
+[[nodiscard]] std::vector<AxisModel> model_sweep(const ReportPoints& sweep,
+                                                 std::size_t most_samples = 60'000);
 
 }  // namespace marti::studies

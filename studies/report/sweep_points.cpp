@@ -123,7 +123,7 @@ void check_figure(const std::filesystem::path& store, std::int64_t ordinal, std:
 
 // Points are told apart by their values: as texts, and as numbers where a chart has them on an axis of
 // numbers.
-void check_places(const std::filesystem::path& store, const SweepPoints& sweep) {
+void check_places(const std::filesystem::path& store, const ReportPoints& sweep) {
   std::map<std::vector<std::size_t>, std::int64_t> seen;
   for (const ReportPoint& point : sweep.points) {
     const auto [at, fresh] = seen.emplace(point.place, point.ordinal);
@@ -354,15 +354,15 @@ double ReportPoint::figure(std::string_view name) const {
   return at == figures.end() ? 0.0 : at->second;
 }
 
-std::optional<std::size_t> SweepPoints::axis(std::string_view name) const {
+std::optional<std::size_t> ReportPoints::axis(std::string_view name) const {
   const auto at =
       std::find_if(axes.begin(), axes.end(), [&](const ReportAxis& each) { return each.name == name; });
   return at == axes.end() ? std::nullopt : std::optional(static_cast<std::size_t>(at - axes.begin()));
 }
 
-SweepPoints read_sweep_points(const std::filesystem::path& store) {
+ReportPoints read_report_points(const std::filesystem::path& store) {
   const SweepReader reader(store);
-  SweepPoints sweep;
+  ReportPoints sweep;
   sweep.version = reader.version();
   const std::vector<std::string> names = wanted_figures(reader);
   std::vector<std::vector<Cell>> values;

@@ -56,7 +56,7 @@ struct ReportPoint {
   [[nodiscard]] bool has(std::string_view name) const { return figures.find(name) != figures.end(); }
 };
 
-struct SweepPoints {
+struct ReportPoints {
   std::string version;  ///< of the program that timed them
   std::vector<ReportAxis> axes;
   std::vector<ReportPoint> points;  ///< that have been timed, in the order of the plan
@@ -76,6 +76,6 @@ struct SweepPoints {
 /// where all costs are equal). Times are from 1 ps to 2^62 ps, other figures that the store holds from 0 to
 /// 2^62, and no two points have the same values. Throws UserError when the store cannot be read, holds no
 /// timed point, more than a page can show, or a point that is not so, which it names by its ordinal.
-[[nodiscard]] SweepPoints read_sweep_points(const std::filesystem::path& store);
+[[nodiscard]] ReportPoints read_report_points(const std::filesystem::path& store);
 
 }  // namespace marti::studies

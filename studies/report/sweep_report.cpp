@@ -72,7 +72,7 @@ bool bears_on_caches(const std::string& name) {
 
 class Charts {
  public:
-  Charts(const SweepPoints& sweep, const ReportPoint& through, ReportData& report)
+  Charts(const ReportPoints& sweep, const ReportPoint& through, ReportData& report)
       : sweep_(sweep), through_(through), report_(report), fields_(explorer_fields(sweep)) {}
 
   void add_explorer(const AxisModel* model, std::size_t axis) {
@@ -201,13 +201,13 @@ class Charts {
     }
   }
 
-  const SweepPoints& sweep_;
+  const ReportPoints& sweep_;
   const ReportPoint& through_;
   ReportData& report_;
   std::vector<ExplorerField> fields_;
 };
 
-Table front_table(const SweepPoints& sweep, const Chosen& chosen) {
+Table front_table(const ReportPoints& sweep, const Chosen& chosen) {
   Table table("front", "Machines that no other beats in price and frame time",
               {{"ordinal", ColumnType::integer, "1", "number of the point in the sweep, from 0"},
                {"machine", ColumnType::text, "", "its values"},
@@ -225,7 +225,7 @@ Table front_table(const SweepPoints& sweep, const Chosen& chosen) {
   return table;
 }
 
-Table error_table(const SweepPoints& sweep, std::span<const AxisModel> models) {
+Table error_table(const ReportPoints& sweep, std::span<const AxisModel> models) {
   Table table("model_error", "Error of the analytic model, measured by leaving exact points out",
               {{"axis", ColumnType::text, "", "key that the curve runs along"},
                {"figure", ColumnType::text, "", "what is modelled"},
@@ -249,7 +249,7 @@ Table error_table(const SweepPoints& sweep, std::span<const AxisModel> models) {
 }
 
 // The axis that the page begins with: nodes, else the first of numbers.
-std::optional<std::size_t> first_axis(const SweepPoints& sweep) {
+std::optional<std::size_t> first_axis(const ReportPoints& sweep) {
   if (const std::optional<std::size_t> nodes = sweep.axis("machine.nodes");
       nodes && sweep.axes[*nodes].numeric) {
     return nodes;
@@ -265,7 +265,7 @@ std::optional<std::size_t> first_axis(const SweepPoints& sweep) {
 }  // namespace
 
 ReportData read_sweep_report(const std::filesystem::path& directory) {
-  const SweepPoints sweep = read_sweep_points(directory / "results.sqlite");
+  const ReportPoints sweep = read_report_points(directory / "results.sqlite");
   const Chosen chosen = choose(sweep);
   const std::vector<AxisModel> models = model_sweep(sweep);
   ReportData report;

@@ -47,6 +47,7 @@ inline void expect_equal(const processors::MachineResult& a, const processors::M
     expect_equal_counters(x, y);
     expect_equal_counters(x.waits, y.waits);
     ASSERT_EQ(x.waits.histogram.percentile(95), y.waits.histogram.percentile(95));
+    ASSERT_EQ(x.waits.histogram.count(), y.waits.histogram.count());
     ASSERT_EQ(a.clusters[c].banks.size(), b.clusters[c].banks.size());
     for (std::size_t i = 0; i < a.clusters[c].banks.size(); ++i) {
       expect_equal_counters(a.clusters[c].banks[i].waits, b.clusters[c].banks[i].waits);
@@ -59,6 +60,7 @@ inline void expect_equal(const processors::MachineResult& a, const processors::M
   expect_equal_counters(a.build.levels, b.build.levels);
   expect_equal_counters(a.flow.nodes, b.flow.nodes);
   expect_equal_counters(a.flow.networks, b.flow.networks);
+  ASSERT_EQ(a.flow.networks.size(), b.flow.networks.size());
   for (std::size_t c = 0; c < a.flow.networks.size(); ++c) {
     expect_equal_counters(a.flow.networks[c].waits, b.flow.networks[c].waits);
   }

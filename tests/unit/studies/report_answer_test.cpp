@@ -16,8 +16,8 @@ using Json = nlohmann::ordered_json;
 using test::user_error_of;
 
 // Machines along one axis of numbers, with a price and a frame time each.
-SweepPoints line_of(const std::vector<std::pair<double, double>>& offers) {
-  SweepPoints sweep;
+ReportPoints line_of(const std::vector<std::pair<double, double>>& offers) {
+  ReportPoints sweep;
   ReportAxis axis;
   axis.name = "machine.nodes";
   axis.numeric = true;
@@ -35,7 +35,7 @@ SweepPoints line_of(const std::vector<std::pair<double, double>>& offers) {
   return sweep;
 }
 
-std::string all_of(const SweepPoints& sweep) {
+std::string all_of(const ReportPoints& sweep) {
   std::string text;
   for (const std::string& sentence : answer_of(sweep, choose(sweep))) {
     text += sentence + "\n";
@@ -98,12 +98,12 @@ TEST(LimitSentence, SaysNothingOfWhatTheStoreLacks) {
   EXPECT_NE(limit_sentence(point), "");
   point.figures["nodes"] = 1e12;
   EXPECT_EQ(limit_sentence(point), "");
-  SweepPoints sweep = line_of({{1, 100}, {2, 50}});
+  ReportPoints sweep = line_of({{1, 100}, {2, 50}});
   EXPECT_EQ(all_of(sweep).find("What limits"), std::string::npos);
 }
 
 TEST(Choose, TakesTheFrontOfOneFrameOnly) {
-  SweepPoints sweep = line_of({{1, 10}, {2, 100}, {3, 50}, {4, 45}});
+  ReportPoints sweep = line_of({{1, 10}, {2, 100}, {3, 50}, {4, 45}});
   sweep.points[1].frame = sweep.points[2].frame = sweep.points[3].frame = 1;
   sweep.frames = 2;
   EXPECT_EQ(choose(sweep).front, std::vector<std::size_t>{0});
@@ -113,7 +113,7 @@ TEST(Choose, TakesTheFrontOfOneFrameOnly) {
 }
 
 TEST(AnswerOfSweep, ComparesTheSameWorkOnly) {
-  SweepPoints sweep = line_of({{4, 10}, {4, 40}});
+  ReportPoints sweep = line_of({{4, 10}, {4, 40}});
   EXPECT_EQ(all_of(sweep).find("different frames"), std::string::npos);
   sweep.points[1].frame = 1;
   sweep.frames = 2;
@@ -140,7 +140,7 @@ TEST(AnswerOfSweep, AdvisesGainsUpAndDown) {
 TEST(Choose, DrawsTheLineOfTheKneeFromFreeMachinesToo) {
   // With the logarithm of almost nothing for 0, a machine next to the fastest would lie deepest below the
   // line.
-  SweepPoints sweep = line_of({{0, 1000}, {1, 300}, {2, 290}, {10, 250}});
+  ReportPoints sweep = line_of({{0, 1000}, {1, 300}, {2, 290}, {10, 250}});
   EXPECT_EQ(choose(sweep).knee, 1U);
   EXPECT_EQ(choose(line_of({{0, 1000}})).knee, 0U);
   const std::string text = all_of(line_of({{0, 1000}, {1, 1000}}));

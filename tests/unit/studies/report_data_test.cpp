@@ -95,7 +95,7 @@ TEST(OrderAxes, JoinsKeysThatChangeTogether) {
 }
 
 TEST(Choose, FindsTheFastestTheFrontAndItsKnee) {
-  SweepPoints sweep;
+  ReportPoints sweep;
   const std::vector<std::pair<double, double>> offers = {{1, 100}, {2, 50},  {4, 26},
                                                          {8, 25},  {16, 24}, {8, 60}};
   for (const auto& [price, end] : offers) {

@@ -168,8 +168,8 @@ TEST(LeaveOneOut, NeedsThreePointsOnALine) {
   EXPECT_EQ(errors.of_end(Zone::between).points + errors.of_end(Zone::beyond).points, 0U);
 }
 
-SweepPoints sweep_over_nodes(const std::vector<double>& nodes) {
-  SweepPoints sweep;
+ReportPoints sweep_over_nodes(const std::vector<double>& nodes) {
+  ReportPoints sweep;
   ReportAxis axis;
   axis.name = "machine.nodes";
   axis.numeric = true;
@@ -215,7 +215,7 @@ TEST(ModelSweep, ReachesOneStepBeyondThePoints) {
 }
 
 TEST(ModelSweep, KeepsToTheRangeOfTheKey) {
-  SweepPoints sweep = sweep_over_nodes({2, 256, 65536});
+  ReportPoints sweep = sweep_over_nodes({2, 256, 65536});
   sweep.axes.front().name = "memory.banks";
   const std::vector<AxisModel> models = model_sweep(sweep);
   ASSERT_EQ(models.size(), 1U);

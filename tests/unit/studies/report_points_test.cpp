@@ -16,9 +16,9 @@ using test::made_plan;
 using test::TemporaryDirectory;
 using test::user_error_of;
 
-class ReadSweepPoints : public testing::Test {
+class ReadReportPoints : public testing::Test {
  protected:
-  ReadSweepPoints() { make({}); }
+  ReadReportPoints() { make({}); }
 
   // Five machines on two frames, four of them timed.
   void make(const std::vector<std::string>& changes) {
@@ -49,7 +49,7 @@ class ReadSweepPoints : public testing::Test {
 
   std::string error(const std::string& change) {
     make({change});
-    return user_error_of([&] { (void)read_sweep_points(file_); });
+    return user_error_of([&] { (void)read_report_points(file_); });
   }
 
   void expect_refused(const std::string& change, const std::string& what) {
@@ -62,8 +62,8 @@ class ReadSweepPoints : public testing::Test {
   fs::path file_ = directory_.path() / "results.sqlite";
 };
 
-TEST_F(ReadSweepPoints, ReadsThemWithTheirFrames) {
-  const SweepPoints sweep = read_sweep_points(file_);
+TEST_F(ReadReportPoints, ReadsThemWithTheirFrames) {
+  const ReportPoints sweep = read_report_points(file_);
   EXPECT_EQ(sweep.planned, 5U);
   ASSERT_EQ(sweep.points.size(), 4U);
   EXPECT_EQ(sweep.frames, 2U);
@@ -74,7 +74,7 @@ TEST_F(ReadSweepPoints, ReadsThemWithTheirFrames) {
   EXPECT_FALSE(sweep.points[0].image_machine.has_value()) << "its settings do not name a scheme";
 }
 
-TEST_F(ReadSweepPoints, KnowsWhatBearsOnALimit) {
+TEST_F(ReadReportPoints, KnowsWhatBearsOnALimit) {
   const auto set = [](const std::string& section, const std::string& key, const std::string& value) {
     return "UPDATE settings SET key = '" + key + "', value = '\"" + value + "\"' WHERE key = '" + section +
            ".key1'";
@@ -82,16 +82,16 @@ TEST_F(ReadSweepPoints, KnowsWhatBearsOnALimit) {
   make({set("machine", "machine.scheme", "image"), set("build", "build.sharing", "private"),
         set("interconnect", "interconnect.kind", "crossbar"),
         set("database", "database.placement", "replicated")});
-  const std::optional<ImageMachine> machine = read_sweep_points(file_).points[0].image_machine;
+  const std::optional<ImageMachine> machine = read_report_points(file_).points[0].image_machine;
   ASSERT_TRUE(machine.has_value());
   EXPECT_EQ(machine->sharing, processors::Sharing::private_trees);
   EXPECT_EQ(machine->interconnect, memory::InterconnectKind::crossbar);
   EXPECT_EQ(machine->placement, processors::Placement::replicated);
   make({set("machine", "machine.scheme", "pipeline")});
-  EXPECT_FALSE(read_sweep_points(file_).points[0].image_machine.has_value());
+  EXPECT_FALSE(read_report_points(file_).points[0].image_machine.has_value());
 }
 
-TEST_F(ReadSweepPoints, RefusesFrameTimesThatAreNone) {
+TEST_F(ReadReportPoints, RefusesFrameTimesThatAreNone) {
   for (const char* end :
        {"NULL", "0", "'soon'", "-5", "1e300", "1.5", "9223372036854775807", "1e308", "9e999"}) {
     expect_refused(std::string("UPDATE results SET \"end\" = ") + end + " WHERE machine = 3", "its end is ");
@@ -99,7 +99,7 @@ TEST_F(ReadSweepPoints, RefusesFrameTimesThatAreNone) {
   EXPECT_EQ(error("UPDATE results SET \"end\" = 4611686018427387904 WHERE machine = 3"), "no UserError");
 }
 
-TEST_F(ReadSweepPoints, RefusesFiguresOutOfRange) {
+TEST_F(ReadReportPoints, RefusesFiguresOutOfRange) {
   for (const char* value : {"-1", "'many'", "1e300", "9e999", "9223372036854775807"}) {
     expect_refused(std::string("UPDATE results SET hits = ") + value + " WHERE machine = 3", "hit");
     expect_refused(std::string("UPDATE results SET nodes = ") + value + " WHERE machine = 3", "");
@@ -108,7 +108,7 @@ TEST_F(ReadSweepPoints, RefusesFiguresOutOfRange) {
   EXPECT_EQ(error("UPDATE results SET hits = NULL WHERE machine = 3"), "no UserError");
 }
 
-TEST_F(ReadSweepPoints, RefusesValuesThatAreNoPlace) {
+TEST_F(ReadReportPoints, RefusesValuesThatAreNoPlace) {
   expect_refused("UPDATE points SET \"machine.nodes\" = NULL WHERE ordinal = 2", "machine.nodes is missing");
   expect_refused("UPDATE points SET \"cache.size\" = 9e999 WHERE ordinal = 2", "cache.size is inf");
   expect_refused("UPDATE points SET \"cache.size\" = -1e300 WHERE ordinal = 2", "out of range");
@@ -119,14 +119,14 @@ TEST_F(ReadSweepPoints, RefusesValuesThatAreNoPlace) {
             std::string::npos);
 }
 
-TEST_F(ReadSweepPoints, RefusesNumbersThatAChartCannotTellApart) {
+TEST_F(ReadReportPoints, RefusesNumbersThatAChartCannotTellApart) {
   expect_refused(
       "UPDATE points SET \"machine.nodes\" = 9007199254740992 + (ordinal = 2) WHERE ordinal >= 1 AND ordinal "
       "<= 2",
       "the same number");
 }
 
-TEST_F(ReadSweepPoints, RefusesMachinesThatAreNotThere) {
+TEST_F(ReadReportPoints, RefusesMachinesThatAreNotThere) {
   expect_refused("UPDATE points SET machine = 99 WHERE ordinal = 2", "its machine 99 is not in the store");
   EXPECT_NE(error("UPDATE points SET machine = 99 WHERE ordinal = 4").find("point 4: "), std::string::npos)
       << "one that has not been timed";

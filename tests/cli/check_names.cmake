@@ -1,0 +1,33 @@
+# cmake -P check_names.cmake -- ROOT: are no two types of a folder's headers called the same? All are in the folder's
+# one namespace, and the compiler does not see it when no file includes both headers: the linker then takes one's
+# destructor for the other's.
+cmake_minimum_required(VERSION 3.25)
+
+math(EXPR last "${CMAKE_ARGC} - 1")
+set(root "${CMAKE_ARGV${last}}")
+
+set(faults "")
+foreach(folder IN ITEMS sim scenes accel memory processors studies)
+  file(GLOB_RECURSE headers RELATIVE "${root}" "${root}/${folder}/*.h")
+  list(SORT headers)
+  set(names "")
+  foreach(header IN LISTS headers)
+    file(STRINGS "${root}/${header}" lines REGEX "^(struct|class|enum class) [A-Za-z_].*{")
+    foreach(line IN LISTS lines)
+      if(NOT line MATCHES "^(struct|class|enum class) (alignas[(][^)]*[)] )?([A-Za-z_]+)")
+        continue()  # what followed a semicolon
+      endif()
+      set(name "${CMAKE_MATCH_3}")
+      if(name IN_LIST names)
+        string(APPEND faults "${header}: ${name} is a type of ${first_${folder}_${name}} already\n")
+      else()
+        list(APPEND names "${name}")
+        set(first_${folder}_${name} "${header}")
+      endif()
+    endforeach()
+  endforeach()
+endforeach()
+
+if(faults)
+  message(FATAL_ERROR "${faults}")
+endif()
