@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# Shared by marti-quickstart and test: messages, and the Debian packages. To be sourced by bash from the
-# project's root.
+# Shared by marti-quickstart, test and benchmarks: messages, the Debian packages, and configuring. To be sourced by
+# bash from the project's root.
 
 if [ -t 1 ]; then bold=$'\e[1m' plain=$'\e[0m'; else bold='' plain=''; fi
 
@@ -68,6 +68,16 @@ want_packages() {
   shift
   if ! command -v dpkg-query >/dev/null; then return; fi  # need_packages has said so
   (need_packages "$@") || say "Going on without it: $without"
+}
+
+# configure <log> <directory> <option...>: what cmake says goes to build/configure-<log>.log, and is seen when it
+# fails.
+configure() {
+  local log=build/configure-$1.log directory=$2
+  shift 2
+  mkdir -p build
+  cmake -B "$directory" "$@" >"$log" 2>&1 ||
+    { cat "$log" >&2 && die "cmake could not configure $directory (see above)"; }
 }
 
 # Memory limits parallel compilation before the cores do on small machines: 1.5 GB for each compiler.
