@@ -232,12 +232,7 @@ std::map<std::string, std::string> settings_of(const SweepReader& reader, const 
 // Settings that all machines of the sweep share, and what each says of its queues.
 class Settings {
  public:
-  Settings(const SweepReader& reader, std::filesystem::path store)
-      : reader_(reader), store_(std::move(store)) {}
-
-  void add(ReportPoint& point) {
-    const std::map<std::string, std::string> by_key =
-        settings_of(reader_, store_, point.ordinal, point.machine);
+  void add(ReportPoint& point, const std::map<std::string, std::string>& by_key) {
     const auto value = [&](const char* key) {
       const auto at = by_key.find(key);
       return at == by_key.end() ? std::string() : at->second;
@@ -265,8 +260,6 @@ class Settings {
   }
 
  private:
-  const SweepReader& reader_;
-  std::filesystem::path store_;
   std::map<std::string, std::string> shared_;
   bool begun_ = false;
 };
@@ -366,13 +359,13 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
   sweep.version = reader.version();
   const std::vector<std::string> names = wanted_figures(reader);
   std::vector<std::vector<Cell>> values;
-  Settings settings(reader, store);
+  Settings settings;
   Frames frames(reader);
   reader.for_each_point(names, [&](const StoredPoint& stored, std::span<const Cell> cells) {
     ++sweep.planned;
+    const std::map<std::string, std::string> by_key =
+        settings_of(reader, store, stored.ordinal, stored.machine);
     if (!stored.done) {
-      (void)settings_of(reader, store, stored.ordinal,
-                        stored.machine);  // refuses a machine that is not there
       return;
     }
     check_point(store, stored, reader.axes());
@@ -393,6 +386,7 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
         point.figures[names[i]] = *number;
       }
     }
+    settings.add(point, by_key);
     sweep.points.push_back(std::move(point));
     values.push_back(stored.values);
   });
@@ -407,7 +401,6 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
     if (const std::optional<SweepRow> row = reader.read_result(point.machine)) {
       add_percentiles(*row, point);
     }
-    settings.add(point);
     point.frame = frames.number_of(point.machine);
   }
   sweep.frames = frames.count();
