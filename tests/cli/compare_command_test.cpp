@@ -12,8 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string small_run = quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") +
-                              " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
+const std::string small_run = quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") + small_teapot;
 
 TEST(CompareCommand, ListsWhatDiffersBetweenTwoRuns) {
   const TemporaryDirectory directory;

@@ -15,8 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const std::string small = quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") +
-                          " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
+const std::string small = quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") + small_teapot;
 
 const std::string sweep_text = R"([scene]
 source = "teapot:2"
