@@ -77,9 +77,8 @@ void run_within_command(const RunArguments& arguments, sim::Config& config) {
   }
   if (!arguments.directory.empty()) {
     throw sim::UserError(
-        "--within gives estimates of some figures: result.json and what else --output gives are for exact "
-        "runs; "
-        "leave --within out, or take --json");
+        "--within gives estimates of some figures: result.json and what else --output gives are for "
+        "exact runs; leave --within out, or take --json");
   }
   double tolerance = 0.0;
   try {

@@ -10,6 +10,7 @@
 #include "studies/flow_output.h"
 #include "studies/json_parts.h"
 #include "studies/plan/plan_output.h"
+#include "studies/results/json_table.h"
 #include "studies/run_result.h"
 #include "studies/scaling_output.h"
 #include "studies/version.h"
@@ -250,8 +251,7 @@ std::string json_of(const RunResult& r) {
                        {"voxel_cut", voxel_json(r)},
                        {"plan", plan_json(r.plan)},
                        {"machine", machine}};
-  // Text that is not UTF-8 can only come from names in files; it is replaced, not refused.
-  return result.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(result);
 }
 
 }  // namespace marti::studies

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -196,10 +195,7 @@ std::string run_within(sim::Config& config, double tolerance, bool json) {
         run(config, {}, {}, std::move(result.functional)),
         fmt::format("no cheaper method has been measured to be within {:g} % here", 100.0 * tolerance), json);
   }
-  if (json) {
-    return estimate_json(result, *estimated, tolerance);
-  }
-  return scene_summary_of(result) + estimate_text(*estimated, tolerance, machine.nodes);
+  return json ? estimate_json(result, *estimated, tolerance) : estimate_text(result, *estimated, tolerance);
 }
 
 }  // namespace marti::studies

@@ -44,6 +44,6 @@ struct EstimatedRun {
 /// Runs a configuration and gives what to print: an estimate with error bars, or the summary of an exact run
 /// and the reason for it; as JSON, an object with `estimate`, or the exact run's result. Throws UserError as
 /// run() does.
-[[nodiscard]] std::string run_within(sim::Config& config, double tolerance, bool json = false);
+[[nodiscard]] std::string run_within(sim::Config& config, double tolerance, bool json);
 
 }  // namespace marti::studies

@@ -10,6 +10,7 @@
 
 #include "studies/error/simulator_methods.h"
 #include "studies/json_parts.h"
+#include "studies/results/json_table.h"
 #include "studies/text_units.h"
 #include "studies/version.h"
 
@@ -18,34 +19,6 @@ namespace marti::studies {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string bar(std::string value, double half_width, std::string low, std::string high) {
-  return std::isfinite(half_width) ? fmt::format("{:<14}+- {:<8} {} to {}\n", value,
-                                                 fmt::format("{:.2g} %", 100.0 * half_width), low, high)
-                                   : fmt::format("{:<14}error not known\n", value);
-}
-
-std::string time_bar(double ticks, double half_width) {
-  const auto text = [](double value) { return seconds(std::llround(value)); };
-  return bar(text(ticks), half_width, text(ticks / (1.0 + half_width)),
-             half_width < 1.0 ? text(ticks / (1.0 - half_width)) : "any time");
-}
-
-std::string number_bar(double value, double half_width, int digits) {
-  const auto text = [digits](double number) { return fmt::format("{:.{}f}", number, digits); };
-  return bar(text(value), half_width, text(value / (1.0 + half_width)),
-             half_width < 1.0 ? text(value / (1.0 - half_width)) : "any number");
-}
-
-// A figure in percent, with its half-width in points.
-std::string points_bar(double percent, double half_width, std::string_view what) {
-  const std::string value = fmt::format("{:.2f} %{}", percent, what);
-  return std::isfinite(half_width) ? fmt::format("{:<14}+- {:.2g} points\n", value, half_width)
-                                   : fmt::format("{:<14}error not known\n", value);
-}
-
-// What JSON has no number for is null.
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 // Where a figure's interval begins and ends: infinite where nothing bounds it, not a number where the error
 // is not known.
@@ -59,6 +32,37 @@ std::pair<double, double> interval(Figure figure, double value, double half_widt
   return {value / (1.0 + half_width), half_width < 1.0 ? value / (1.0 - half_width) : HUGE_VAL};
 }
 
+// A figure with its half-width in percent and its interval; `text` writes a value.
+template <class Text>
+std::string bar(const Estimate& estimate, Figure figure, const Text& text, const char* unbounded) {
+  const double value = estimate.value[figure];
+  const double half_width = estimate.half_width[figure];
+  if (!std::isfinite(half_width)) {
+    return fmt::format("{:<14}error not known\n", text(value));
+  }
+  const auto [low, high] = interval(figure, value, half_width);
+  return fmt::format("{:<14}+- {:<8} {} to {}\n", text(value), fmt::format("{:.2g} %", 100.0 * half_width),
+                     text(low), std::isfinite(high) ? text(high) : unbounded);
+}
+
+std::string time_bar(const Estimate& estimate, Figure figure) {
+  return bar(
+      estimate, figure, [](double ticks) { return seconds(std::llround(ticks)); }, "any time");
+}
+
+std::string number_bar(const Estimate& estimate, Figure figure, int digits) {
+  return bar(
+      estimate, figure, [digits](double number) { return fmt::format("{:.{}f}", number, digits); },
+      "any number");
+}
+
+// A figure in percent, with its half-width in points.
+std::string points_bar(double percent, double half_width, std::string_view what) {
+  const std::string value = fmt::format("{:.2f} %{}", percent, what);
+  return std::isfinite(half_width) ? fmt::format("{:<14}+- {:.2g} points\n", value, half_width)
+                                   : fmt::format("{:<14}error not known\n", value);
+}
+
 Json figures_json(const Estimate& estimate, bool with_speed_up) {
   Json figures = Json::object();
   for (std::size_t i = 0; i < figure_count; ++i) {
@@ -69,36 +73,36 @@ Json figures_json(const Estimate& estimate, bool with_speed_up) {
     const double value = estimate.value[figure];
     const double half_width = estimate.half_width[figure];
     const auto [low, high] = interval(figure, value, half_width);
-    figures[std::string(figure_names[i])] = {{"value", finite(value)},
-                                             {"half_width", finite(half_width)},
-                                             {"low", finite(low)},
-                                             {"high", finite(high)}};
+    figures[std::string(figure_names[i])] = {
+        {"value", value}, {"half_width", half_width}, {"low", low}, {"high", high}};
   }
   return figures;
 }
 
 }  // namespace
 
-std::string estimate_text(const EstimatedRun& run, double tolerance, std::uint32_t nodes) {
+std::string estimate_text(const RunResult& result, const EstimatedRun& run, double tolerance) {
   const Method& method = simulator_methods()[run.method];
   const MachineFigures& value = run.machine.value;
   const MachineFigures& half = run.machine.half_width;
   const double share =
       run.machine.references > 0.0 ? 100.0 * value[Figure::misses] / run.machine.references : 0.0;
-  std::string text = fmt::format(
+  const std::uint32_t nodes = result.machine.nodes;
+  std::string text = scene_summary_of(result);
+  text += fmt::format(
       "\nestimate      {}, {}: not exact, asked for within {:g} %\n"
       "rests on      errors that `marti study error` measured against exact replay on machines of up to {} "
       "nodes with the bus and the banks of configs/error.toml, of which 95 % are covered{}\n\n",
       method.name(), method.knob(), 100.0 * tolerance, run.nodes_to,
       method.kind == MethodKind::sampled ? ", and the spread of this run's own sample" : "");
-  text += "frame time    " + time_bar(value[Figure::end], half[Figure::end]);
-  text += fmt::format("speed-up      {}", number_bar(value[Figure::speed_up], half[Figure::speed_up], 2));
+  text += "frame time    " + time_bar(run.machine, Figure::end);
+  text += fmt::format("speed-up      {}", number_bar(run.machine, Figure::speed_up, 2));
   text += fmt::format("  on {} node{}\n", nodes, nodes == 1 ? "" : "s");
-  text += "one node      " + time_bar(run.one_node.value[Figure::end], run.one_node.half_width[Figure::end]);
-  text += "misses        " + number_bar(value[Figure::misses], half[Figure::misses], 0);
+  text += "one node      " + time_bar(run.one_node, Figure::end);
+  text += "misses        " + number_bar(run.machine, Figure::misses, 0);
   text += "hit ratio     " + points_bar(100.0 - share, share * half[Figure::misses], "");
   text += "interconnect  " + points_bar(100.0 * value[Figure::use], 100.0 * half[Figure::use], " busy");
-  text += "mean wait     " + time_bar(value[Figure::wait], half[Figure::wait]);
+  text += "mean wait     " + time_bar(run.machine, Figure::wait);
   text += "\nall else is told by exact replay: run without --within\n";
   return text;
 }
@@ -113,10 +117,10 @@ std::string estimate_json(const RunResult& result, const EstimatedRun& run, doub
                        {"tolerance", tolerance},
                        {"measured_nodes_to", run.nodes_to},
                        {"nodes", result.machine.nodes},
-                       {"references", finite(run.machine.references)},
+                       {"references", run.machine.references},
                        {"machine", figures_json(run.machine, true)},
                        {"one_node", figures_json(run.one_node, false)}}}};
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace marti::studies

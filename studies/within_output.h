@@ -1,7 +1,6 @@
 // What `marti run --within` says when it has estimated: for people, and for programs.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "studies/run_result.h"
@@ -9,10 +8,10 @@
 
 namespace marti::studies {
 
-/// Every figure with its error bar, below what scene_summary_of() says.
-[[nodiscard]] std::string estimate_text(const EstimatedRun& run, double tolerance, std::uint32_t nodes);
+/// What scene_summary_of() says, and every figure with its error bar.
+[[nodiscard]] std::string estimate_text(const RunResult& result, const EstimatedRun& run, double tolerance);
 
-/// The same as docs/error.md describes it. Of the result: the configuration and the machine.
+/// The figures as docs/error.md describes them.
 [[nodiscard]] std::string estimate_json(const RunResult& result, const EstimatedRun& run, double tolerance);
 
 }  // namespace marti::studies

@@ -10,6 +10,7 @@
 
 #include "studies/compare/compare_text.h"
 #include "studies/compare/differences.h"
+#include "studies/results/json_table.h"
 #include "studies/sweep/sweep_reader.h"
 
 namespace marti::studies {
@@ -187,7 +188,7 @@ std::string json_of(const std::string& a, const std::string& b, const Sweep& fro
                        {"points_only_in_a", found.only_a},
                        {"points_only_in_b", found.only_b},
                        {"counters", counters}};
-  return object.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(object);
 }
 
 }  // namespace

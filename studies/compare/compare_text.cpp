@@ -1,4 +1,5 @@
 #include "studies/compare/compare_text.h"
+#include "studies/results/json_table.h"
 
 #include <fmt/format.h>
 
@@ -124,7 +125,7 @@ std::string differences_json(const ComparedResult& a, const ComparedResult& b, c
   if (all) {
     object["equal"] = list_of(found.equal);
   }
-  return object.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(object);
 }
 
 }  // namespace marti::studies

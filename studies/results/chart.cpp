@@ -25,7 +25,7 @@ std::string table_of(const ChartSpecification& chart) {
 std::string fill_chart(const ChartSpecification& chart, const Table& table) {
   Json specification = Json::parse(chart.json);
   specification["data"] = {{"name", table.name()}, {"values", rows_json(table)}};
-  return specification.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(specification);
 }
 
 }  // namespace marti::studies

@@ -25,6 +25,10 @@ Json json_of(const Cell& cell) {
 
 }  // namespace
 
+std::string json_text(const Json& json) {
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 Json rows_json(const Table& table) {
   Json rows = Json::array();
   for (const std::vector<Cell>& row : table.rows()) {
@@ -44,7 +48,7 @@ std::string json_of(const Table& table) {
   }
   const Json whole = {
       {"name", table.name()}, {"title", table.title()}, {"columns", columns}, {"rows", rows_json(table)}};
-  return whole.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(whole);
 }
 
 }  // namespace marti::studies
