@@ -12,7 +12,10 @@ endif()
 
 find_program(MARTI_CCACHE ccache)
 if(MARTI_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${MARTI_CCACHE}")
+  # Paths below the project count relative to the build directory, so that a clone elsewhere finds what this one has
+  # compiled.
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+    "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" CCACHE_NOHASHDIR=1 "${MARTI_CCACHE}")
 endif()
 
 # Warnings and floating-point rules. -ffp-contract=off: a fused multiply-add in an edge function changes
