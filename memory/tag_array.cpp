@@ -9,6 +9,7 @@ struct TagArray::Store {
   virtual bool access(std::uint32_t cache, std::uint32_t line) = 0;
   virtual bool touch(std::uint32_t cache, std::uint32_t line) = 0;
   virtual bool remove(std::uint32_t cache, std::uint32_t line) = 0;
+  virtual bool holds(std::uint32_t cache, std::uint32_t line) = 0;
 };
 
 namespace {
@@ -19,6 +20,7 @@ struct StoreOf final : TagArray::Store {
   bool access(std::uint32_t cache, std::uint32_t line) override { return tags.view(cache).access(line); }
   bool touch(std::uint32_t cache, std::uint32_t line) override { return tags.view(cache).touch(line); }
   bool remove(std::uint32_t cache, std::uint32_t line) override { return tags.view(cache).remove(line); }
+  bool holds(std::uint32_t cache, std::uint32_t line) override { return tags.view(cache).holds(line); }
   Tags tags;
 };
 
@@ -38,5 +40,6 @@ TagArray& TagArray::operator=(TagArray&&) noexcept = default;
 bool TagArray::access(std::uint32_t cache, std::uint32_t line) { return store_->access(cache, line); }
 bool TagArray::touch(std::uint32_t cache, std::uint32_t line) { return store_->touch(cache, line); }
 bool TagArray::remove(std::uint32_t cache, std::uint32_t line) { return store_->remove(cache, line); }
+bool TagArray::holds(std::uint32_t cache, std::uint32_t line) { return store_->holds(cache, line); }
 
 }  // namespace marti::memory

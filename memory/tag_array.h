@@ -27,6 +27,8 @@ class TagArray {
   bool touch(std::uint32_t cache, std::uint32_t line);
   /// Takes `line` out; true when it was there.
   bool remove(std::uint32_t cache, std::uint32_t line);
+  /// Whether `line` is there; changes nothing.
+  [[nodiscard]] bool holds(std::uint32_t cache, std::uint32_t line);
 
   /// The look-up behind the interface; defined in tag_array.cpp.
   struct Store;

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
-#include "memory/tag_array.h"
 #include "processors/cache_counting.h"
 #include "processors/node_caches.h"
 #include "processors/replay_input.h"
@@ -28,10 +26,9 @@ class CountedCaches {
    public:
     View(CountedCaches& caches, std::uint32_t node) : state_(*caches.state_), node_(node) {}
     bool access(memory::RecordKind kind, std::uint32_t line, Origin origin = {}) const {
-      const std::size_t cache =
-          state_.tags.size() > 1 ? split_cache_of[static_cast<std::size_t>(kind)] : std::size_t{0};
-      const bool hit = Present && state_.tags[cache].access(node_, line);
-      state_.counting.refer(node_, cache, kind, line, origin, hit);
+      const AnyCaches::View caches = state_.caches.view(node_);
+      const bool hit = Present && caches.access(kind, line);
+      state_.counting.refer(node_, caches.cache_of(kind), kind, line, origin, hit);
       return hit;
     }
 
@@ -46,19 +43,9 @@ class CountedCaches {
  private:
   struct State {
     explicit State(const ReplayInput& input)
-        : counting(input.config, input.layout.end() / input.config.reference_bytes() + 1) {
-      const NodeCacheConfig& config = input.config.cache;
-      if (config.organisation == CacheOrganisation::unified) {
-        tags.emplace_back(config.cache, input.config.all_nodes());
-      } else if (config.organisation == CacheOrganisation::split) {
-        for (const std::uint64_t size : config.split_sizes) {
-          memory::CacheConfig part = config.cache;
-          part.size = size;
-          tags.emplace_back(part, input.config.all_nodes());
-        }
-      }
-    }
-    std::vector<memory::TagArray> tags;  // of the unified cache, or of the split ones
+        : caches(input.config),
+          counting(input.config, input.layout.end() / input.config.reference_bytes() + 1) {}
+    AnyCaches caches;
     CacheCounting counting;
   };
 

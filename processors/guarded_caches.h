@@ -75,9 +75,8 @@ class GuardedCaches {
     [[nodiscard]] ContextCounts& counts() const { return all_.counts_[node_]; }
 
    private:
-    static LinesUnderWay::Key key(memory::RecordKind kind, std::uint32_t line) {
-      const LinesUnderWay::Key cache = by_kind ? split_cache_of[static_cast<std::size_t>(kind)] : 0;
-      return cache << 32U | line;
+    [[nodiscard]] LinesUnderWay::Key key(memory::RecordKind kind, std::uint32_t line) const {
+      return LinesUnderWay::Key{tags_.cache_of(kind)} << 32U | line;
     }
 
     GuardedCaches& all_;

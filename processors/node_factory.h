@@ -2,10 +2,10 @@
 // instantiates it in a source file of its own, because that takes long to compile.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <memory>
 
+#include "memory/quad_tags.h"
+#include "memory/set_tags.h"
 #include "processors/node_array.h"
 #include "processors/node_caches.h"
 
@@ -24,31 +24,32 @@ namespace marti::processors {
 [[nodiscard]] std::unique_ptr<NodeArray> make_counted_nodes(const ReplayInput& input, sim::Engine& engine,
                                                             Host& host);
 
-/// make(caches) with the caches of `config`, one of node_caches.h.
+/// make(caches) with the caches of `config`, one of node_caches.h. Each kind of cache that has look-up code
+/// of its own is compiled once for each kind of node, so only the commonest have: unified LRU caches with few
+/// ways.
 template <class Make>
 auto with_caches(const MachineConfig& config, const Make& make) {
-  const memory::CacheConfig& cache = config.cache.cache;
   if (config.cache.organisation == CacheOrganisation::none) {
     return make(NoCaches{});
   }
-  if (config.cache.organisation == CacheOrganisation::unified) {
+  const memory::CacheConfig& cache = config.cache.cache;
+  if (config.cache.organisation == CacheOrganisation::unified &&
+      cache.replacement == memory::Replacement::lru) {
     const memory::CacheShape shape = memory::shape_of(cache);
-    return memory::with_tag_store(cache.replacement, shape,
-                                  [&]<class Tags>() { return make(UnifiedCaches<Tags>(config, shape)); });
+    switch (shape.ways) {
+      case 1:
+        return make(UnifiedCaches<memory::SetTags<memory::Replacement::lru, 1>>(config, shape));
+      case 2:
+        return make(UnifiedCaches<memory::SetTags<memory::Replacement::lru, 2>>(config, shape));
+      case 4:
+        return make(UnifiedCaches<memory::QuadTags>(config, shape));
+      case 8:
+        return make(UnifiedCaches<memory::SetTags<memory::Replacement::lru, 8>>(config, shape));
+      default:
+        break;
+    }
   }
-  std::array<memory::CacheShape, split_caches> shapes;
-  for (std::size_t i = 0; i < split_caches; ++i) {
-    memory::CacheConfig part = cache;
-    part.size = config.cache.split_sizes[i];
-    shapes[i] = memory::shape_of(part);
-  }
-  // The tag store must suit all four: where their ways differ, only the hashed one does.
-  memory::CacheShape common = shapes[0];
-  if (std::any_of(shapes.begin(), shapes.end(), [&](const auto& s) { return s.ways != common.ways; })) {
-    common.ways = memory::most_searched_ways + 1;
-  }
-  return memory::with_tag_store(cache.replacement, common,
-                                [&]<class Tags>() { return make(SplitCaches<Tags>(config, shapes)); });
+  return make(AnyCaches(config));
 }
 
 template <template <class> class Nodes>
