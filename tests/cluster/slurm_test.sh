@@ -1,0 +1,84 @@
+#!/usr/bin/env bash
+# slurm_test.sh PROGRAM SOURCE: runs the job script of docs/sweep-cluster.md under a Slurm of one node that is started
+# for it, as two tasks, and compares what it says with a sweep of one process. Ends everything that it has started.
+set -euo pipefail
+# Starting daemons is for the long run (./test --full), whatever is installed.
+if [ -z "${MARTI_LONG_TESTS-}" ]; then
+  echo "MARTI_LONG_TESTS is not set"
+  exit 77
+fi
+program=$(realpath "$1") source=$(realpath "$2")
+work=$(mktemp -d)
+services=()
+end_all() {
+  for process in "${services[@]}"; do kill "$process" 2>/dev/null || true; done
+  wait
+  rm -rf "$work"
+}
+trap end_all EXIT
+fail() {
+  echo "$*" >&2
+  tail -n 20 "$work"/*.log "$work"/*.txt >&2 2>/dev/null || true
+  exit 1
+}
+
+# Daemons of our own in the foreground, with sockets and state below $work, so that none of the system's is touched.
+chmod 755 "$work"
+mkdir -m 700 "$work/munge" && mkdir "$work/state" "$work/spool"
+dd if=/dev/urandom of="$work/munge/key" bs=1024 count=1 status=none
+chmod 600 "$work/munge/key"
+munged --foreground --force --socket="$work/munge.socket" --key-file="$work/munge/key" --num-threads=2 \
+  --log-file="$work/munge/log" --pid-file="$work/munge/pid" --seed-file="$work/munge/seed" >"$work/munged.log" 2>&1 &
+services+=($!)
+host=$(hostname -s)
+user=$(id -un)
+cat >"$work/slurm.conf" <<END
+ClusterName=one
+SlurmctldHost=$host(127.0.0.1)
+SlurmctldPort=16817
+SlurmdPort=16818
+SlurmUser=$user
+SlurmdUser=$user
+AuthType=auth/munge
+AuthInfo=socket=$work/munge.socket
+CredType=cred/munge
+StateSaveLocation=$work/state
+SlurmdSpoolDir=$work/spool
+SlurmctldPidFile=$work/slurmctld.pid
+SlurmdPidFile=$work/slurmd.pid
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SwitchType=switch/none
+SelectType=select/cons_tres
+ReturnToService=2
+MailProg=/bin/true
+NodeName=$host NodeAddr=127.0.0.1 CPUs=2 State=UNKNOWN
+PartitionName=all Nodes=$host Default=YES State=UP
+END
+export SLURM_CONF=$work/slurm.conf
+for _ in $(seq 50); do [ -S "$work/munge.socket" ] && break; sleep 0.1; done
+slurmctld -D >"$work/slurmctld.log" 2>&1 &
+services+=($!)
+slurmd -D -N "$host" >"$work/slurmd.log" 2>&1 &
+services+=($!)
+for _ in $(seq 100); do
+  if [ "$(sinfo -h -o %t 2>/dev/null)" = idle ]; then break; fi
+  sleep 0.2
+done
+[ "$(sinfo -h -o %t)" = idle ] || fail "Slurm's node does not become idle"
+
+# The document's script; options of sbatch on the command line stand before those of the script.
+sed -n '/^#!\/bin\/bash$/,/^```$/p' "$source/docs/sweep-cluster.md" | sed '/^```$/d' >"$work/job.sh"
+[ -s "$work/job.sh" ] || fail "docs/sweep-cluster.md has no job script"
+mkdir "$work/bin" && ln -s "$program" "$work/bin/marti"
+cp -r "$source/configs" "$work/configs"
+cp "$source/configs/sweep-small.toml" "$work/configs/sweep.toml"
+cd "$work"
+export PATH=$work/bin:$PATH OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+timeout 300 sbatch --wait --nodes=1 --ntasks=2 --ntasks-per-node=2 --cpus-per-task=1 --mem=0 --time=5 \
+  -o "$work/job.txt" "$work/job.sh" || fail "the job failed"
+grep -q "2 ranks\|2 processes" "$work/job.txt" || fail "the job does not say that it ran on two ranks"
+
+marti sweep configs/sweep.toml -o alone >alone.txt
+cmp results/sweep/points.csv alone/points.csv || fail "the points differ from those of one process"
+echo "passed: a sweep of two tasks under Slurm gives the points of one process"
