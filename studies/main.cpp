@@ -216,11 +216,6 @@ void add_sweep_command(CLI::App& app, studies::SweepArguments& arguments) {
       ->type_name("N")
       ->check(CLI::Range(0, 4096));
   sweep
-      ->add_option("--keep-logs", arguments.keep_logs,
-                   "directory where work logs are kept, for the next sweep of the same frames")
-      ->type_name("DIR")
-      ->check(no_empty_directory);
-  sweep
       ->add_option("--best", arguments.best,
                    "the best machines by this metric and their cost: end, speed_up, efficiency, ...")
       ->type_name("METRIC");
