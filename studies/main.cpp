@@ -106,16 +106,16 @@ void run_command(const RunArguments& arguments) {
   if (!verdict.holds) {
     throw sim::InternalError("the plan is wrong\n" + verdict.text);
   }
-  std::vector<std::filesystem::path> files;
+  studies::WrittenRun written;
   if (!arguments.directory.empty()) {
-    files = studies::write_output(result, arguments.directory);
+    written = studies::write_output(result, arguments.directory);
   }
   if (arguments.json) {
-    print(studies::json_of(result));
+    print(written.json.empty() ? studies::json_of(result) : written.json);
     return;
   }
   std::string text = studies::summary_of(result) + verdict.text;
-  for (const std::filesystem::path& file : files) {
+  for (const std::filesystem::path& file : written.files) {
     text += "wrote         " + file.string() + "\n";
   }
   print(text);
