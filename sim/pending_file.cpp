@@ -188,7 +188,7 @@ Descriptor PendingFile::open() const {
   if (status.st_dev != device_ || status.st_ino != inode_) {
     fail(target_, ESTALE);
   }
-  if (::ftruncate(file.get(), 0) != 0) {
+  if (status.st_size != 0 && ::ftruncate(file.get(), 0) != 0) {
     fail(target_, errno);
   }
   return file;
