@@ -79,8 +79,8 @@ bool is_of_run(const fs::path& directory, const std::string& name,
         return true;
       }
       reason = "it is not the file that this run has written";
-    } catch (const sim::UserError& error) {
-      reason = error.what();
+    } catch (const sim::UserError&) {
+      reason = "it cannot be read, or is no regular file";
     }
   }
   report.answer.push_back(name + " is left out of this page: " + reason + ".");
