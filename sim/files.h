@@ -7,12 +7,9 @@
 #include <string>
 #include <string_view>
 
-namespace marti::sim {
+#include "sim/pending_file.h"
 
-enum class Durability {
-  cached,  // safe against a crash of the program
-  synced,  // also against a crash of the machine: the data are on the disk before the rename
-};
+namespace marti::sim {
 
 /// The bytes of a regular file. A missing or unreadable file, a directory, or more than `max_bytes` bytes
 /// is a UserError.
@@ -25,29 +22,5 @@ void write_file(const std::filesystem::path& file, std::string_view content,
 
 /// Makes a directory with its parents, if it is not there. UserError when that cannot be done.
 void make_directory(const std::filesystem::path& directory);
-
-/// A file that somebody else writes (an image library, a database) under a temporary name, and that gets
-/// its own name by commit(). Without commit() the temporary file is removed.
-class PendingFile {
- public:
-  explicit PendingFile(std::filesystem::path target);
-  ~PendingFile();
-  PendingFile(const PendingFile&) = delete;
-  PendingFile& operator=(const PendingFile&) = delete;
-
-  /// In the target's directory and with its extension; unique among running processes.
-  [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
-  /// Renames the temporary file. UserError when that cannot be done.
-  void commit();
-
- private:
-  std::filesystem::path target_;
-  std::filesystem::path temporary_;
-  bool committed_ = false;
-};
-
-/// Removes the temporary files of every PendingFile, and lets no other be made or committed: for a program
-/// that is about to end itself because of a signal. Not for signal handlers.
-void abandon_pending_files();
 
 }  // namespace marti::sim

@@ -1,8 +1,16 @@
 #include "sim/sha256.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <bit>
+#include <cerrno>
 #include <cstddef>
-#include <string>
+#include <system_error>
+
+#include "sim/descriptor.h"
+#include "sim/error.h"
 
 namespace marti::sim {
 
@@ -61,31 +69,88 @@ void add_block(State& state, std::string_view block) {
   }
 }
 
+/// A message that comes in pieces.
+class Hash {
+ public:
+  void add(std::string_view piece) {
+    bytes_ += piece.size();
+    rest_ += piece;
+    std::string_view whole = rest_;
+    for (; whole.size() >= block_bytes; whole.remove_prefix(block_bytes)) {
+      add_block(state_, whole.substr(0, block_bytes));
+    }
+    rest_.erase(0, rest_.size() - whole.size());
+  }
+
+  [[nodiscard]] std::array<std::uint8_t, 32> end() {
+    // Section 5.1.1: a one, zeros, and the length in bits.
+    const std::uint64_t bits = bytes_ * 8;
+    std::string end(1, '\x80');
+    const std::size_t length = rest_.size() + 1;
+    end.resize((length + 8 <= block_bytes ? block_bytes : 2 * block_bytes) - 8 - rest_.size(), '\0');
+    for (int shift = 56; shift >= 0; shift -= 8) {
+      end += static_cast<char>(bits >> static_cast<unsigned>(shift) & 0xffU);
+    }
+    add(end);
+    std::array<std::uint8_t, 32> digest{};
+    for (std::size_t i = 0; i < digest.size(); ++i) {
+      digest[i] = static_cast<std::uint8_t>(state_[i / 4] >> (24U - 8U * (i % 4)));
+    }
+    return digest;
+  }
+
+ private:
+  State state_ = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
+                  0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
+  std::string rest_;  // less than a block
+  std::uint64_t bytes_ = 0;
+};
+
+std::string text_of(const std::array<std::uint8_t, 32>& digest) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string text;
+  for (const std::uint8_t byte : digest) {
+    text += digits[byte >> 4U];
+    text += digits[byte & 15U];
+  }
+  return text;
+}
+
 }  // namespace
 
 std::array<std::uint8_t, 32> sha256(std::string_view message) {
-  State state = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
-                 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-  std::string_view rest = message;
-  for (; rest.size() >= block_bytes; rest.remove_prefix(block_bytes)) {
-    add_block(state, rest.substr(0, block_bytes));
+  Hash hash;
+  hash.add(message);
+  return hash.end();
+}
+
+std::string sha256_text(std::string_view message) { return text_of(sha256(message)); }
+
+std::string sha256_of_file(const std::filesystem::path& file) {
+  const auto fail = [&](int error) {
+    throw UserError(file.string() + ": cannot be read: " + std::generic_category().message(error));
+  };
+  // O_NONBLOCK: it may be a pipe.
+  const Descriptor input(::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  struct stat status {};
+  if (input.get() < 0 || ::fstat(input.get(), &status) != 0) {
+    fail(errno);
   }
-  // Section 5.1.1: a one, zeros, and the length in bits.
-  std::string end(rest);
-  end += '\x80';
-  end.resize(end.size() + 8 <= block_bytes ? block_bytes - 8 : 2 * block_bytes - 8, '\0');
-  const std::uint64_t bits = static_cast<std::uint64_t>(message.size()) * 8;
-  for (int shift = 56; shift >= 0; shift -= 8) {
-    end += static_cast<char>(bits >> static_cast<unsigned>(shift) & 0xffU);
+  if (!S_ISREG(status.st_mode)) {
+    throw UserError(file.string() + ": cannot be read: not a regular file");
   }
-  for (std::string_view last = end; !last.empty(); last.remove_prefix(block_bytes)) {
-    add_block(state, last.substr(0, block_bytes));
+  Hash hash;
+  std::string buffer(std::size_t{1} << 16U, '\0');
+  for (;;) {
+    const ssize_t count = ::read(input.get(), buffer.data(), buffer.size());
+    if (count == 0) {
+      return text_of(hash.end());
+    }
+    if (count < 0 && errno != EINTR) {
+      fail(errno);
+    }
+    hash.add({buffer.data(), count > 0 ? static_cast<std::size_t>(count) : 0});
   }
-  std::array<std::uint8_t, 32> digest{};
-  for (std::size_t i = 0; i < digest.size(); ++i) {
-    digest[i] = static_cast<std::uint8_t>(state[i / 4] >> (24U - 8U * (i % 4)));
-  }
-  return digest;
 }
 
 }  // namespace marti::sim

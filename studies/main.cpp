@@ -106,16 +106,16 @@ void run_command(const RunArguments& arguments) {
   if (!verdict.holds) {
     throw sim::InternalError("the plan is wrong\n" + verdict.text);
   }
-  std::vector<std::filesystem::path> files;
+  studies::WrittenRun written;
   if (!arguments.directory.empty()) {
-    files = studies::write_output(result, arguments.directory);
+    written = studies::write_output(result, arguments.directory);
   }
   if (arguments.json) {
-    print(studies::json_of(result));
+    print(written.json.empty() ? studies::json_of(result) : written.json);
     return;
   }
   std::string text = studies::summary_of(result) + verdict.text;
-  for (const std::filesystem::path& file : files) {
+  for (const std::filesystem::path& file : written.files) {
     text += "wrote         " + file.string() + "\n";
   }
   print(text);
@@ -215,11 +215,6 @@ void add_sweep_command(CLI::App& app, studies::SweepArguments& arguments) {
   sweep->add_option("--threads", arguments.threads, "machines timed at a time; 0: as many as there are cores")
       ->type_name("N")
       ->check(CLI::Range(0, 4096));
-  sweep
-      ->add_option("--keep-logs", arguments.keep_logs,
-                   "directory where work logs are kept, for the next sweep of the same frames")
-      ->type_name("DIR")
-      ->check(no_empty_directory);
   sweep
       ->add_option("--best", arguments.best,
                    "the best machines by this metric and their cost: end, speed_up, efficiency, ...")

@@ -1,75 +1,78 @@
 #include "studies/output.h"
 
-#include <optional>
+#include <map>
 
 #include "sim/files.h"
+#include "sim/sha256.h"
 #include "studies/count_output.h"
 #include "studies/image_file.h"
 #include "studies/record/heat_files.h"
 #include "studies/results/csv.h"
+#include "studies/results/pending_files.h"
+#include "studies/results/run_files.h"
 #include "studies/signals_held.h"
 #include "studies/working_set_output.h"
 
 namespace marti::studies {
 
-void prepare_output(const std::filesystem::path& directory) {
-  sim::make_directory(directory);
-  sim::PendingFile probe(directory / "probe");
-  sim::write_file(probe.temporary(), "");
+namespace {
+
+constexpr const char* timeline_name = "timeline.json";
+
+void add_image(const processors::Image& image, const std::string& name, PendingFiles& files) {
+  write_exr(image, files.add(name + ".exr"));
+  write_png(image, files.add(name + ".png"));
 }
 
-std::vector<std::filesystem::path> write_output(const RunResult& result,
-                                                const std::filesystem::path& directory) {
-  const SignalsHeld held;
-  sim::PendingFile exr(directory / "image.exr");
-  sim::PendingFile png(directory / "image.png");
-  sim::PendingFile json(directory / "result.json");
-  write_exr(result.functional.frame.image, exr.temporary());
-  write_png(result.functional.frame.image, png.temporary());
-  sim::write_file(json.temporary(), json_of(result));
-  std::vector<std::filesystem::path> files = {directory / "image.exr", directory / "image.png",
-                                              directory / "result.json"};
-  std::optional<sim::PendingFile> exact_exr;
-  std::optional<sim::PendingFile> exact_png;
+void add_files(const RunResult& result, PendingFiles& files) {
+  add_image(result.functional.frame.image, "image", files);
   if (result.functional.voxel_cut && result.functional.voxel_cut->exact) {
-    const processors::Image& exact = result.functional.voxel_cut->exact->image;
-    files.insert(files.end(), {directory / "exact.exr", directory / "exact.png"});
-    write_exr(exact, exact_exr.emplace(directory / "exact.exr").temporary());
-    write_png(exact, exact_png.emplace(directory / "exact.png").temporary());
-    exact_exr->commit();
-    exact_png->commit();
+    add_image(result.functional.voxel_cut->exact->image, "exact", files);
   }
-  std::optional<HeatFiles> heat;
   if (result.heat_map) {
-    heat.emplace(*result.heat_map, directory);
-    heat->commit();
-    files.insert(files.end(), heat->files().begin(), heat->files().end());
+    add_heat_files(*result.heat_map, files);
   }
-  std::optional<sim::PendingFile> attribution;
   if (result.timed.counts.attribution) {
-    sim::write_file(attribution.emplace(directory / "attribution.csv").temporary(),
-                    csv_of(attribution_table(*result.timed.counts.attribution)));
-    attribution->commit();
-    files.push_back(directory / "attribution.csv");
+    files.write("attribution.csv", csv_of(attribution_table(*result.timed.counts.attribution)));
   }
-  std::optional<sim::PendingFile> working_set;
-  std::optional<sim::PendingFile> curve;
   if (result.working_set) {
     const Table table = working_set_table(*result.working_set);
-    sim::write_file(working_set.emplace(directory / "working_set.csv").temporary(), csv_of(table));
-    sim::write_file(curve.emplace(directory / "working_set.vl.json").temporary(), working_set_chart(table));
-    working_set->commit();
-    curve->commit();
-    files.insert(files.end(), {directory / "working_set.csv", directory / "working_set.vl.json"});
+    files.write("working_set.csv", csv_of(table));
+    files.write("working_set.vl.json", working_set_chart(table));
   }
+}
+
+}  // namespace
+
+void prepare_output(const std::filesystem::path& directory) {
+  sim::make_directory(directory);
+  const sim::PendingFile probe(directory / "probe");
+}
+
+WrittenRun write_output(const RunResult& result, const std::filesystem::path& directory) {
+  const SignalsHeld held;
+  const std::map<std::string, std::string> earlier = files_of_run_in(directory);
+  PendingFiles files(directory);
+  add_files(result, files);
+  std::map<std::string, std::string> hashes = files.hashes();
+  if (result.timeline) {
+    hashes[timeline_name] = sim::sha256_of_file(result.timeline->temporary());
+  }
+  WrittenRun written{{}, json_of(result, hashes)};
+  files.write("result.json", written.json);
   if (result.timeline) {
     result.timeline->commit();
-    files.push_back(directory / "timeline.json");
   }
-  exr.commit();
-  png.commit();
-  json.commit();
-  return files;
+  written.files = files.commit();
+  if (result.timeline) {
+    written.files.push_back(directory / timeline_name);
+  }
+  for (const auto& [name, hash] : earlier) {
+    if (!hashes.contains(name)) {
+      remove_run_file(directory / name, hash);
+    }
+  }
+  return written;
 }
 
 }  // namespace marti::studies

@@ -192,9 +192,17 @@ Json nodes_json(const processors::MachineResult& result) {
   return nodes;
 }
 
+Json files_json(const std::map<std::string, std::string>& files) {
+  Json object = Json::object();
+  for (const auto& [name, hash] : files) {
+    object[name] = {{"sha256", hash}};
+  }
+  return object;
+}
+
 }  // namespace
 
-std::string json_of(const RunResult& r) {
+std::string json_of(const RunResult& r, const std::map<std::string, std::string>& files) {
   const processors::MachineResult& timed = r.timed;
   const Utilisation used = utilisation_of(r.machine, timed);
   Json machine = {
@@ -250,7 +258,8 @@ std::string json_of(const RunResult& r) {
                        {"work_log", log_json(r.functional.totals)},
                        {"voxel_cut", voxel_json(r)},
                        {"plan", plan_json(r.plan)},
-                       {"machine", machine}};
+                       {"machine", machine},
+                       {"files", files_json(files)}};
   return json_text(result);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -67,6 +68,8 @@ void refuse_several_frames(const sim::Config& config, const FrameRange& frames);
 [[nodiscard]] std::string summary_of(const RunResult& result);
 
 /// The result for programs, as docs/result-schema.md describes it. The same run gives the same bytes.
-[[nodiscard]] std::string json_of(const RunResult& result);
+/// `files`: hashes (SHA-256, 64 hexadecimal digits) of the files that it belongs with, by name.
+[[nodiscard]] std::string json_of(const RunResult& result,
+                                  const std::map<std::string, std::string>& files = {});
 
 }  // namespace marti::studies

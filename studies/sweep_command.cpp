@@ -39,7 +39,6 @@ std::string said(const SweepReport& report) {
 SweepOptions options_of(const SweepArguments& arguments) {
   SweepOptions options;
   options.directory = arguments.directory;
-  options.keep_logs = arguments.keep_logs;
   options.threads = arguments.threads;
   options.terminal = isatty(STDERR_FILENO) == 1;
   options.quiet = arguments.quiet;

@@ -11,7 +11,6 @@ struct SweepArguments {
   std::string config;
   std::vector<std::string> assignments;
   std::string directory;
-  std::string keep_logs;
   unsigned threads = 0;
   bool plan_only = false;
   bool quiet = false;

@@ -208,7 +208,7 @@ ComparedResult read_run(const std::filesystem::path& path, const std::string& na
   Flattener flattener(run.file(), result.figures);
   (void)run.at("machine");
   for (const auto& [key, value] : run.json().items()) {
-    if (key != "marti" && key != "config") {
+    if (key != "marti" && key != "config" && key != "files") {
       flattener.add(value, key, false);
     }
   }

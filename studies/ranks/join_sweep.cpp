@@ -1,8 +1,6 @@
 #include "studies/ranks/join_sweep.h"
 
-#include <cstdio>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "studies/ranks/rank_sweep.h"
@@ -12,17 +10,12 @@ namespace marti::studies {
 
 namespace {
 
-std::filesystem::path spill_directory(const std::filesystem::path& results) {
-  std::error_code error;
-  return std::filesystem::is_directory(results, error) ? results : std::filesystem::temp_directory_path();
-}
-
 /// What the workers need, and what it refers to.
 struct Workshop {
-  Workshop(JoinedSweep sweep, const SweepOptions& options)
+  explicit Workshop(JoinedSweep sweep)
       : plan(std::move(sweep.plan)),
         memory(shares_of(sweep.memory_limit)),
-        logs({memory.logs, spill_directory(options.directory), options.keep_logs}),
+        logs(memory.logs),
         strips(memory.strips),
         machines(memory.machines) {}
 
@@ -42,16 +35,13 @@ void join_sweep(Ranks& ranks, const SweepOptions& options,
   RankWork work;
   work.workers = options.threads != 0 ? options.threads : threads_of_rank(ranks);
   work.prepare = [&](const std::string& configuration) -> const SweepSite& {
-    return shop.emplace(read(configuration), options).site;
+    return shop.emplace(read(configuration)).site;
   };
   work.over = [&](std::size_t frame) {
     shop->strips.drop(frame);
-    shop->logs.drop(shop->plan.frames[frame].key);
+    shop->logs.drop(frame);
   };
   work_for_rank_0(ranks, work);
-  for (const std::string& note : shop->logs.notes()) {
-    std::fprintf(stderr, "marti: note: rank %zu: %s\n", ranks.rank(), note.c_str());
-  }
 }
 
 }  // namespace marti::studies

@@ -2,16 +2,14 @@
 #include <condition_variable>
 #include <deque>
 #include <exception>
-#include <map>
 #include <mutex>
 #include <new>
-#include <set>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "sim/error.h"
-#include "studies/ranks/rank_log.h"
+#include "studies/ranks/plan_digest.h"
 #include "studies/ranks/rank_sweep.h"
 #include "studies/ranks/sweep_message.h"
 
@@ -26,8 +24,6 @@ constexpr auto patience = std::chrono::seconds(30);  // for rank 0 to end the jo
 /// Between the workers and the main thread: tasks one way, results the other.
 class Tray final : public TaskSource {
  public:
-  explicit Tray(const SweepSite& site) : site_(site) {}
-
   // For the workers.
   SweepTask next() override {
     std::unique_lock lock(mutex_);
@@ -40,11 +36,7 @@ class Tray final : public TaskSource {
     return task;
   }
   void traced(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) override {
-    put({.kind = Kind::traced,
-         .number = frame,
-         .nanoseconds = cpu_nanoseconds,
-         .row = encode(row),
-         .bytes = log_bytes(site_, frame)});
+    put({.kind = Kind::traced, .number = frame, .nanoseconds = cpu_nanoseconds, .row = encode(row)});
   }
   void timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds) override {
     put({.kind = Kind::timed, .number = machine, .nanoseconds = cpu_nanoseconds, .row = encode(row)});
@@ -98,7 +90,6 @@ class Tray final : public TaskSource {
     to_send_.notify_one();
   }
 
-  const SweepSite& site_;
   std::mutex mutex_;
   std::condition_variable news_;
   std::condition_variable to_send_;
@@ -111,7 +102,7 @@ class Tray final : public TaskSource {
 class RankClient {
  public:
   RankClient(Ranks& ranks, const RankWork& work, const SweepSite& site)
-      : ranks_(ranks), work_(work), site_(site), tray_(site) {}
+      : ranks_(ranks), work_(work), site_(site) {}
 
   void run() {
     tell({.kind = Kind::ready, .number = work_.workers, .bytes = digest_of(site_.plan)});
@@ -133,7 +124,7 @@ class RankClient {
           std::rethrow_exception(error);
         }
         // A task for each worker is there while they are at work on others.
-        std::size_t known = state.tasks + asked_ + held_;
+        std::size_t known = state.tasks + asked_;
         for (; !ended_ && known < work_.workers; ++known, ++asked_) {
           tell({.kind = Kind::ask});
         }
@@ -158,9 +149,6 @@ class RankClient {
   void bring(const std::vector<SweepMessage>& results) {
     for (const SweepMessage& result : results) {
       tell(result);
-      if (result.kind == Kind::traced) {
-        logs_.insert(result.number);
-      }
     }
   }
 
@@ -171,12 +159,7 @@ class RankClient {
         --asked_;
         take(std::move(message.task));
         return;
-      case Kind::log:
-        put_log(site_, message.number, message.bytes);
-        have_log(message.number);
-        return;
       case Kind::drop:
-        logs_.erase(message.number);
         work_.over(message.number);
         return;
       case Kind::goodbye:
@@ -191,41 +174,16 @@ class RankClient {
     if (task.kind == SweepTask::Kind::end) {
       ended_ = true;
       tray_.end();
-    } else if (task.kind == SweepTask::Kind::trace || logs_.contains(task.frame)) {
-      tray_.add(std::move(task));
     } else {
-      const std::size_t frame = task.frame;
-      std::vector<SweepTask>& tasks = waiting_[frame];
-      tasks.push_back(std::move(task));
-      ++held_;
-      if (tasks.size() == 1) {
-        std::string note;  // that it is fetched from rank 0 instead concerns nobody
-        if (site_.logs.find_kept(site_.plan.frames[frame].key, note) != nullptr) {
-          have_log(frame);
-        } else {
-          tell({.kind = Kind::want_log, .number = frame});
-        }
-      }
-    }
-  }
-
-  void have_log(std::size_t frame) {
-    logs_.insert(frame);
-    for (SweepTask& task : waiting_[frame]) {
       tray_.add(std::move(task));
-      --held_;
     }
-    waiting_.erase(frame);
   }
 
   Ranks& ranks_;
   const RankWork& work_;
   const SweepSite& site_;
   Tray tray_;
-  std::set<std::size_t> logs_;                             // frames whose logs are on the shelf
-  std::map<std::size_t, std::vector<SweepTask>> waiting_;  // for a log
-  std::size_t held_ = 0;                                   // how many
-  std::size_t asked_ = 0;                                  // tasks under way
+  std::size_t asked_ = 0;  // tasks under way
   bool ended_ = false;
   bool goodbye_ = false;
 };

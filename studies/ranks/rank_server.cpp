@@ -2,7 +2,6 @@
 #include <atomic>
 #include <deque>
 #include <exception>
-#include <map>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -10,7 +9,7 @@
 #include <vector>
 
 #include "sim/error.h"
-#include "studies/ranks/rank_log.h"
+#include "studies/ranks/plan_digest.h"
 #include "studies/ranks/rank_sweep.h"
 #include "studies/ranks/sweep_message.h"
 
@@ -44,7 +43,7 @@ class RankServer::Desk {
     }
     std::exception_ptr error;
     std::atomic<bool> done = false;
-    HeadSource source(*this, site, coordinator);
+    LocalSource source(coordinator, 0);
     const std::jthread here([&] {
       try {
         work_together(site, source, workers);
@@ -78,28 +77,9 @@ class RankServer::Desk {
  private:
   struct Client {
     bool left = false;
-    std::set<std::size_t> logs;  // the frames whose logs it has
+    std::set<std::size_t> logs;  // the frames whose logs it may have
   };
 
-  /// The tasks of this rank's workers. A log that was made here is packed by the worker that has made it.
-  class HeadSource final : public LocalSource {
-   public:
-    HeadSource(Desk& desk, const SweepSite& site, Coordinator& coordinator)
-        : LocalSource(coordinator, 0), desk_(desk), site_(site) {}
-    void traced(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) override {
-      desk_.keep(frame, log_bytes(site_, frame));
-      LocalSource::traced(frame, row, cpu_nanoseconds);
-    }
-
-   private:
-    Desk& desk_;
-    const SweepSite& site_;
-  };
-
-  void keep(std::size_t frame, std::string bytes) {
-    const std::lock_guard guard(mutex_);
-    logs_[frame] = std::move(bytes);
-  }
   void tell(std::size_t rank, const SweepMessage& message) { ranks_.send(rank, encode(message)); }
   [[nodiscard]] bool all_leave() const {
     return std::all_of(clients_.begin() + 1, clients_.end(),
@@ -121,9 +101,6 @@ class RankServer::Desk {
     {
       const std::lock_guard guard(mutex_);
       frames.swap(over_);
-      for (const std::size_t frame : frames) {
-        logs_.erase(frame);
-      }
     }
     for (const std::size_t frame : frames) {
       for (std::size_t rank = 1; rank < clients_.size(); ++rank) {
@@ -144,8 +121,8 @@ class RankServer::Desk {
       if (task.kind == SweepTask::Kind::wait) {
         break;
       }
-      if (task.kind == SweepTask::Kind::time) {
-        clients_[asking_.front()].logs.insert(task.frame);  // it will get it, from here or from its own files
+      if (task.kind != SweepTask::Kind::end) {
+        clients_[asking_.front()].logs.insert(task.frame);
       }
       tell(asking_.front(), {.kind = Kind::task, .task = std::move(task)});
       asking_.pop_front();
@@ -170,22 +147,8 @@ class RankServer::Desk {
       case Kind::ask:
         asking_.push_back(from);
         return;
-      case Kind::want_log: {
-        std::string bytes;
-        {
-          const std::lock_guard guard(mutex_);
-          const auto found = logs_.find(message.number);
-          sim::ensure(found != logs_.end(), "a rank wants a log that there is not");
-          bytes = found->second;
-        }
-        tell(from, {.kind = Kind::log, .number = message.number, .bytes = std::move(bytes)});
-        return;
-      }
       case Kind::traced:
         sim::ensure(message.number < site.plan.frames.size(), "a rank has traced a frame that there is not");
-        put_log(site, message.number, message.bytes);
-        keep(message.number, message.bytes);
-        clients_[from].logs.insert(message.number);
         coordinator.traced(message.number, decode_frame_row(message.row), message.nanoseconds);
         return;
       case Kind::timed:
@@ -212,7 +175,6 @@ class RankServer::Desk {
   std::deque<std::size_t> asking_;
   std::uint64_t workers_ = 0;  // of all ranks that are ready
   std::mutex mutex_;           // of what follows
-  std::map<std::size_t, std::string> logs_;
   std::vector<std::size_t> over_;
 };
 

@@ -1,6 +1,6 @@
-// A sweep on many ranks. Rank 0 holds the store and the schedule, hands out tasks, and works as well; work
-// logs that one rank has made go to the others through it. Each rank's main thread sends and receives, its
-// worker threads do not.
+// A sweep on many ranks. Rank 0 holds the store and the schedule, hands out tasks, and works as well. A rank
+// that times machines of a frame traced elsewhere traces it again: that takes about as long as timing one.
+// Each rank's main thread sends and receives, its worker threads do not.
 #pragma once
 
 #include <cstddef>

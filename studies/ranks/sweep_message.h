@@ -16,17 +16,15 @@ struct SweepMessage {
     // From rank 0.
     begin,    ///< bytes: the configuration
     task,     ///< task; `end`: there is none any more
-    log,      ///< number: frame; bytes: its work log, as write_log makes it
     drop,     ///< number: frame whose log nobody needs any more
     goodbye,  ///< all are ready to leave
     // To rank 0.
-    ready,     ///< number: worker threads; bytes: digest of the plan
-    ask,       ///< for a task
-    want_log,  ///< number: frame
-    traced,    ///< number: frame; nanoseconds; row: of the frame; bytes: its log
-    timed,     ///< number: machine; nanoseconds; row
-    leaving,   ///< it has brought all its results and asks for nothing any more
-    failed     ///< number: 1: the user's error, 0: ours; bytes: the message
+    ready,    ///< number: worker threads; bytes: digest of the plan
+    ask,      ///< for a task
+    traced,   ///< number: frame; nanoseconds; row: of the frame
+    timed,    ///< number: machine; nanoseconds; row
+    leaving,  ///< it has brought all its results and asks for nothing any more
+    failed    ///< number: 1: the user's error, 0: ours; bytes: the message
   };
   Kind kind = Kind::ask;
   std::uint64_t number = 0;

@@ -7,11 +7,13 @@
 
 namespace marti::studies {
 
-TextStream::TextStream(const std::filesystem::path& file)
-    : file_(file), pending_(file), stream_(std::fopen(pending_.temporary().c_str(), "wbx")) {
+TextStream::TextStream(const std::filesystem::path& file) : file_(file), pending_(file) {
+  sim::Descriptor descriptor = pending_.open();
+  stream_.reset(::fdopen(descriptor.get(), "wb"));
   if (!stream_) {
     fail();
   }
+  (void)descriptor.release();  // the stream closes it
 }
 
 void TextStream::write(std::string_view text) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim/files.h"
+#include "sim/pending_file.h"
 
 namespace marti::studies {
 
@@ -20,6 +20,8 @@ class TextStream {
   void write(std::string_view text);
   /// Everything is in the file, under its temporary name.
   void close();
+  /// Where it stands until then.
+  [[nodiscard]] const std::filesystem::path& temporary() const { return pending_.temporary(); }
   /// After close().
   void commit() { pending_.commit(); }
 

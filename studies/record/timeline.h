@@ -35,6 +35,7 @@ class Timeline final : public processors::Observer {
   void resumed_packet(std::uint32_t node, std::uint64_t packet) override;
   /// Completes and closes the file, still under its temporary name.
   void end(sim::Ticks time) override;
+  [[nodiscard]] const std::filesystem::path& temporary() const { return stream_.temporary(); }
   void commit() { stream_.commit(); }
 
   [[nodiscard]] std::int64_t events() const { return events_; }

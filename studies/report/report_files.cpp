@@ -5,6 +5,7 @@
 #include "sim/error.h"
 #include "sim/files.h"
 #include "sim/units.h"
+#include "studies/report/chart_check.h"
 #include "studies/report/rows_csv.h"
 
 namespace marti::studies {
@@ -16,54 +17,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t largest_image = std::int64_t{16} << 20U;
 constexpr std::int64_t largest_chart = std::int64_t{8} << 20U;
-constexpr int deepest = 64;
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& reason) {
   throw sim::UserError(file.string() + ": " + reason + "; remove it, or make the results again");
-}
-
-// What a chart may not have: data from outside of the file, or data that are made (a sequence can be of any
-// length).
-void check_data(const fs::path& file, const Json& data) {
-  if (data.is_null()) {
-    return;
-  }
-  if (!data.is_object()) {
-    refuse(file, "has data that are no object");
-  }
-  for (const auto& [name, value] : data.items()) {
-    if (name != "values" && name != "name") {
-      refuse(file, "has data by \"" + name + "\"; a chart's data are rows under data.values");
-    }
-  }
-}
-
-// `rows`: the part lies in data.values, where names are those of columns.
-void check_part(const fs::path& file, const Json& part, bool rows, int depth) {
-  if (depth > deepest) {
-    refuse(file, "is nested too deeply");
-  }
-  if (part.is_array()) {
-    for (const Json& each : part) {
-      check_part(file, each, rows, depth + 1);
-    }
-  }
-  if (!part.is_object()) {
-    return;
-  }
-  for (const auto& [name, value] : part.items()) {
-    if (!rows && (name == "url" || name == "href")) {
-      refuse(file, "asks for something outside of the file (" + name + ")");
-    }
-    if (rows || name != "data") {
-      check_part(file, value, rows, depth + 1);
-      continue;
-    }
-    check_data(file, value);
-    if (value.is_object() && value.contains("values")) {
-      check_part(file, value["values"], /*rows=*/true, depth + 1);
-    }
-  }
 }
 
 // Big-endian, as PNG has its numbers.
@@ -157,21 +113,16 @@ ReportChart read_chart(const fs::path& file) {
   if (!chart.spec.is_object() || text_in(chart.spec, "$schema").find("vega-lite") == std::string::npos) {
     refuse(file, "is no Vega-Lite specification");
   }
-  check_part(file, chart.spec, /*rows=*/false, 0);
+  check_chart(file, chart.spec);
   const auto data = chart.spec.find("data");
-  if (data == chart.spec.end() || !data->is_object() || !data->contains("values") ||
-      !data->at("values").is_array()) {
+  if (data == chart.spec.end() || !data->contains("values")) {
     refuse(file, "has no rows under data.values");
-  }
-  const Json& rows = data->at("values");
-  if (!std::all_of(rows.begin(), rows.end(), [](const Json& row) { return row.is_object(); })) {
-    refuse(file, "has rows under data.values that are no objects");
   }
   const std::string name = file.filename().string();
   chart.name = plain_name(name.substr(0, name.find(".vl.json")));
   chart.title = text_in(chart.spec, "title");
   chart.title = chart.title.empty() ? chart.name : chart.title;
-  chart.csv = csv_of_rows(rows);
+  chart.csv = csv_of_rows(data->at("values"));
   return chart;
 }
 

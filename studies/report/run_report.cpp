@@ -1,12 +1,15 @@
 // The report of a run's directory: what its result.json says, and the files beside it.
 #include <fmt/format.h>
 
+#include <map>
+
 #include "sim/error.h"
-#include "sim/files.h"
+#include "sim/sha256.h"
 #include "studies/report/report_files.h"
 #include "studies/report/report_kinds.h"
 #include "studies/report/run_answer.h"
 #include "studies/report/run_charts.h"
+#include "studies/results/run_files.h"
 #include "studies/results/run_json.h"
 
 namespace marti::studies {
@@ -58,7 +61,37 @@ Table figures_table(const RunJson& run) {
   return table;
 }
 
-void add_images(const fs::path& directory, ReportData& report) {
+// Whether the run has written what now stands under that name; otherwise the page says why it is left out.
+bool is_of_run(const fs::path& directory, const std::string& name,
+               const std::map<std::string, std::string>& files, ReportData& report) {
+  const auto named = files.find(name);
+  if (!is_there(directory / name)) {
+    if (named == files.end()) {
+      return false;
+    }
+    report.answer.push_back(name + " is left out of this page: it is not there any more.");
+    return false;
+  }
+  std::string reason = "result.json does not name it";
+  if (named != files.end()) {
+    try {
+      if (sim::sha256_of_file(directory / name) == named->second) {
+        return true;
+      }
+      reason = "it is not the file that this run has written";
+    } catch (const sim::UserError&) {
+      reason = "it cannot be read, or is no regular file";
+    }
+  }
+  report.answer.push_back(name + " is left out of this page: " + reason + ".");
+  return false;
+}
+
+void add_files(const fs::path& directory, const RunJson& run, ReportData& report) {
+  const std::map<std::string, std::string> files = files_of(run);
+  if (const char* chart = "working_set.vl.json"; is_of_run(directory, chart, files, report)) {
+    report.charts.push_back(read_chart(directory / chart));
+  }
   constexpr std::pair<const char*, const char*> images[] = {
       {"image.png", "The image"},
       {"exact.png", "The exact image, without the voxel cut"},
@@ -66,7 +99,7 @@ void add_images(const fs::path& directory, ReportData& report) {
       {"heat-misses.png", "Heat map: misses of each pixel"},
       {"heat-waits.png", "Heat map: waits of each pixel"}};
   for (const auto& [name, title] : images) {
-    if (is_there(directory / name)) {
+    if (is_of_run(directory, name, files, report)) {
       take_image(directory / name, title, report);
     }
   }
@@ -82,12 +115,7 @@ ReportData read_run_report(const fs::path& directory) {
   report.title = fmt::format("Run of {} on {}", run.text("scene.name"), machine_text(run));
   report.answer = answer_of(run);
   add_run_charts(run, report);
-  if (is_there(directory / "working_set.vl.json")) {
-    ReportChart chart = read_chart(directory / "working_set.vl.json");
-    chart.name = "working_set";
-    report.charts.push_back(std::move(chart));
-  }
-  add_images(directory, report);
+  add_files(directory, run, report);
   report.tables.push_back({plan_table(run), true});
   report.tables.push_back({figures_table(run), true});
   add_configuration(run, report);

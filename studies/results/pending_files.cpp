@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "sim/sha256.h"
+
 namespace marti::studies {
 
 PendingFiles::PendingFiles(std::filesystem::path directory) : directory_(std::move(directory)) {}
@@ -12,7 +14,16 @@ const std::filesystem::path& PendingFiles::add(const std::string& name) {
 }
 
 void PendingFiles::write(const std::string& name, std::string_view content) {
-  sim::write_file(add(name), content);
+  (void)add(name);
+  pending_.back().write(content);
+}
+
+std::map<std::string, std::string> PendingFiles::hashes() const {
+  std::map<std::string, std::string> hashes;
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    hashes[names_[i].filename().string()] = sim::sha256_of_file(pending_[i].temporary());
+  }
+  return hashes;
 }
 
 std::vector<std::filesystem::path> PendingFiles::commit() {

@@ -3,11 +3,12 @@
 
 #include <deque>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "sim/files.h"
+#include "sim/pending_file.h"
 
 namespace marti::studies {
 
@@ -21,6 +22,9 @@ class PendingFiles {
   const std::filesystem::path& add(const std::string& name);
   /// Throws UserError with the reason, as sim::write_file does.
   void write(const std::string& name, std::string_view content);
+
+  /// The hash (SHA-256, 64 hexadecimal digits) of what each holds now, by name.
+  [[nodiscard]] std::map<std::string, std::string> hashes() const;
 
   /// Renames them all and returns their names, in the order in which they were added. Throws UserError.
   std::vector<std::filesystem::path> commit();

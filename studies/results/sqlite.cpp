@@ -2,7 +2,8 @@
 
 namespace marti::studies {
 
-Database::Database(const std::filesystem::path& file) : connection_(file, SqliteConnection::Access::write) {
+Database::Database(const std::filesystem::path& file)
+    : connection_(file, SqliteConnection::Access::write_alone) {
   // No journal: the file has a temporary name until it is complete, and is thrown away otherwise.
   connection_.execute("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;");
 }

@@ -33,14 +33,15 @@ std::string uri_of(const std::filesystem::path& file) {
 }  // namespace
 
 SqliteConnection::SqliteConnection(const std::filesystem::path& file, Access access)
-    : name_(file.string()), writes_(access == Access::write) {
+    : name_(file.string()), writes_(access == Access::write || access == Access::write_alone) {
   int flags = SQLITE_OPEN_NOMUTEX;
   flags |= writes_ ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   int status = SQLITE_OK;
   if (access == Access::read_alone) {
     status = sqlite3_open_v2(uri_of(file).c_str(), &connection_, flags | SQLITE_OPEN_URI, nullptr);
   } else {
-    status = sqlite3_open_v2(file.c_str(), &connection_, flags, nullptr);
+    status = sqlite3_open_v2(file.c_str(), &connection_, flags,
+                             access == Access::write_alone ? "unix-none" : nullptr);
   }
   try {
     check(status);

@@ -19,9 +19,10 @@ namespace marti::studies {
 class SqliteConnection {
  public:
   enum class Access : std::uint8_t {
-    write,      ///< the file is made if it is not there
-    read,       ///< the file must be there; others may write it
-    read_alone  ///< nobody writes it: it is read without any lock or file beside it
+    write,        ///< the file is made if it is not there
+    write_alone,  ///< it has a name that nobody else knows: it is written without any lock
+    read,         ///< the file must be there; others may write it
+    read_alone    ///< nobody writes it: it is read without any lock or file beside it
   };
   SqliteConnection(const std::filesystem::path& file, Access access);
   ~SqliteConnection();

@@ -87,7 +87,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, std::u
 
   const auto begin = std::chrono::steady_clock::now();
   const SweepMemory memory = shares_of(memory_limit);
-  LogShelf logs({memory.logs, options.directory, options.keep_logs});
+  LogShelf logs(memory.logs);
   StripShelf strips(memory.strips);
   MemoryGate machines(memory.machines);
   Progress progress({options.terminal, options.quiet, stderr, all_threads});
@@ -97,7 +97,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, std::u
   }
   Coordinator coordinator(plan, store, progress, [&](std::size_t frame) {
     strips.drop(frame);
-    logs.drop(plan.frames[frame].key);
+    logs.drop(frame);
     if (server) {
       server->over(frame);
     }
@@ -126,9 +126,6 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, std::u
     }
   }
   progress.end();
-  for (const std::string& note : logs.notes()) {
-    std::fprintf(stderr, "marti: note: %s\n", note.c_str());
-  }
   store.close();
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   sim::write_file(report.points, csv_of(points_table(report.store)));

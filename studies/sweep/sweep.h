@@ -15,7 +15,6 @@ class Ranks;
 
 struct SweepOptions {
   std::filesystem::path directory;  ///< results.sqlite and points.csv go there
-  std::filesystem::path keep_logs;  ///< where logs are kept for the next sweep; empty: nowhere
   unsigned threads = 0;             ///< machines timed at a time; 0: as many as the computer has
   bool terminal = false;            ///< progress as a bar
   bool quiet = false;               ///< no progress

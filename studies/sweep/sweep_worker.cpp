@@ -35,15 +35,9 @@ FrameLog trace(const SweepFrame& frame) {
 void do_trace(const SweepSite& site, TaskSource& source, const SweepTask& task) {
   const auto begin = std::chrono::steady_clock::now();
   const SweepFrame& frame = site.plan.frames[task.frame];
-  FrameRow row;
-  std::string note;
-  if (const auto kept = site.logs.find_kept(frame.key, note)) {
-    row = kept->row;
-  } else {
-    FrameLog log = trace(frame);
-    row = log.row;
-    site.logs.put(frame.key, std::move(log));
-  }
+  FrameLog log = trace(frame);
+  const FrameRow row = log.row;
+  site.logs.put(task.frame, std::move(log));
   const auto end = std::chrono::steady_clock::now();
   source.traced(task.frame, row, std::chrono::duration_cast<std::chrono::nanoseconds>(end - begin).count());
 }
@@ -59,7 +53,8 @@ std::string name_of(const SweepMachine& machine) {
 }
 
 void do_time(const SweepSite& site, TaskSource& source, const SweepTask& task) {
-  const std::shared_ptr<const FrameLog> log = site.logs.take(site.plan.frames[task.frame].key);
+  const std::shared_ptr<const FrameLog> log =
+      site.logs.take(task.frame, [&] { return trace(site.plan.frames[task.frame]); });
   for (const std::size_t number : task.machines) {
     const SweepMachine& machine = site.plan.machines[number];
     const std::int64_t begin = thread_cpu_nanoseconds();

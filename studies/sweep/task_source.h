@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "studies/sweep/log_shelf.h"
 #include "studies/sweep/schedule.h"
 #include "studies/sweep/sweep_row.h"
 
@@ -17,7 +16,7 @@ class TaskSource {
   virtual ~TaskSource() = default;
   /// The next task, never `wait`: it blocks until there is one.
   [[nodiscard]] virtual SweepTask next() = 0;
-  /// The log is on the shelf of this process.
+  /// The log has been put on the shelf of this process.
   virtual void traced(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) = 0;
   virtual void timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds) = 0;
   /// Some worker has failed: every next() from now on gives `end`.

@@ -34,7 +34,6 @@ allow("^sqlite3[.]h$" "^studies/(results/sqlite_connection|sweep/sweep_filter)[.
 allow("^mpi[.]h$" "^studies/ranks/mpi_ranks[.]cpp$")
 allow("^(poll|signal|spawn)[.]h$" "^studies/report/child_process[.]cpp$")
 allow("^sched[.]h$" "^studies/ranks/rank_threads[.]cpp$")
-allow("^zstd[.]h$" "^studies/sweep/zstd_block[.]cpp$")
 allow("^CLI/" "^studies/([a-z_]+[.]cpp|command_tree[.]h)$")
 allow("^OpenImageIO/" "^studies/[a-z_]+[.]cpp$")
 allow("^(systemc|tlm|tlm_utils/[a-z_]+[.]h)$" "^(tests|bench)/")

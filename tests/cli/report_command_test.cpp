@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "sim/sha256.h"
 #include "studies/report/vega_bundle.h"
 #include "tests/cli/shell.h"
 #include "tests/support/temporary_directory.h"
@@ -184,12 +185,40 @@ TEST_F(ReportCommand, RefusesWhatIsNoResultAndLeavesThePageAlone) {
   refused(result.substr(0, result.size() / 2), "is not JSON");
   refused("{\"marti\": {\"schema\": 9}}", "schema 9");
   refused("{\"marti\": {\"schema\": 1}}", "has no object");
-  write(run / "result.json", result);
-  write(run / "image.png", "no image");
-  const Outcome image = marti("report " + quoted(run));
-  EXPECT_EQ(image.status, 2);
-  EXPECT_NE(image.output.find("image.png"), std::string::npos) << image.output;
-  EXPECT_EQ(read(run / "report.html"), before);
+}
+
+TEST_F(ReportCommand, TakesOnlyWhatTheRunHasWritten) {
+  const fs::path run = made_run(" --set record.heat_maps=true --set count.working_set=true");
+  const auto says = [](const Outcome& outcome, const std::string& text) {
+    return outcome.output.find(text) != std::string::npos;
+  };
+  const Outcome whole = marti("report " + quoted(run));
+  ASSERT_EQ(whole.status, 0) << whole.output;
+  EXPECT_FALSE(says(whole, "left out")) << whole.output;
+  // Another run's files, a link to a file of this run, and one that is gone.
+  fs::copy_file(run / "heat-waits.png", run / "exact.png");
+  fs::copy_file(run / "heat-waits.png", run / "image.png", fs::copy_options::overwrite_existing);
+  fs::rename(run / "heat-cycles.png", run / "other.png");
+  fs::create_symlink("other.png", run / "heat-cycles.png");
+  fs::remove(run / "heat-misses.png");
+  const std::string chart = read(run / "working_set.vl.json");
+  write(run / "working_set.vl.json", chart + " ");
+  const Outcome changed = marti("report " + quoted(run));
+  ASSERT_EQ(changed.status, 0) << changed.output;
+  for (const char* note :
+       {"exact.png is left out of this page: result.json does not name it.",
+        "image.png is left out of this page: it is not the file that this run has written.",
+        "heat-cycles.png is left out of this page: ",
+        "heat-misses.png is left out of this page: it is not there",
+        "working_set.vl.json is left out of this page: it is not the file"}) {
+    EXPECT_TRUE(says(changed, note)) << note << changed.output;
+  }
+  const std::string page = read(run / "report.html");
+  for (const char* title : {"The image", "The exact image", "Heat map: cycles", "Heat map: misses"}) {
+    EXPECT_EQ(page.find("<img alt=\"" + std::string(title)), std::string::npos) << title;
+  }
+  EXPECT_NE(page.find("<img alt=\"Heat map: waits"), std::string::npos);
+  EXPECT_FALSE(has_chart(data_of(run / "report.html"), "working_set"));
 }
 
 TEST_F(ReportCommand, RefusesDirectoriesThatHoldNoResults) {
@@ -303,15 +332,23 @@ TEST_F(ReportCommand, RefusesTwoChartsOfOneName) {
 
 TEST_F(ReportCommand, LeavesOutALargeImageAndNamesOneThatCannotBeRead) {
   const fs::path run = made_run();
+  // As a run would leave it that has so large an image.
   fs::resize_file(run / "image.png", (16U << 20U) + 1);
+  auto result = nlohmann::ordered_json::parse(read(run / "result.json"));
+  result["files"]["image.png"]["sha256"] = sim::sha256_of_file(run / "image.png");
+  write(run / "result.json", result.dump());
   const Outcome large = marti("report " + quoted(run));
   EXPECT_EQ(large.status, 0) << large.output;
-  EXPECT_NE(read(run / "report.html").find("image.png is left out of this page"), std::string::npos);
+  EXPECT_NE(read(run / "report.html").find("image.png is left out of this page: it has more than 16 MiB"),
+            std::string::npos);
   fs::remove(run / "image.png");
   fs::create_symlink("none", run / "image.png");
   const Outcome dangling = marti("report " + quoted(run));
-  EXPECT_EQ(dangling.status, 2);
-  EXPECT_NE(dangling.output.find("image.png: cannot be read"), std::string::npos) << dangling.output;
+  EXPECT_EQ(dangling.status, 0) << dangling.output;
+  EXPECT_NE(
+      dangling.output.find("image.png is left out of this page: it cannot be read, or is no regular file."),
+      std::string::npos)
+      << dangling.output;
 }
 
 TEST_F(ReportCommand, TakesNoSavingThatIsNoWholeNumber) {

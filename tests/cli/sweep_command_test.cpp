@@ -8,9 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/program_build.h"
 #include "studies/results/sqlite_connection.h"
-#include "studies/sweep/log_file.h"
 #include "tests/cli/sweep_files.h"
 #include "tests/support/temporary_directory.h"
 
@@ -217,52 +215,14 @@ TEST_F(SweepCommand, FindsTheBestMachineForABudget) {
   EXPECT_EQ(sweep(config, out, "--best end --within nan").status, 2);
 }
 
-TEST_F(SweepCommand, KeptLogsAreUsedAgain) {
-  const fs::path logs = place("logs");
-  ASSERT_EQ(sweep(config, out, "--keep-logs " + quoted(logs)).status, 0);
-  const std::string expected = dump(store);
-  ASSERT_EQ(files_in(logs), 2U);
-  const fs::path second = place("second");
-  const Outcome outcome = sweep(config, second, "--keep-logs " + quoted(logs));
+// One log is in memory at a time, so both frames are traced more than once.
+TEST_F(SweepCommand, LogsThatDoNotFitAreTracedAgain) {
+  ASSERT_EQ(sweep(config, out).status, 0);
+  const fs::path little = place("little");
+  const Outcome outcome = sweep(config, little, "--set host_machine.memory_limit=1MiB --threads 4");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_EQ(dump(second / "results.sqlite"), expected);
-  // A log that says where it comes from shows that nothing was traced.
-  fs::path kept;
-  for (const auto& entry : fs::directory_iterator(logs)) {
-    kept = entry.path();
-    const std::string key = kept.stem().string();
-    studies::FrameLog log = studies::read_log(*studies::log_file_source(kept), key,
-                                              studies::build_of_program(), std::uint64_t{1} << 30U);
-    log.row.scene = "the kept one";
-    fs::remove(kept);
-    studies::write_log_file(kept, log, key, studies::build_of_program());
-  }
-  const fs::path third = place("third");
-  ASSERT_EQ(sweep(config, third, "--keep-logs " + quoted(logs)).status, 0);
-  const fs::path third_store = third / "results.sqlite";
-  EXPECT_EQ(number_of(third_store, "SELECT COUNT(*) FROM frame_results WHERE scene = 'the kept one'"), 2);
-  EXPECT_EQ(results_by_key(third_store), results_by_key(store));
-  // A damaged one is told, not used, and replaced.
-  std::string bytes = read(kept);
-  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
-  write(kept, bytes);
-  const Outcome damaged = sweep(config, place("fourth"), "--keep-logs " + quoted(logs));
-  EXPECT_EQ(damaged.status, 0) << damaged.output;
-  EXPECT_TRUE(says(damaged, "marti: note: " + kept.string())) << damaged.output;
-  EXPECT_TRUE(says(damaged, "; the frame is traced again")) << damaged.output;
-  EXPECT_EQ(results_by_key(place("fourth") / "results.sqlite"), results_by_key(store));
-  const Outcome replaced = sweep(config, place("fifth"), "--keep-logs " + quoted(logs));
-  EXPECT_FALSE(says(replaced, "note")) << replaced.output;
-  EXPECT_EQ(number_of(place("fifth") / "results.sqlite",
-                      "SELECT COUNT(*) FROM frame_results WHERE scene = 'the kept one'"),
-            1);
-}
-
-TEST_F(SweepCommand, AKeepingPlaceThatCannotBeWrittenIsANote) {
-  write(place("file"), "in the way");
-  const Outcome outcome = sweep(config, out, "--keep-logs " + quoted(place("file")));
-  EXPECT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_TRUE(says(outcome, "marti: note: " + place("file").string())) << outcome.output;
+  EXPECT_EQ(results_by_key(little / "results.sqlite"), results_by_key(store));
+  EXPECT_EQ(files_in(little), files_in(out)) << "logs are in memory only";
 }
 
 TEST_F(SweepCommand, ASceneFileIsPartOfTheFrame) {
@@ -300,7 +260,7 @@ TEST_F(SweepCommand, RefusesWhatItCannotDo) {
   EXPECT_EQ(sweep(config, out, "--threads=-1").status, 2);
   EXPECT_EQ(sweep(config, out, "--threads 4097").status, 2);
   EXPECT_EQ(sweep(config, out, "--threads many").status, 2);
-  EXPECT_EQ(sweep(config, out, "--keep-logs ''").status, 2);
+  EXPECT_EQ(sweep(config, out, "--keep-logs logs").status, 2);
   EXPECT_EQ(sweep(config, out, "--set cache.sise=1KiB").status, 2);
   EXPECT_EQ(marti("sweep " + quoted(place("none.toml")) + " -o " + quoted(out)).status, 2);
   EXPECT_FALSE(fs::exists(out)) << "none of them came so far";

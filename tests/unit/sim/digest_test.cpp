@@ -4,7 +4,10 @@
 #include <string>
 
 #include "sim/base64.h"
+#include "sim/error.h"
+#include "sim/files.h"
 #include "sim/sha256.h"
+#include "tests/support/temporary_directory.h"
 
 namespace marti::sim {
 namespace {
@@ -35,6 +38,21 @@ TEST(Sha256, PadsEveryLengthAroundABlock) {
   EXPECT_EQ(hex(std::string(63, 'a')), "7d3e74a05d7db15bce4ad9ec0658ea98e3f06eeecf16b4c6fff2da457ddc2f34");
   EXPECT_EQ(hex(std::string(64, 'a')), "ffe054fe7ae0cb6dc65c3af9b61d5209f439851db43d0ba5997337df154668eb");
   EXPECT_EQ(hex(std::string(65, 'a')), "635361c48bb9eab14198e76ea8ab7f1a41685d6ad62aa9146d301d4f17eb0ae0");
+}
+
+TEST(Sha256, OfAFileIsThatOfItsBytes) {
+  const test::TemporaryDirectory directory;
+  const std::filesystem::path file = directory.path() / "a";
+  for (const std::size_t size : {std::size_t{0}, std::size_t{65536}, std::size_t{200'001}}) {
+    const std::string content(size, 'x');
+    write_file(file, content);
+    EXPECT_EQ(sha256_of_file(file), hex(content));
+    EXPECT_EQ(sha256_text(content), hex(content));
+  }
+  std::filesystem::create_symlink("a", directory.path() / "link");
+  EXPECT_THROW((void)sha256_of_file(directory.path() / "link"), UserError);
+  EXPECT_THROW((void)sha256_of_file(directory.path() / "none"), UserError);
+  EXPECT_THROW((void)sha256_of_file(directory.path()), UserError);
 }
 
 TEST(Base64, IsThatOfTheRfcsExamples) {

@@ -95,24 +95,14 @@ TEST(Files, AFullDiskLeavesTheOldFile) {
   EXPECT_EQ(entries_in(directory.path()), 1U);
 }
 
-TEST(Files, APendingFileTakesItsNameOnlyWhenCommitted) {
+TEST(Files, ALinkIsReplacedAndNotFollowed) {
   const TemporaryDirectory directory;
-  const auto target = directory.path() / "image.png";
-  {
-    const PendingFile pending(target);
-    EXPECT_EQ(pending.temporary().extension(), ".png");
-    EXPECT_EQ(pending.temporary().parent_path(), directory.path());
-    std::ofstream(pending.temporary()) << "half";
-  }
-  EXPECT_EQ(entries_in(directory.path()), 0U);
-  PendingFile pending(target);
-  std::ofstream(pending.temporary()) << "whole";
-  EXPECT_FALSE(std::filesystem::exists(target));
-  pending.commit();
-  EXPECT_EQ(read_file(target, 10), "whole");
-  EXPECT_EQ(entries_in(directory.path()), 1U);
-  PendingFile empty(directory.path() / "never-written");
-  EXPECT_THROW(empty.commit(), UserError);
+  write_file(directory.path() / "kept", "kept");
+  std::filesystem::create_symlink("kept", directory.path() / "a");
+  write_file(directory.path() / "a", "new");
+  EXPECT_EQ(read_file(directory.path() / "kept", 10), "kept");
+  EXPECT_EQ(read_file(directory.path() / "a", 10), "new");
+  EXPECT_FALSE(std::filesystem::is_symlink(directory.path() / "a"));
 }
 
 TEST(Files, ManyWritersOfOneFileNeverMix) {

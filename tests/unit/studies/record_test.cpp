@@ -198,14 +198,17 @@ TEST(HeatMaps, AreWrittenAllOrNone) {
   const Machine machine(1);
   HeatMap map;
   (void)watched(machine.log, machine.config, map);
-  { const HeatFiles dropped(map, directory.path()); }
+  {
+    PendingFiles dropped(directory.path());
+    add_heat_files(map, dropped);
+  }
   EXPECT_TRUE(std::filesystem::is_empty(directory.path()));
-  HeatFiles files(map, directory.path());
-  files.commit();
+  PendingFiles files(directory.path());
+  add_heat_files(map, files);
+  EXPECT_EQ(files.commit().size(), 4U);
   for (const char* name : {"heat.exr", "heat-cycles.png", "heat-misses.png", "heat-waits.png"}) {
     EXPECT_GT(std::filesystem::file_size(directory.path() / name), 50U) << name;
   }
-  EXPECT_EQ(files.files().size(), 4U);
 }
 
 TEST(HeatMaps, LegendLeavesOutTheTopHundredth) {

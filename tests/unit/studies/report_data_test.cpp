@@ -168,11 +168,72 @@ TEST(ReadChart, LetsRowsHaveAnyColumns) {
   const fs::path file = directory.path() / "a.vl.json";
   write(file,
         R"({"$schema": "vega-lite", "data": {"name": "a", "values": [{"url": 1, "data": 2}]},
-            "layer": [{"data": {"values": [{"href": 3}]}}, {"data": null}, {"data": {"name": "a"}}]})");
+            "layer": [{"data": {"values": [{"href": 3, "bind": 4}]}}, {"data": null}, {"data": {"name": "a"}}]})");
   EXPECT_EQ(read_chart(file).csv, "url,data\r\n1,2\r\n");
   write(file, R"({"$schema": "vega-lite", "data": {"values": [{"a": )" + std::string(10'000, '[') +
                   std::string(10'000, ']') + "}]}}");
-  EXPECT_NE(user_error_of([&] { (void)read_chart(file); }).find("nested too deeply"), std::string::npos);
+  EXPECT_NE(user_error_of([&] { (void)read_chart(file); }).find("no objects of numbers and texts"),
+            std::string::npos);
+}
+
+TEST(ReadChart, TakesEveryChartOfAStudy) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "a.vl.json";
+  Table table("t", "A title", {{"x", ColumnType::integer, "1", ""}});
+  table.add_row({std::int64_t{1}});
+  for (const ChartSpecification& chart : chart_specifications()) {
+    write(file, fill_chart(chart, table));
+    EXPECT_EQ(user_error_of([&] { (void)read_chart(file); }), "no UserError") << chart.name;
+  }
+}
+
+TEST(ReadChart, RefusesWhatNoChartOfAStudyHas) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "a.vl.json";
+  const std::string begin = R"({"$schema": "vega-lite", "data": {"values": [{"a": 1}]}, )";
+  std::string fold = R"("transform": [{"fold": ["a")";
+  for (int i = 0; i < 2000; ++i) {
+    fold += R"(, "a")";
+  }
+  const std::pair<std::string, std::string> cases[] = {
+      {R"x("params": [{"name": "p", "value": 0, "bind": {"element": "body"}}], "mark": "bar")x",
+       "\"params\""},
+      {R"x("layer": [{"mark": "bar"}, {"mark": "bar", "params": [{"bind": {"element": "main"}}]}])x",
+       "\"layer[1].params\""},
+      {R"x("selection": {"s": {"type": "single", "bind": {"element": "#data"}}}, "mark": "bar")x",
+       "\"selection\""},
+      {R"x("config": {"signals": [{"name": "s", "bind": {"element": "body"}}]}, "mark": "bar")x",
+       "\"config\""},
+      {R"x("usermeta": {"embedOptions": {}}, "mark": "bar")x", "\"usermeta\""},
+      {R"x("datasets": {"d": []}, "mark": "bar")x", "\"datasets\""},
+      {R"x("mark": {"type": "image", "url": "x"})x", "\"mark.type\""},
+      {R"x("mark": {"type": "bar", "url": "x"})x", "\"mark.url\""},
+      {R"x("mark": "image")x", "a mark in \"mark\""},
+      {R"x("mark": {"type": "bar", "width": {"expr": "1"}})x", "\"mark.width\""},
+      {R"x("mark": "bar", "encoding": {"x": {"field": {"repeat": "r"}}})x", "\"encoding.x.field.repeat\""},
+      {R"x("mark": "bar", "encoding": {"tooltip": [{"field": "a"}, {"bin": {"maxbins": 1e9}}]})x",
+       "\"encoding.tooltip[1].bin\""},
+      {R"x("mark": "bar", "encoding": {"x": {"scale": {"type": "log", "base": 1.0000001}}})x",
+       "a base in \"encoding.x.scale.base\""},
+      {R"x("mark": "bar", "encoding": {"x": {"axis": {"format": "099999999d"}}})x",
+       "a format in \"encoding.x.axis.format\""},
+      {R"x("transform": [{"calculate": "sequence(0, 1e9)", "as": "b"}], "mark": "bar")x",
+       "calls sequence in"},
+      {R"x("transform": [{"filter": "max(1, pad ('', 1e9))"}], "mark": "bar")x", "calls pad in"},
+      {R"x("transform": [{"filter": "'\\'' + sequence(1)"}], "mark": "bar")x", "calls sequence in"},
+      {R"x("transform": [{"filter": "this['sequence'](1)"}], "mark": "bar")x",
+       "what another expression gives"},
+      {R"x("transform": [{"filter": "/'/ + sequence(0, 1e9) + /'/"}], "mark": "bar")x", "calls something by"},
+      {R"x("transform": [{"filter": "re\\u{67}exp('(a+)+')"}], "mark": "bar")x", "calls something by"},
+      {R"x("transform": [{"lookup": "a", "from": {}}], "mark": "bar")x", "\"transform[0].lookup\""},
+      {fold + R"(]}], "mark": "bar")", "more parts"},
+  };
+  for (const auto& [rest, complaint] : cases) {
+    write(file, begin + rest + "}");
+    const std::string error = user_error_of([&] { (void)read_chart(file); });
+    EXPECT_TRUE(error.starts_with(file.string() + ": ")) << rest << error;
+    EXPECT_NE(error.find(complaint), std::string::npos) << rest << "\n" << error;
+  }
 }
 
 std::string png_of(std::string_view size) {

@@ -1,0 +1,34 @@
+// A file descriptor that is closed when it is no longer needed.
+#pragma once
+
+#include <unistd.h>
+
+#include <utility>
+
+namespace marti::sim {
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) {
+      ::close(number_);
+    }
+  }
+  Descriptor(Descriptor&& other) noexcept : number_(other.release()) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  /// Negative: none.
+  [[nodiscard]] int get() const { return number_; }
+  /// The caller closes it.
+  [[nodiscard]] int release() { return std::exchange(number_, -1); }
+  /// As close(2), for those to whom its error matters.
+  int close() { return ::close(release()); }
+
+ private:
+  int number_;
+};
+
+}  // namespace marti::sim

@@ -1,0 +1,81 @@
+// The files that `marti run -o` leaves in a directory.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "sim/sha256.h"
+#include "tests/cli/shell.h"
+#include "tests/support/temporary_directory.h"
+
+namespace marti::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What a run does not write goes; what is not a run's stays.
+TEST(RunFiles, AreASet) {
+  const TemporaryDirectory directory;
+  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
+  const fs::path out = directory.path() / "out";
+  const std::string run = "run " + quoted(config) + small_teapot + " -o " + quoted(out);
+  const auto names = [&] {
+    std::set<std::string> found;
+    for (const auto& entry : fs::directory_iterator(out)) {
+      found.insert(entry.path().filename().string());
+    }
+    return found;
+  };
+  const std::set<std::string> plain = {"image.exr", "image.png", "result.json"};
+  const std::string everything =
+      " --set count.attribution=true --set count.working_set=true --set record.heat_maps=true"
+      " --set record.timeline=true --set image.voxel_cut=1 --set image.voxel_cut_reference=true";
+  ASSERT_EQ(marti(run + everything).status, 0);
+  const std::set<std::string> all = names();
+  EXPECT_EQ(all.size(), 13U) << "every kind of file";
+  const auto named = nlohmann::json::parse(read(out / "result.json"))["files"];
+  EXPECT_EQ(named.size(), 12U);
+  for (const auto& [name, file] : named.items()) {
+    EXPECT_EQ(file["sha256"], sim::sha256_of_file(out / name)) << name;
+  }
+  ASSERT_EQ(marti(run).status, 0);
+  EXPECT_EQ(names(), plain);
+
+  // Of a program that named no files in its results.
+  ASSERT_EQ(marti(run + everything).status, 0);
+  auto old = nlohmann::ordered_json::parse(read(out / "result.json"));
+  old.erase("files");
+  write(out / "result.json", old.dump());
+  ASSERT_EQ(marti(run).status, 0);
+  EXPECT_EQ(names(), plain);
+
+  // What has been changed is the user's, and so is what the result does not name, or only claims to name.
+  ASSERT_EQ(marti(run + " --set record.heat_maps=true").status, 0);
+  write(out / "heat-waits.png", "mine");
+  write(out / "timeline.json", "mine");
+  write(out / "notes.txt", "mine");
+  write(directory.path() / "outside", "mine");
+  fs::remove(out / "heat.exr");
+  fs::create_symlink("heat-misses.png", out / "heat.exr");
+  auto claims = nlohmann::ordered_json::parse(read(out / "result.json"));
+  for (const char* name : {"notes.txt", "../outside"}) {
+    claims["files"][name] = {{"sha256", sim::sha256_text("mine")}};
+  }
+  write(out / "result.json", claims.dump());
+  ASSERT_EQ(marti(run).status, 0);
+  EXPECT_EQ(names(), (std::set<std::string>{"image.exr", "image.png", "result.json", "heat.exr",
+                                            "heat-waits.png", "timeline.json", "notes.txt"}));
+  EXPECT_TRUE(fs::exists(directory.path() / "outside"));
+
+  // A refusal changes nothing, and a damaged result names nothing.
+  write(out / "result.json", "{");
+  EXPECT_EQ(marti(run + " --set cache.size=17").status, 2);
+  EXPECT_EQ(read(out / "result.json"), "{");
+  ASSERT_EQ(marti(run + " --json").status, 0);
+  EXPECT_EQ(names().size(), 7U);
+}
+
+}  // namespace
+}  // namespace marti::test
