@@ -21,7 +21,8 @@ template <class Vector>
 [[nodiscard]] std::uint64_t growing_bytes(const Vector& vector, std::size_t more) {
   const std::size_t room = vector.capacity();
   const std::size_t needed = vector.size() + more;
-  return sizeof(typename Vector::value_type) * (needed <= room ? room : room + std::max(2 * vector.size(), needed));
+  return sizeof(typename Vector::value_type) *
+         (needed <= room ? room : room + std::max(2 * vector.size(), needed));
 }
 
 /// The bytes that it has.

@@ -44,8 +44,10 @@ std::unique_ptr<Structure> make_lazy_octree(std::shared_ptr<const TriangleSet> t
 
 std::uint64_t host_bytes(const Structure& structure) {
   const Topology& topology = structure.topology();
-  const std::uint64_t records = structure.kind() == Octree::kind_name ? Octree::walk_bytes(topology, structure.triangles()) : 0;
-  const std::uint64_t planes = structure.kind() == Bsp::kind_name ? sizeof(double) * topology.nodes.size() : 0;
+  const std::uint64_t records =
+      structure.kind() == Octree::kind_name ? Octree::walk_bytes(topology, structure.triangles()) : 0;
+  const std::uint64_t planes =
+      structure.kind() == Bsp::kind_name ? sizeof(double) * topology.nodes.size() : 0;
   return bytes_of(topology) + records + planes;
 }
 

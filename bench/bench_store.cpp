@@ -98,7 +98,8 @@ void run(bench::Report& report, std::size_t machines, const std::filesystem::pat
     std::printf("%-28s%10.3f s\n", what, seconds);
     report.add({.name = what, .unit = "s", .ours = seconds});
   };
-  std::printf("%zu machines, %zu settings each\n", machines, studies::all_of(sweep.plan.machines[0].settings).size());
+  std::printf("%zu machines, %zu settings each\n", machines,
+              studies::all_of(sweep.plan.machines[0].settings).size());
   {
     Stopwatch watch;
     studies::SweepStore store(file, sweep.plan);

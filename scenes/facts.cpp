@@ -59,9 +59,9 @@ std::uint64_t count_degenerate(const Scene& scene) {
 }
 
 std::uint64_t host_bytes(const Scene& scene) {
-  std::uint64_t bytes = scene.positions.size() * sizeof(glm::dvec3) + scene.normals.size() * sizeof(glm::dvec3) +
-                        scene.uvs.size() * sizeof(glm::dvec2) + scene.triangles.size() * sizeof(Triangle) +
-                        scene.quadrics.size() * sizeof(Quadric);
+  std::uint64_t bytes = scene.positions.size() * sizeof(glm::dvec3) +
+                        scene.normals.size() * sizeof(glm::dvec3) + scene.uvs.size() * sizeof(glm::dvec2) +
+                        scene.triangles.size() * sizeof(Triangle) + scene.quadrics.size() * sizeof(Quadric);
   for (const Texture& texture : scene.textures) {
     bytes += texture.texels.size() * sizeof(texture.texels[0]) +
              (texture.file == nullptr ? 0 : texture.file->size());

@@ -36,8 +36,8 @@ bool has_no_bytes(const tinygltf::Model& file, int accessor) {
 }  // namespace
 
 std::string missing_requirement(const tinygltf::Model& file) {
-  const auto missing = std::find_if_not(file.extensionsRequired.begin(), file.extensionsRequired.end(),
-                                        is_supported);
+  const auto missing =
+      std::find_if_not(file.extensionsRequired.begin(), file.extensionsRequired.end(), is_supported);
   return missing == file.extensionsRequired.end() ? std::string() : *missing;
 }
 
@@ -56,9 +56,8 @@ std::string compression_of_view(const tinygltf::Model& file, int view) {
   const tinygltf::Buffer& buffer = file.buffers[static_cast<std::size_t>(compressed.buffer)];
   // A buffer with the extension stands for bytes that are only there after decompression, unless it has an
   // URI. What tinygltf gives a buffer without one in a .glb file is the file's own.
-  return buffer.uri.empty() && !meshopt_among(buffer.extensions).empty()
-             ? meshopt_among(buffer.extensions)
-             : std::string();
+  return buffer.uri.empty() && !meshopt_among(buffer.extensions).empty() ? meshopt_among(buffer.extensions)
+                                                                         : std::string();
 }
 
 std::string compression_of_primitive(const tinygltf::Model& file, const tinygltf::Primitive& primitive) {

@@ -49,8 +49,7 @@ Expanded expanded_mesh(const tinygltf::Model& file, const tinygltf::Mesh& mesh) 
 
 std::uint64_t Expanded::bytes() const {
   constexpr std::uint64_t vector = sizeof(glm::dvec3);
-  const std::uint64_t vertex =
-      vector + 1 + (normals ? vector : 0) + (coordinates ? sizeof(glm::dvec2) : 0);
+  const std::uint64_t vertex = vector + 1 + (normals ? vector : 0) + (coordinates ? sizeof(glm::dvec2) : 0);
   // Two: the scene that is kept, and the one that is handed out.
   return 2 * (vertices * vertex + triangles * sizeof(Triangle)) + sources * 3 * vector;
 }

@@ -254,8 +254,8 @@ auto Materials::read_image(const Image& image, const Decode& decode) const {
 
 Texture Materials::decode_image(int image, const std::string& user) const {
   const Image found = find_image(image, user);
-  if (const ImageSizer& sizer = model_.options().size_first ? model_.options().size_first
-                                                            : model_.options().size_only) {
+  if (const ImageSizer& sizer =
+          model_.options().size_first ? model_.options().size_first : model_.options().size_only) {
     const ImageSize size = read_image(found, sizer);
     // The samples as the decoder gives them, and the texels made of them.
     model_.require_memory(2 * bytes_a_texel * size.width * size.height, textures_take);

@@ -11,6 +11,7 @@
 
 #include "scenes/gltf_extensions.h"
 #include "scenes/gltf_files.h"
+#include "scenes/gltf_index_views.h"
 #include "sim/error.h"
 #include "sim/files.h"
 
@@ -39,7 +40,9 @@ struct JsonShape {
   std::uint64_t values = 0;  ///< about: members and elements
 
   /// What its parsed form takes, beside the text: the strings, and for each object tinygltf's own.
-  [[nodiscard]] std::uint64_t bytes(std::uint64_t text) const { return 2 * text + 600 * objects + 48 * values; }
+  [[nodiscard]] std::uint64_t bytes(std::uint64_t text) const {
+    return 2 * text + 600 * objects + 48 * values;
+  }
 };
 
 JsonShape shape_of(std::string_view json) {
@@ -215,19 +218,19 @@ void Model::parse() {
     fail("its JSON is nested deeper than " + std::to_string(max_json_depth) + " levels");
   }
   take_memory(shape.bytes(json.size()), "its JSON takes");
+  const sim::MemoryBudget before = memory_;
   FileAccess access(path_.parent_path(), options_.max_file_bytes, memory_);
-  const std::string directory = access.directory().substr(0, access.directory().size() - 1);
-  tinygltf::TinyGLTF parser;
-  parser.SetImageLoader(keep_image, nullptr);
-  parser.SetFsCallbacks(access.callbacks());
   std::string error;
-  std::string warning;
-  const auto size = static_cast<unsigned int>(file.size());
-  const bool parsed =
-      binary
-          ? parser.LoadBinaryFromMemory(&data_, &error, &warning,
-                                        reinterpret_cast<const unsigned char*>(file.data()), size, directory)
-          : parser.LoadASCIIFromString(&data_, &error, &warning, file.data(), size, directory);
+  bool parsed = parse_with(file, access, error);
+  if (!parsed && error.find("] invalid bufferView") != std::string::npos) {
+    if (IndexViews given = given_index_views(json); !given.accessors.empty()) {
+      memory_ = before;
+      data_ = {};
+      error.clear();
+      parsed = parse_with(binary ? with_json(file, std::move(given.json)) : given.json, access, error);
+      take_index_views(given, data_);
+    }
+  }
   if (!access.refusal().empty()) {
     fail(access.refusal());
   }
@@ -326,6 +329,20 @@ void Model::apply_sparse(const tinygltf::Accessor& accessor, int components, con
     }
     store(index, what.bytes.data() + i * what.stride);
   }
+}
+
+bool Model::parse_with(const std::string& file, FileAccess& access, std::string& error) {
+  const std::string directory = access.directory().substr(0, access.directory().size() - 1);
+  tinygltf::TinyGLTF parser;
+  parser.SetImageLoader(keep_image, nullptr);
+  parser.SetFsCallbacks(access.callbacks());
+  std::string warning;
+  const auto size = static_cast<unsigned int>(file.size());
+  return file.starts_with("glTF")
+             ? parser.LoadBinaryFromMemory(&data_, &error, &warning,
+                                           reinterpret_cast<const unsigned char*>(file.data()), size,
+                                           directory)
+             : parser.LoadASCIIFromString(&data_, &error, &warning, file.data(), size, directory);
 }
 
 void Model::refuse_many_zeros(const tinygltf::Accessor& accessor, const std::string& name) const {

@@ -18,6 +18,8 @@
 
 namespace marti::scenes::gltf {
 
+class FileAccess;
+
 /// An accessor without a buffer view stands for this many zeros at most.
 inline constexpr std::size_t most_zeros = std::size_t{1} << 22U;
 
@@ -83,6 +85,7 @@ class Model {
                     const Store& store) const;
   void refuse_many_zeros(const tinygltf::Accessor& accessor, const std::string& name) const;
   void parse();
+  bool parse_with(const std::string& file, FileAccess& access, std::string& error);
 
   std::filesystem::path path_;
   GltfOptions options_;

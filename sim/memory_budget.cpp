@@ -23,8 +23,8 @@ constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20U;
 // From a mebibyte on, whole ones: what is needed rounded up, what there is rounded down.
 std::string needed_text(std::uint64_t bytes) {
   bytes = std::min(bytes, most_bytes - mebibyte);
-  return print_size(static_cast<std::int64_t>(
-      bytes < mebibyte ? bytes : (bytes + mebibyte - 1) / mebibyte * mebibyte));
+  return print_size(
+      static_cast<std::int64_t>(bytes < mebibyte ? bytes : (bytes + mebibyte - 1) / mebibyte * mebibyte));
 }
 
 std::string limit_text(std::uint64_t bytes, bool exact) {
@@ -89,7 +89,8 @@ std::uint64_t host_memory(const std::filesystem::path& root) {
 
 }  // namespace
 
-MemoryBudget::MemoryBudget(std::uint64_t limit, std::string where) : limit_(limit), where_(std::move(where)) {}
+MemoryBudget::MemoryBudget(std::uint64_t limit, std::string where)
+    : limit_(limit), where_(std::move(where)) {}
 
 std::string MemoryBudget::excess(std::uint64_t bytes) const {
   if (bytes <= left()) {

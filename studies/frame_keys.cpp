@@ -122,9 +122,10 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.boolean("structure.mailboxes", false,
                  "no ray tests a primitive twice: each remembers the last ray, in a word of the node's own");
   schema.section("host_machine", "the computer that runs the simulation");
-  schema.size("host_machine.memory_limit", "0 B", {"0 B", "1024 TiB"},
-              "refuse what would take more memory: scene, structure, work log, machine, plan of a sweep; 0: three "
-              "quarters of what the host, the container and `ulimit -v` allow; else at least 1 MiB");
+  schema.size(
+      "host_machine.memory_limit", "0 B", {"0 B", "1024 TiB"},
+      "refuse what would take more memory: scene, structure, work log, machine, plan of a sweep; 0: three "
+      "quarters of what the host, the container and `ulimit -v` allow; else at least 1 MiB");
 }
 
 void give_memory(const sim::MemoryBudget& memory, accel::StructureOptions& options) {
@@ -140,8 +141,9 @@ sim::MemoryBudget read_memory(const sim::Config& config, std::uint64_t processes
     return sim::MemoryBudget(sim::default_memory_limit(processes));
   }
   if (limit < least) {
-    config.fail("host_machine.memory_limit",
-                sim::print_size(limit) + " is less than 1 MiB; 0 stands for three quarters of the host's memory");
+    config.fail(
+        "host_machine.memory_limit",
+        sim::print_size(limit) + " is less than 1 MiB; 0 stands for three quarters of the host's memory");
   }
   return sim::MemoryBudget(static_cast<std::uint64_t>(limit), config.where("host_machine.memory_limit"));
 }

@@ -35,9 +35,9 @@ struct FrameConfig {
   std::string structure;
   accel::StructureOptions structure_options;
   processors::RenderOptions render;
-  bool exact_too = false;         ///< with the voxel cut: render the exact image beside it
-  sim::MemoryBudget memory;       ///< of scene, structure, image and work log together
-  KeptItems keep;                 ///< of the plan; not a key of the configuration: it decides no result
+  bool exact_too = false;    ///< with the voxel cut: render the exact image beside it
+  sim::MemoryBudget memory;  ///< of scene, structure, image and work log together
+  KeptItems keep;            ///< of the plan; not a key of the configuration: it decides no result
 };
 
 /// The options with the image made so small that its longer side has at most `side` pixels.

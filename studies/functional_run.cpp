@@ -178,7 +178,8 @@ FunctionalRun run_planned(const FrameConfig& config, scenes::Scene scene, scenes
   FunctionalRun run;
   run.plan = make_plan(facts);
   scenes::SceneFacts scene_facts = scenes::facts_of(scene);
-  require_textures(config, scene, is_left_out(run.plan, PlanItem::textures) ? facts.texels_needed : facts.texels);
+  require_textures(config, scene,
+                   is_left_out(run.plan, PlanItem::textures) ? facts.texels_needed : facts.texels);
   try {
     drop_parts(run.plan, facts.needs, decode_image, scene);
   } catch (const sim::UserError& error) {

@@ -484,8 +484,10 @@ int main(int argc, char** argv) {
   } catch (const std::system_error& error) {
     // What std::thread throws where there can be no more of them.
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
-    std::fprintf(stderr, no_thread ? "marti: the system lets this process have no more threads: %s\n"
-                                   : "marti: internal error: %s\n", error.what());
+    std::fprintf(stderr,
+                 no_thread ? "marti: the system lets this process have no more threads: %s\n"
+                           : "marti: internal error: %s\n",
+                 error.what());
     return end(no_thread ? wrong_input : our_fault);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "marti: internal error: %s\n", error.what());

@@ -107,11 +107,12 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
   if (arguments.directory.empty()) {
     throw sim::UserError("-o DIR is missing: the directory of the sweep's results (--plan needs none)");
   }
-  const SweepReport report = run_sweep(plan, options, memory_of(config, options.ranks), [&](const std::string& text) {
-    if (!arguments.json) {
-      print(text);
-    }
-  });
+  const SweepReport report =
+      run_sweep(plan, options, memory_of(config, options.ranks), [&](const std::string& text) {
+        if (!arguments.json) {
+          print(text);
+        }
+      });
   if (arguments.json) {
     print(json_of(arguments.best.empty()
                       ? points_table(report.store)

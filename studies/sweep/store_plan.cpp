@@ -38,7 +38,9 @@ class Settings {
     }
   }
 
-  SharedSettings shared(std::vector<sim::EffectiveValue> settings) { return pool_.share(std::move(settings)); }
+  SharedSettings shared(std::vector<sim::EffectiveValue> settings) {
+    return pool_.share(std::move(settings));
+  }
 
   // The sections of settings, ascending.
   std::vector<std::int64_t> sections_of(const SharedSettings& settings) {

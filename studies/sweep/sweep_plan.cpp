@@ -318,8 +318,8 @@ std::uint64_t plan_bytes(std::uint64_t points, std::size_t axes) {
   constexpr std::uint64_t overhead = 16;  // of an allocation
   constexpr std::uint64_t key = 48;       // of 32 digits, beside its string
   constexpr std::uint64_t sections = 16;  // of a configuration, at most, that a machine reads
-  const std::uint64_t machine = sizeof(SweepMachine) + key + overhead + sections * sizeof(SettingsPart) +
-                                sizeof(std::size_t);
+  const std::uint64_t machine =
+      sizeof(SweepMachine) + key + overhead + sections * sizeof(SettingsPart) + sizeof(std::size_t);
   const std::uint64_t known = sizeof(std::pair<std::string, std::size_t>) + key + 4 * overhead;
   const std::uint64_t point = sizeof(SweepPoint) + overhead + axes * sizeof(sim::Value);
   // And the numbers by which machines are put in order.

@@ -28,9 +28,9 @@ class Limits : public ::testing::Test {
 
 TEST_F(Limits, TreesAreRefusedWhileTheyGrow) {
   for (const std::string kind : {"octree", "bsp"}) {
-    const Outcome outcome =
-        run("", " --set structure.kind=" + kind + " --set structure.max_level=21 --set structure.max_objects=1" +
-                    " --set host_machine.memory_limit=32MiB");
+    const Outcome outcome = run("", " --set structure.kind=" + kind +
+                                        " --set structure.max_level=21 --set structure.max_objects=1" +
+                                        " --set host_machine.memory_limit=32MiB");
     EXPECT_EQ(outcome.status, 2) << outcome.output;
     EXPECT_TRUE(says(outcome, "structure.max_level")) << outcome.output;
     EXPECT_TRUE(says(outcome, "more than host_machine.memory_limit = 32 MiB")) << outcome.output;
@@ -41,7 +41,8 @@ TEST_F(Limits, SceneAndLogAreRefused) {
   const Outcome scene = run("", " --set host_machine.memory_limit=1MiB");
   EXPECT_EQ(scene.status, 2);
   EXPECT_TRUE(says(scene, "the scene")) << scene.output;
-  const Outcome log = run("", " --set image.width=4096 --set image.height=4096 --set host_machine.memory_limit=99MiB");
+  const Outcome log =
+      run("", " --set image.width=4096 --set image.height=4096 --set host_machine.memory_limit=99MiB");
   EXPECT_EQ(log.status, 2);
   EXPECT_TRUE(says(log, "work log")) << log.output;
   const Outcome little = run("", " --set host_machine.memory_limit=1KiB");
@@ -50,8 +51,10 @@ TEST_F(Limits, SceneAndLogAreRefused) {
 }
 
 TEST_F(Limits, APlanIsRefusedBeforeItsPointsAreRead) {
-  write(file(), "[host_machine]\nmemory_limit = \"64 MiB\"\n[sweep.axes]\nmachine.nodes = { from = 1, to = 1000, steps = 1000 }\n"
-                "host.latency_cycles = { from = 1, to = 1000, steps = 1000 }\n");
+  write(file(),
+        "[host_machine]\nmemory_limit = \"64 MiB\"\n[sweep.axes]\nmachine.nodes = { from = 1, to = 1000, "
+        "steps = 1000 }\n"
+        "host.latency_cycles = { from = 1, to = 1000, steps = 1000 }\n");
   const Outcome outcome = marti("sweep " + quoted(file()) + " --plan");
   EXPECT_EQ(outcome.status, 2) << outcome.output;
   EXPECT_TRUE(says(outcome, "the plan of 1000000 points takes about")) << outcome.output;
@@ -72,7 +75,8 @@ TEST_F(Limits, LittleAddressSpaceIsNoAbort) {
     GTEST_SKIP() << "a sanitizer takes terabytes of address space";
   }
   int done = 0;
-  for (const int kibibytes : {60'000, 100'000, 150'000, 200'000, 250'000, 300'000, 400'000, 600'000, 2'000'000}) {
+  for (const int kibibytes :
+       {60'000, 100'000, 150'000, 200'000, 250'000, 300'000, 400'000, 600'000, 2'000'000}) {
     for (const std::string out : {"", " -o " + quoted(directory_.path() / "out")}) {
       const Outcome outcome = run("ulimit -v " + std::to_string(kibibytes) + "; ", out);
       // Below some size not even the dynamic linker has room.

@@ -17,7 +17,7 @@ constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20U;
 std::shared_ptr<const TriangleSet> scattered(std::size_t count) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> place(0.0, 1.0);
-  std::uniform_real_distribution<double> size(0.0, 0.05);
+  std::uniform_real_distribution<double> size(0.0, 0.4);
   std::vector<TriangleCorners> triangles(count);
   for (TriangleCorners& corners : triangles) {
     const double x = place(random);
@@ -31,11 +31,11 @@ std::shared_ptr<const TriangleSet> scattered(std::size_t count) {
 StructureOptions options_of(std::uint64_t limit) {
   StructureOptions options;
   options.octree.max_objects = 1;
-  options.octree.max_level = 9;
+  options.octree.max_level = 7;
   options.octree.threads = 1;
   options.octree.memory = sim::MemoryBudget(limit);
   options.bsp.max_objects = 1;
-  options.bsp.max_level = 9;
+  options.bsp.max_level = 7;
   options.bsp.memory = options.octree.memory;
   options.grid.density = 1000.0;
   options.grid.memory = options.octree.memory;
@@ -53,14 +53,14 @@ TEST_P(BuildMemory, NeverExceedsTheBudget) {
   for (const std::uint64_t limit : {1 * mebibyte, 6 * mebibyte, 30 * mebibyte, 2048 * mebibyte}) {
     std::string complaint;
     const std::uint64_t peak = test::peak_bytes([&] {
-      complaint = test::user_error_of([&] { (void)make_structure(GetParam(), triangles, options_of(limit)); });
+      complaint =
+          test::user_error_of([&] { (void)make_structure(GetParam(), triangles, options_of(limit)); });
     });
     // Pages, the allocator's own, and what is counted only every so many nodes.
     EXPECT_LT(peak, limit + 3 * mebibyte) << limit;
-    const std::string now =
-        limit > 1024 * mebibyte
-            ? "no UserError"
-            : test::user_error_of([&] { (void)make_structure(GetParam(), triangles, options_of(limit)); });
+    const std::string now = limit > 1024 * mebibyte ? "no UserError" : test::user_error_of([&] {
+      (void)make_structure(GetParam(), triangles, options_of(limit));
+    });
     built = built || now == "no UserError";
     if (limit == mebibyte) {
       EXPECT_NE(now.find("structure."), std::string::npos) << now;
@@ -81,9 +81,8 @@ TEST_P(BuildMemory, OfABuiltStructureIsKnown) {
   if (!test::memory_can_be_measured) {
     GTEST_SKIP() << "a sanitizer takes memory of its own";
   }
-  const std::uint64_t peak = test::peak_bytes([&] {
-    static const auto kept = make_structure(GetParam(), triangles, options_of(2048 * mebibyte));
-  });
+  const std::uint64_t peak = test::peak_bytes(
+      [&] { static const auto kept = make_structure(GetParam(), triangles, options_of(2048 * mebibyte)); });
   EXPECT_LT(host_bytes(*structure), peak + mebibyte);
 }
 

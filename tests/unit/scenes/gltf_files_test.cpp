@@ -116,8 +116,8 @@ TEST(GltfCompressed, ViewsOfBytesThatAreNotThereAreRefused) {
   const test::TemporaryDirectory directory;
   GltfFile file = GltfFile::square();
   file.json["extensionsUsed"] = {"EXT_meshopt_compression"};
-  file.json["buffers"] = {{{"byteLength", file.bin.size()},
-                           {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+  file.json["buffers"] = {
+      {{"byteLength", file.bin.size()}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
   const std::string message = refusal(file.write_glb(directory.path(), "a.glb"));
   EXPECT_TRUE(says(message, "compressed by the extension EXT_meshopt_compression")) << message;
 }
@@ -129,8 +129,8 @@ TEST(GltfSparse, IndicesAreReplaced) {
   for (const bool based : {true, false}) {
     GltfFile file = GltfFile::square();
     const std::vector<std::uint16_t> wrong = {0, 3, 3, 0, 2, 3};
-    const std::vector<std::uint8_t> where = based ? std::vector<std::uint8_t>{1, 2}
-                                                  : std::vector<std::uint8_t>{1, 2, 4, 5};
+    const std::vector<std::uint8_t> where =
+        based ? std::vector<std::uint8_t>{1, 2} : std::vector<std::uint8_t>{1, 2, 4, 5};
     const std::vector<std::uint16_t> what =
         based ? std::vector<std::uint16_t>{1, 2} : std::vector<std::uint16_t>{1, 2, 2, 3};
     const int base = file.add_view(wrong);

@@ -53,19 +53,20 @@ TEST(MemoryEstimates, OfMachinesAreNotTooLow) {
     one.change(machine);
     const auto peak = static_cast<double>(test::peak_bytes([&] { (void)replay(log, machine); }));
     const auto estimate = static_cast<double>(processors::host_bytes(machine));
-    EXPECT_GT(estimate, 0.9 * peak) << one.name << ": " << estimate / machine.nodes << " bytes a node, measured "
-                                    << peak / machine.nodes;
-    EXPECT_LT(estimate, 2.0 * peak) << one.name << ": " << estimate / machine.nodes << " bytes a node, measured "
-                                    << peak / machine.nodes;
+    EXPECT_GT(estimate, 0.9 * peak) << one.name << ": " << estimate / machine.nodes
+                                    << " bytes a node, measured " << peak / machine.nodes;
+    EXPECT_LT(estimate, 2.0 * peak) << one.name << ": " << estimate / machine.nodes
+                                    << " bytes a node, measured " << peak / machine.nodes;
   }
 }
 
 sim::Config sweep_of(const std::string& nodes, const std::string& latencies) {
-  return sim::Config::from_text(sweep_schema(),
-                                "scene.source = \"teapot:2\"\n[sweep.axes]\nmachine.nodes = { from = 1, to = " +
-                                    nodes + ", steps = " + nodes + " }\nhost.latency_cycles = { from = 1, to = " +
-                                    latencies + ", steps = " + latencies + " }\n",
-                                "sweep.toml");
+  return sim::Config::from_text(
+      sweep_schema(),
+      "scene.source = \"teapot:2\"\n[sweep.axes]\nmachine.nodes = { from = 1, to = " + nodes +
+          ", steps = " + nodes + " }\nhost.latency_cycles = { from = 1, to = " + latencies +
+          ", steps = " + latencies + " }\n",
+      "sweep.toml");
 }
 
 // Of 20,000 points with a machine each.
@@ -84,8 +85,10 @@ TEST(MemoryEstimates, OfPlansAreNotTooLow) {
     static const SweepPlan plan = plan_sweep(config);
   }));
   const auto estimate = static_cast<double>(plan_bytes(points, 2));
-  EXPECT_GT(estimate, 0.9 * (peak - fixed)) << estimate / points << " bytes a point, " << (peak - fixed) / points;
-  EXPECT_LT(estimate, 2.0 * (peak - fixed)) << estimate / points << " bytes a point, " << (peak - fixed) / points;
+  EXPECT_GT(estimate, 0.9 * (peak - fixed))
+      << estimate / points << " bytes a point, " << (peak - fixed) / points;
+  EXPECT_LT(estimate, 2.0 * (peak - fixed))
+      << estimate / points << " bytes a point, " << (peak - fixed) / points;
 }
 
 TEST(MemoryEstimates, EqualSectionsAreShared) {

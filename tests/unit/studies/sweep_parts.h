@@ -41,8 +41,7 @@ inline studies::SweepPlan made_plan(std::size_t machines, std::size_t first = 0)
     for (const char* section : {"machine", "cache", "interconnect", "banks", "host", "packets", "costs",
                                 "layout", "local", "database", "build", "l2"}) {
       for (int key = 0; key < 6; ++key) {
-        settings.push_back(
-            {std::string(section) + ".key" + std::to_string(key), "\"16 KiB\"", false, ""});
+        settings.push_back({std::string(section) + ".key" + std::to_string(key), "\"16 KiB\"", false, ""});
       }
     }
     settings[0].value = std::to_string(i % 64);
