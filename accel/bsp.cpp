@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "accel/build_memory.h"
 #include "accel/primitive_overlap.h"
 #include "sim/error.h"
 
@@ -155,6 +156,20 @@ class Builder {
     topology_.work.emplace_back();
   }
 
+  /// For the level's nodes from `index` to the next question.
+  void require_memory(const Level& level, const Level& next, std::size_t index) const {
+    const std::size_t end = std::min(index + nodes_between_checks, level.cells.size());
+    const std::size_t children = 2 * (end - index);
+    const std::size_t listed = level.begin[end] - level.begin[index];
+    require_tree(options_.memory,
+                 growing_bytes(topology_.nodes, children) + growing_bytes(topology_.work, children) +
+                     growing_bytes(topology_.entries, listed) + growing_bytes(next.cells, children) +
+                     growing_bytes(next.begin, children) + growing_bytes(next.lists, 2 * listed) +
+                     bytes_of_vector(level.cells) + bytes_of_vector(level.begin) +
+                     bytes_of_vector(level.lists) + 2 * listed * sizeof(std::uint32_t),
+                 "bsp");
+  }
+
   Level split_level(const Level& level) {
     Level next;
     next.number = static_cast<std::uint8_t>(level.number + 1);
@@ -164,6 +179,9 @@ class Builder {
     const unsigned axis = bsp_axis(level.number);
     const bool may_split = level.number < 3 * (options_.max_level - 1) + 1 && resolvable(next.number);
     for (std::size_t index = 0; index < level.cells.size(); ++index) {
+      if (index % nodes_between_checks == 0) {
+        require_memory(level, next, index);
+      }
       const std::size_t count = level.begin[index + 1] - level.begin[index];
       const std::size_t node = level.first_node + index;
       const std::uint64_t listed =
@@ -222,6 +240,9 @@ Bsp Bsp::build(std::shared_ptr<const TriangleSet> triangles, const BspOptions& o
   tree.frame_ = make_frame(*tree.triangles_);
   Builder(*tree.triangles_, tree.options_, tree.frame_, tree.topology_, tree.levels_).run();
   if (options.walk == BspWalk::push_point && !tree.frame_.box.empty()) {
+    require_tree(options.memory,
+                 bytes_of(tree.topology_) + tree.topology_.nodes.size() * (sizeof(double) + sizeof(Cell)),
+                 kind_name);
     tree.planes_ = splitting_planes(tree.frame_, tree.topology_);
     const auto deepest = static_cast<unsigned>(tree.levels_.size());
     for (unsigned axis = 0; axis < 3; ++axis) {

@@ -45,6 +45,8 @@ struct BspOptions {
   /// As the octree's.
   std::uint64_t max_entries = std::uint64_t{1} << 25;
   BspWalk walk = BspWalk::recursive;
+  /// As the octree's.
+  sim::MemoryBudget memory{};
 };
 
 class Bsp {

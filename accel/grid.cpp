@@ -174,6 +174,12 @@ Grid Grid::build(std::shared_ptr<const TriangleSet> triangles, const GridOptions
   std::vector<std::uint32_t> counts;
   for (;; halve(grid.resolution_)) {
     grid.planes_ = planes_of(grid.frame_, grid.resolution_);
+    const auto require = [&](std::uint64_t listed) {
+      options.memory.require(cells_of(grid.resolution_) * (sizeof(std::uint32_t) + sizeof(TopologyNode)) +
+                                 listed * sizeof(std::uint32_t),
+                             "the grid takes", "lower structure.grid_density");
+    };
+    require(0);
     counts.assign(cells_of(grid.resolution_), 0);
     std::uint64_t entries = 0;
     const bool coarsest = counts.size() == 1;
@@ -184,6 +190,7 @@ Grid Grid::build(std::shared_ptr<const TriangleSet> triangles, const GridOptions
       });
     }
     if (coarsest || entries <= options.max_entries) {
+      require(entries);
       break;
     }
   }

@@ -41,6 +41,7 @@
 #include "accel/visitor.h"
 #include "accel/watertight.h"
 #include "sim/error.h"
+#include "sim/memory_budget.h"
 
 namespace marti::accel {
 
@@ -55,6 +56,8 @@ struct GridOptions {
   /// As long as the cells list more than this many triangles in all, the resolution is halved; it bounds the
   /// memory of hostile scenes (4 bytes an entry). At least 1.
   std::uint64_t max_entries = std::uint64_t{1} << 25;
+  /// What the grid and its building may take of the host's memory; a UserError refuses more.
+  sim::MemoryBudget memory{};
 };
 
 /// The topology: node 0, the grid's header, is a branch, and its children are all cells as leaves: cell

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "accel/build_memory.h"
 #include "accel/parallel.h"
 #include "sim/error.h"
 
@@ -32,7 +33,33 @@ OctreeNode record_of(const Topology& topology, const TopologyNode& node) {
   return record;
 }
 
+// Whether the leaves' triangles are gathered in packs.
+bool has_packs(const Topology& topology, const TriangleSet& triangles) {
+#ifdef MARTI_ACCEL_AVX2
+  return has_avx2() && (topology.entries.size() <= packed_entries_always ||
+                        topology.entries.size() <= packed_entries_per_triangle * triangles.size());
+#else
+  static_cast<void>(topology);
+  static_cast<void>(triangles);
+  return false;
+#endif
+}
+
+std::uint32_t packs_of(const TopologyNode& node) { return node.leaf ? (node.count + 3) / 4 : 0; }
+
 }  // namespace
+
+std::uint64_t Octree::walk_bytes(const Topology& topology, const TriangleSet& triangles) {
+  const std::uint64_t records = topology.nodes.size() * sizeof(OctreeNode);
+  if (!has_packs(topology, triangles)) {
+    return records;
+  }
+  std::uint64_t packs = 0;
+  for (const TopologyNode& node : topology.nodes) {
+    packs += packs_of(node);
+  }
+  return 2 * records + packs * sizeof(TrianglePack);
+}
 
 Octree Octree::build(std::shared_ptr<const TriangleSet> triangles, const OctreeOptions& options) {
   sim::ensure(triangles != nullptr, "an octree needs a triangle set, even an empty one");
@@ -61,6 +88,7 @@ bool has_avx2() {
 #endif
 
 void Octree::pack() {
+  require_tree(options_.memory, bytes_of(topology_) + walk_bytes(topology_, *triangles_), kind_name);
   const std::size_t count = topology_.nodes.size();
   nodes_.resize(node_offset + count);
   parallel_pieces(count, nodes_at_once, options_.threads, [this](std::size_t begin, std::size_t end) {
@@ -68,25 +96,16 @@ void Octree::pack() {
       nodes_[node_offset + n] = record_of(topology_, topology_.nodes[n]);
     }
   });
-#ifdef MARTI_ACCEL_AVX2
-  if (!has_avx2()) {
-    return;
-  }
-#else
-  return;
-#endif
-  if (topology_.entries.size() > packed_entries_always &&
-      topology_.entries.size() > packed_entries_per_triangle * triangles_->size()) {
+  if (!has_packs(topology_, *triangles_)) {
     return;
   }
   packed_nodes_ = nodes_;
   std::uint32_t packs = 0;
   for (std::size_t n = 0; n < count; ++n) {
-    const TopologyNode& node = topology_.nodes[n];
-    if (node.leaf) {
+    if (topology_.nodes[n].leaf) {
       packed_nodes_[node_offset + n].first = packs;
-      packs += (node.count + 3) / 4;
     }
+    packs += packs_of(topology_.nodes[n]);
   }
   packs_.resize(packs);
   parallel_pieces(count, nodes_at_once, options_.threads, [this](std::size_t begin, std::size_t end) {

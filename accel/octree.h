@@ -70,6 +70,9 @@ class Octree {
   /// levels()[i] is level i + 1; as many as the tree has.
   [[nodiscard]] const std::vector<LevelStatistics>& levels() const { return levels_; }
 
+  /// Bytes of host memory that the walks' own records of a tree take, beside its topology.
+  [[nodiscard]] static std::uint64_t walk_bytes(const Topology& topology, const TriangleSet& triangles);
+
   /// The nearest hit. Real is the scalar the arithmetic is done in (double, Counted to count it, or
   /// float to compare with).
   template <class Real = double, class Visitor>

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "accel/build_memory.h"
 #include "accel/parallel.h"
 #include "sim/error.h"
 
@@ -55,7 +56,7 @@ class Builder {
     std::uint32_t number = 1;
     std::uint32_t first_node = 0;
     std::vector<std::array<std::uint32_t, 3>> cells;
-    std::vector<std::size_t> begin;  ///< into lists, one more than cells
+    std::vector<std::size_t> begin{0};  ///< into lists, one more than cells
     std::vector<std::uint32_t> lists;
   };
 
@@ -112,6 +113,12 @@ class Builder {
       }
       return;
     }
+    std::size_t pieces = 0;
+    for (std::size_t node = 0; node < level_.cells.size(); ++node) {
+      pieces += is_full(node) ? (count_of(node) + piece_entries - 1) / piece_entries : 0;
+    }
+    require_memory(0, pieces * sizeof(Piece) + level_.lists.size());
+    pieces_.reserve(pieces);
     for (std::size_t node = 0; node < level_.cells.size(); ++node) {
       if (is_full(node)) {
         for (std::size_t at = level_.begin[node]; at < level_.begin[node + 1]; at += piece_entries) {
@@ -149,6 +156,9 @@ class Builder {
     LevelStatistics& statistics = out_.levels.emplace_back();
     std::size_t piece = 0;
     for (std::size_t node = 0; node < level_.cells.size(); ++node) {
+      if (node % nodes_between_checks == 0) {
+        require_memory(node, 0);
+      }
       const std::size_t first_piece = piece;
       std::array<std::uint32_t, 8> count{};
       SplitWork work{static_cast<std::uint32_t>(count_of(node)), 0};
@@ -170,6 +180,22 @@ class Builder {
         make_leaf(node, statistics);
       }
     }
+  }
+
+  /// For the level's nodes from `node` to the next question, and for `more` bytes.
+  void require_memory(std::size_t node, std::uint64_t more) const {
+    const std::size_t end = std::min(node + nodes_between_checks, level_.cells.size());
+    const std::size_t children = 8 * (end - node);
+    const Topology& topology = out_.topology;
+    require_tree(options_.memory,
+                 growing_bytes(topology.nodes, children) + growing_bytes(topology.work, children) +
+                     growing_bytes(topology.entries, level_.begin[end] - level_.begin[node]) +
+                     growing_bytes(next_.cells, children) + growing_bytes(next_.begin, children) +
+                     bytes_of_vector(next_.lists) + next_.begin.back() * sizeof(std::uint32_t) +
+                     bytes_of_vector(level_.cells) + bytes_of_vector(level_.begin) +
+                     bytes_of_vector(level_.lists) + bytes_of_vector(pieces_) + bytes_of_vector(children_) +
+                     more,
+                 "octree");
   }
 
   void make_branch(std::size_t node, const SplitWork& work, const std::array<std::uint32_t, 8>& count,
@@ -213,6 +239,8 @@ class Builder {
   }
 
   void scatter() {
+    next_.lists.clear();  // all is written anew, so nothing need be copied
+    require_memory(level_.cells.size(), 0);
     next_.lists.resize(next_.begin.back());
     parallel_pieces(
         pieces_.size(), pieces_at_once, options_.threads, [this](std::size_t begin, std::size_t end) {

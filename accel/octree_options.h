@@ -5,6 +5,7 @@
 
 #include "accel/octree_sort.h"
 #include "scenes/scene.h"
+#include "sim/memory_budget.h"
 
 namespace marti::accel {
 
@@ -21,6 +22,8 @@ struct OctreeOptions {
   scenes::Bounds enclose{};
   /// Host threads that build; 0: all. The tree is the same with any number.
   unsigned threads = 0;
+  /// What the tree and its building may take of the host's memory; a UserError refuses more as it grows.
+  sim::MemoryBudget memory{};
 };
 
 /// One level of the tree.

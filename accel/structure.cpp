@@ -42,6 +42,15 @@ std::unique_ptr<Structure> make_lazy_octree(std::shared_ptr<const TriangleSet> t
   return std::make_unique<StructureOf<LazyOctree>>(LazyOctree::build(std::move(triangles), options));
 }
 
+std::uint64_t host_bytes(const Structure& structure) {
+  const Topology& topology = structure.topology();
+  const std::uint64_t records =
+      structure.kind() == Octree::kind_name ? Octree::walk_bytes(topology, structure.triangles()) : 0;
+  const std::uint64_t planes =
+      structure.kind() == Bsp::kind_name ? sizeof(double) * topology.nodes.size() : 0;
+  return bytes_of(topology) + records + planes;
+}
+
 Traversal traversal_of(const Structure& structure) {
   return visit_structure(structure, [](const auto& concrete) {
     using Concrete = std::remove_cvref_t<decltype(concrete)>;

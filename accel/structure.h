@@ -85,6 +85,9 @@ struct StructureOptions {
 /// that traced other rays are not the same. Throws UserError for an option out of range.
 [[nodiscard]] std::unique_ptr<Structure> make_lazy_octree(std::shared_ptr<const TriangleSet> triangles,
                                                           const LazyOctreeOptions& options = {});
+/// Bytes of host memory that the structure takes beside its triangles, about.
+[[nodiscard]] std::uint64_t host_bytes(const Structure& structure);
+
 /// The walk that the structure's queries take.
 [[nodiscard]] Traversal traversal_of(const Structure& structure);
 

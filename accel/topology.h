@@ -36,4 +36,10 @@ struct Topology {
   bool operator==(const Topology&) const = default;
 };
 
+/// Bytes of host memory.
+[[nodiscard]] inline std::uint64_t bytes_of(const Topology& topology) {
+  return topology.nodes.size() * sizeof(TopologyNode) + topology.entries.size() * sizeof(std::uint32_t) +
+         topology.work.size() * sizeof(SplitWork);
+}
+
 }  // namespace marti::accel

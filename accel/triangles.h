@@ -29,6 +29,11 @@ class TriangleSet {
   explicit TriangleSet(std::vector<TriangleCorners> triangles,
                        const std::vector<scenes::Quadric>& quadrics = {});
 
+  /// Bytes of host memory that the set of a scene's primitives takes.
+  [[nodiscard]] static std::uint64_t host_bytes(const scenes::Scene& scene) {
+    return scene.triangles.size() * sizeof(TriangleCorners) + scene.quadrics.size() * sizeof(QuadricShape);
+  }
+
   /// All primitives: ids are below it.
   [[nodiscard]] std::uint32_t size() const {
     return static_cast<std::uint32_t>(triangles_.size() + quadrics_.size());

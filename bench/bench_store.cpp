@@ -51,6 +51,7 @@ struct Sweep {
 Sweep make_sweep(std::size_t machines) {
   constexpr std::size_t different = 16;
   Sweep sweep;
+  studies::SettingsPool pool;
   sweep.plan.axes = {"machine.nodes", "cache.size", "interconnect.width"};
   std::shared_ptr<const processors::WorkLog> log;
   for (std::size_t i = 0; i < machines; ++i) {
@@ -84,7 +85,7 @@ Sweep make_sweep(std::size_t machines) {
     if (sweep.rows.size() < different) {
       sweep.rows.push_back(studies::sweep_row(machine, processors::replay(*log, machine)));
     }
-    sweep.plan.machines.push_back({key_of(i), 0, machine, of_machine});
+    sweep.plan.machines.push_back({key_of(i), 0, machine, pool.share(of_machine)});
     sweep.plan.points.push_back({{nodes, size, static_cast<std::int64_t>(i / 42)}, i, 0, 1.0});
   }
   return sweep;
@@ -97,7 +98,8 @@ void run(bench::Report& report, std::size_t machines, const std::filesystem::pat
     std::printf("%-28s%10.3f s\n", what, seconds);
     report.add({.name = what, .unit = "s", .ours = seconds});
   };
-  std::printf("%zu machines, %zu settings each\n", machines, sweep.plan.machines[0].settings.size());
+  std::printf("%zu machines, %zu settings each\n", machines,
+              studies::all_of(sweep.plan.machines[0].settings).size());
   {
     Stopwatch watch;
     studies::SweepStore store(file, sweep.plan);

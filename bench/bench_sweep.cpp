@@ -106,7 +106,8 @@ void compare_with_runs(bench::Report& report, const std::string& config, const s
         plan.points.size() / static_cast<std::size_t>(2 * runs);
     std::vector<std::string> arguments = {"run", config, "-o", scratch.path("run")};
     arguments.insert(arguments.end(), image.begin(), image.end());
-    for (const sim::EffectiveValue& value : plan.machines[plan.points[chosen].machine].settings) {
+    for (const sim::EffectiveValue& value :
+         studies::all_of(plan.machines[plan.points[chosen].machine].settings)) {
       if (value.given) {
         arguments.insert(arguments.end(), {"--set", value.key + "=" + value.value});
       }

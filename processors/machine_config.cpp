@@ -4,6 +4,7 @@
 #include <string>
 
 #include "memory/tags.h"
+#include "processors/accounting.h"
 #include "processors/cache_counting.h"
 #include "processors/memory_system.h"
 #include "processors/second_level.h"
@@ -77,7 +78,8 @@ MachineConfig one_node_of(const MachineConfig& config) {
 }
 
 std::uint64_t host_bytes(const MachineConfig& config) {
-  constexpr std::uint64_t bytes_a_node = 600;
+  // What a node counts, while it runs and in the result, and its cursor, event and place in the order.
+  constexpr std::uint64_t bytes_a_node = 2 * sizeof(NodeStatistics) + 160;
   std::uint64_t tags = 0;
   if (config.cache.organisation == CacheOrganisation::unified) {
     tags = tag_bytes(config.cache.cache);

@@ -58,6 +58,25 @@ std::uint64_t count_degenerate(const Scene& scene) {
                     [&scene](const Triangle& triangle) { return has_no_area(scene, triangle); }));
 }
 
+std::uint64_t host_bytes(const Scene& scene) {
+  std::uint64_t bytes = scene.positions.size() * sizeof(glm::dvec3) +
+                        scene.normals.size() * sizeof(glm::dvec3) + scene.uvs.size() * sizeof(glm::dvec2) +
+                        scene.triangles.size() * sizeof(Triangle) + scene.quadrics.size() * sizeof(Quadric);
+  for (const Texture& texture : scene.textures) {
+    bytes += texture.texels.size() * sizeof(texture.texels[0]) +
+             (texture.file == nullptr ? 0 : texture.file->size());
+  }
+  return bytes;
+}
+
+std::uint64_t host_bytes_of_facts(const Scene& scene) {
+  // Positions with their numbers, and their ranks; each triangle's corners, in a vector that grows by
+  // doubling, and its key.
+  const std::uint64_t vertex = sizeof(PositionBits) + 8 + 4;
+  const std::uint64_t triangle = 3 * (3 * 4) + 3 * 4;
+  return scene.positions.size() * vertex + scene.triangles.size() * triangle;
+}
+
 SceneFacts facts_of(const Scene& scene) {
   SceneFacts facts;
   facts.name = scene.name;

@@ -1,16 +1,16 @@
 #include "scenes/gltf.h"
 
 #include <algorithm>
-#include <array>
 #include <new>
 #include <optional>
 #include <sstream>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "scenes/animated.h"
 #include "scenes/gltf_animation.h"
+#include "scenes/gltf_extensions.h"
+#include "scenes/gltf_instances.h"
 #include "scenes/gltf_material.h"
 #include "scenes/gltf_mesh.h"
 #include "scenes/gltf_model.h"
@@ -30,31 +30,8 @@ using gltf::LeftOut;
 using gltf::Model;
 using gltf::Pose;
 
-constexpr std::array<std::string_view, 5> supported_extensions = {
-    "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_transmission", "KHR_mesh_quantization"};
-
-bool is_supported(const std::string& extension) {
-  return std::find(supported_extensions.begin(), supported_extensions.end(), extension) !=
-         supported_extensions.end();
-}
-
-void check_requirements(const Model& model) {
-  for (const std::string& extension : model.data().extensionsRequired) {
-    if (!is_supported(extension)) {
-      model.fail("it requires the extension '" + extension + "', which is not supported");
-    }
-  }
-}
-
 void note_extensions(const Model& model, Scene& scene) {
-  std::string names;
-  for (const std::string& extension : model.data().extensionsUsed) {
-    if (!is_supported(extension)) {
-      names += (names.empty() ? "" : ", ");
-      names += extension;
-    }
-  }
+  const std::string names = gltf::ignored_extensions(model.data());
   if (!names.empty()) {
     scene.notes.push_back("Optional glTF extensions are ignored: " + names + ".");
   }
@@ -185,7 +162,6 @@ class GltfPoses : public PoseSource {
   }
 
   void build(const ImageDecoder& decode) {
-    check_requirements(model_);
     chosen_ = gltf::chosen_animation(model_);
     if (chosen_ >= 0) {
       animation_.emplace(model_, chosen_);
@@ -195,6 +171,10 @@ class GltfPoses : public PoseSource {
     skins_.emplace(model_, nodes_);
     Pose pose;
     pose.nodes = gltf::place_nodes(model_, nodes_, {});
+    const gltf::Expanded expanded = gltf::expanded_instances(model_, nodes_);
+    model_.take_memory(expanded.bytes(), "its instances take");
+    still_.positions.reserve(expanded.vertices);
+    still_.triangles.reserve(expanded.triangles);
     LeftOut left_out;
     gltf::Materials materials(model_, decode, still_, left_out);
     gltf::MeshReader meshes(model_, materials, *skins_, still_, left_out);

@@ -36,6 +36,7 @@
 #include "scenes/animated.h"
 #include "scenes/scene.h"
 #include "scenes/texture.h"
+#include "sim/memory_budget.h"
 
 namespace marti::scenes {
 
@@ -49,10 +50,16 @@ struct GltfOptions {
   /// Where there is one, images are not decoded: textures have their size and their file, and no texels (see
   /// decode_texels).
   ImageSizer size_only;
+  /// Where there is one, and no `size_only`: tells an image's size before it is decoded, so that one beyond
+  /// `memory` is refused first.
+  ImageSizer size_first;
   /// Also reads and checks what no part of the scene uses: all images, and all accessors of numbers.
   bool read_unused = false;
   std::uint64_t max_triangles = std::uint64_t{1} << 25;  ///< more than this is refused; vertices likewise
   std::uint64_t max_file_bytes = (std::uint64_t{1} << 32) - 1;  ///< of each file read
+  /// What the files, the scene made of them and its textures may take, all together. Instances are counted
+  /// before they are expanded, texels before they are decoded.
+  sim::MemoryBudget memory;
 };
 
 /// Opens a file. A scene without a camera or a light gets one that frames it, and a note. Triangles with a

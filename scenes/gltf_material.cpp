@@ -17,6 +17,8 @@ namespace {
 constexpr double largest_emission = 1e9;
 constexpr double largest_ior = 100.0;
 constexpr double largest_shininess = 1e5;
+constexpr std::uint64_t bytes_a_texel = sizeof(decltype(Texture::texels)::value_type);
+constexpr const char* textures_take = "its textures take";
 
 const tinygltf::Value* extension(const tinygltf::ExtensionMap& map, const char* name) {
   const auto found = map.find(name);
@@ -187,14 +189,17 @@ std::uint32_t Materials::texture_index(int texture, const std::string& user) {
   if (source.sampler >= 0) {
     sampler = model_.at(model_.data().samplers, source.sampler, "sampler", name);
   }
-  const auto key = std::tuple(source.source, sampler.wrapS, sampler.wrapT);
+  const int image = first_alike(source.source, name);
+  const auto key = std::tuple(image, sampler.wrapS, sampler.wrapT);
+  images_.insert(source.source);
   const auto known = textures_.find(key);
   if (known != textures_.end()) {
     return known->second;
   }
-  images_.insert(source.source);
-  Texture decoded =
-      model_.options().size_only ? size_image(source.source, name) : decode_image(source.source, name);
+  Texture decoded = model_.options().size_only ? size_image(image, name) : decode_image(image, name);
+  if (!model_.options().size_only) {
+    model_.take_memory(decoded.size() * bytes_a_texel, textures_take);
+  }
   decoded.srgb = true;
   decoded.repeat_u = sampler.wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
   decoded.repeat_v = sampler.wrapT != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
@@ -207,6 +212,16 @@ std::uint32_t Materials::texture_index(int texture, const std::string& user) {
   scene_.textures.push_back(std::move(decoded));
   textures_.emplace(key, index);
   return index;
+}
+
+int Materials::first_alike(int image, const std::string& user) {
+  const std::span<const std::byte> bytes = find_image(image, user).bytes;
+  const auto [place, is_new] = image_at_.try_emplace(std::pair(bytes.data(), bytes.size()), image);
+  if (is_new) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    place->second = image_of_bytes_.try_emplace(text, image).first->second;
+  }
+  return place->second;
 }
 
 Materials::Image Materials::find_image(int image, const std::string& user) const {
@@ -239,6 +254,12 @@ auto Materials::read_image(const Image& image, const Decode& decode) const {
 
 Texture Materials::decode_image(int image, const std::string& user) const {
   const Image found = find_image(image, user);
+  if (const ImageSizer& sizer =
+          model_.options().size_first ? model_.options().size_first : model_.options().size_only) {
+    const ImageSize size = read_image(found, sizer);
+    // The samples as the decoder gives them, and the texels made of them.
+    model_.require_memory(2 * bytes_a_texel * size.width * size.height, textures_take);
+  }
   Texture texture = read_image(found, decode_);
   sim::ensure(texture.width > 0 && texture.height > 0 && texture.texels.size() == texture.size(),
               "an image decoder returned a texture whose size does not match its texels");
@@ -254,6 +275,7 @@ Texture Materials::size_image(int image, const std::string& user) const {
   texture.name = found.name;
   texture.width = size.width;
   texture.height = size.height;
+  model_.take_memory(found.bytes.size(), textures_take);
   texture.file = std::make_shared<const std::vector<std::byte>>(found.bytes.begin(), found.bytes.end());
   return texture;
 }

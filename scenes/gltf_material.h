@@ -6,7 +6,10 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <tuple>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -54,6 +57,8 @@ class Materials {
  private:
   Material convert(int index, int& texture_coordinates);
   std::uint32_t texture_index(int texture, const std::string& user);
+  /// The first image in use with the same bytes: it is decoded once, and there is one texture of it.
+  int first_alike(int image, const std::string& user);
   struct Image {
     std::string name;
     std::span<const std::byte> bytes;
@@ -71,7 +76,9 @@ class Materials {
   LeftOut& left_out_;
   std::map<int, Use> used_;
   std::set<int> images_;
-  std::map<std::tuple<int, int, int>, std::uint32_t> textures_;  // by image and wrap modes
+  std::map<std::pair<const std::byte*, std::size_t>, int> image_at_;  // so that shared bytes are hashed once
+  std::unordered_map<std::string_view, int> image_of_bytes_;          // of the model's buffers
+  std::map<std::tuple<int, int, int>, std::uint32_t> textures_;       // by image and wrap modes
 };
 
 }  // namespace marti::scenes::gltf

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scenes/gltf_animation.h"
+#include "scenes/gltf_extensions.h"
 
 namespace marti::scenes::gltf {
 
@@ -50,6 +51,9 @@ void MeshReader::add_primitive(const tinygltf::Primitive& primitive, const Pose&
   if (attribute(primitive.attributes, "POSITION") < 0) {
     left_out_.features["primitives without positions"] += 1;
     return;
+  }
+  if (const std::string extension = compression_of_primitive(model_.data(), primitive); !extension.empty()) {
+    model_.fail(name + " is compressed by the extension " + extension + ", which is not supported");
   }
   left_out_.features["vertex colours"] += attribute(primitive.attributes, "COLOR_0") >= 0 ? 1U : 0U;
   const Materials::Use use = materials_.use(primitive.material);

@@ -6,8 +6,12 @@
 #include <cstring>
 #include <new>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
+#include "scenes/gltf_extensions.h"
+#include "scenes/gltf_files.h"
+#include "scenes/gltf_index_views.h"
 #include "sim/error.h"
 #include "sim/files.h"
 
@@ -17,39 +21,6 @@ namespace {
 
 constexpr std::uint64_t max_json_bytes = std::uint64_t{1} << 30;
 constexpr int max_json_depth = 128;  // tinygltf walks `extras` and `extensions` by recursion
-
-/// What the file callbacks need: where files may be read from, and how large they may be.
-struct FileAccess {
-  std::string base_directory;
-  std::int64_t max_bytes;
-};
-
-bool file_exists(const std::string& name, void* user) {
-  // tinygltf looks in the current directory as well; a file must not depend on where it is opened from.
-  const auto* access = static_cast<const FileAccess*>(user);
-  std::error_code error;
-  return name.starts_with(access->base_directory) && std::filesystem::is_regular_file(name, error);
-}
-
-std::string same_path(const std::string& name, void* /*user*/) { return name; }
-
-bool read_whole_file(std::vector<unsigned char>* out, std::string* error, const std::string& name,
-                     void* user) {
-  try {
-    const std::string text = sim::read_file(name, static_cast<const FileAccess*>(user)->max_bytes);
-    out->assign(text.begin(), text.end());
-    return true;
-  } catch (const sim::UserError& reason) {
-    *error += reason.what();
-    return false;
-  }
-}
-
-bool refuse_to_write(std::string* error, const std::string& /*name*/,
-                     const std::vector<unsigned char>& /*data*/, void* /*user*/) {
-  *error += "reading only";
-  return false;
-}
 
 /// Keeps an image file's bytes as they are. Bytes of buffer views are left alone: tinygltf has not checked
 /// that they lie inside their buffer.
@@ -62,9 +33,21 @@ bool keep_image(tinygltf::Image* image, const int /*index*/, std::string* /*erro
   return true;
 }
 
-int nesting_of(std::string_view json) {
+/// What can be told of a JSON text before it is parsed.
+struct JsonShape {
   int depth = 0;
-  int deepest = 0;
+  std::uint64_t objects = 0;
+  std::uint64_t values = 0;  ///< about: members and elements
+
+  /// What its parsed form takes, beside the text: the strings, and for each object tinygltf's own.
+  [[nodiscard]] std::uint64_t bytes(std::uint64_t text) const {
+    return 2 * text + 600 * objects + 48 * values;
+  }
+};
+
+JsonShape shape_of(std::string_view json) {
+  JsonShape shape;
+  int depth = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < json.size(); ++i) {
     const char c = json[i];
@@ -77,12 +60,16 @@ int nesting_of(std::string_view json) {
     } else if (c == '"') {
       in_string = true;
     } else if (c == '{' || c == '[') {
-      deepest = std::max(deepest, ++depth);
+      shape.depth = std::max(shape.depth, ++depth);
+      shape.objects += c == '{' ? 1U : 0U;
+      ++shape.values;
     } else if (c == '}' || c == ']') {
       --depth;
+    } else if (c == ',') {
+      ++shape.values;
     }
   }
-  return deepest;
+  return shape;
 }
 
 /// The JSON text of either kind of file; of a broken .glb as much as there is.
@@ -193,7 +180,7 @@ double load_value(const std::byte* from, int type, bool normalized) {
 }  // namespace
 
 Model::Model(std::filesystem::path path, const GltfOptions& options)
-    : path_(std::move(path)), options_(options) {
+    : path_(std::move(path)), options_(options), memory_(options.memory) {
   try {
     parse();
   } catch (const sim::UserError&) {
@@ -206,6 +193,11 @@ Model::Model(std::filesystem::path path, const GltfOptions& options)
 }
 
 void Model::parse() {
+  std::error_code failed;
+  if (const std::uintmax_t size = std::filesystem::file_size(path_, failed);
+      !failed && size <= options_.max_file_bytes) {
+    take_memory(2 * size, "it takes");  // tinygltf copies what of it is no JSON
+  }
   std::string file;
   try {
     file = sim::read_file(path_, static_cast<std::int64_t>(options_.max_file_bytes));
@@ -221,29 +213,52 @@ void Model::parse() {
   if (json.size() > max_json_bytes || file.size() > 0xffffffffU) {
     fail("it is too large: at most 1 GiB of JSON and 4 GiB in all can be read");
   }
-  if (nesting_of(json) > max_json_depth) {
+  const JsonShape shape = shape_of(json);
+  if (shape.depth > max_json_depth) {
     fail("its JSON is nested deeper than " + std::to_string(max_json_depth) + " levels");
   }
-  std::string directory = path_.parent_path().empty() ? "." : path_.parent_path().string();
-  FileAccess access{directory.ends_with('/') ? directory : directory + "/",
-                    static_cast<std::int64_t>(options_.max_file_bytes)};
-  tinygltf::TinyGLTF parser;
-  parser.SetImageLoader(keep_image, nullptr);
-  parser.SetFsCallbacks({file_exists, same_path, read_whole_file, refuse_to_write, &access});
+  take_memory(shape.bytes(json.size()), "its JSON takes");
+  const sim::MemoryBudget before = memory_;
+  FileAccess access(path_.parent_path(), options_.max_file_bytes, memory_);
   std::string error;
-  std::string warning;
-  const auto size = static_cast<unsigned int>(file.size());
-  const bool parsed =
-      binary
-          ? parser.LoadBinaryFromMemory(&data_, &error, &warning,
-                                        reinterpret_cast<const unsigned char*>(file.data()), size, directory)
-          : parser.LoadASCIIFromString(&data_, &error, &warning, file.data(), size, directory);
+  bool parsed = parse_with(file, access, error);
+  if (!parsed && error.find("] invalid bufferView") != std::string::npos) {
+    if (IndexViews given = given_index_views(json); !given.accessors.empty()) {
+      memory_ = before;
+      data_ = {};
+      error.clear();
+      parsed = parse_with(binary ? with_json(file, std::move(given.json)) : given.json, access, error);
+      take_index_views(given, data_);
+    }
+  }
+  if (!access.refusal().empty()) {
+    fail(access.refusal());
+  }
+  // tinygltf reads the names of the extensions before it comes upon what it cannot read for want of one.
+  if (const std::string extension = missing_requirement(data_); !extension.empty()) {
+    fail("it requires the extension " + shown(extension) + ", which is not supported");
+  }
   // Some faults only leave a message: a primitive that cannot be parsed is dropped, for example.
   const std::string faults = true_faults(error);
   if (!parsed || !faults.empty()) {
-    fail("it is no valid glTF 2.0: " + (error.empty() ? "unknown fault" : one_line(parsed ? faults : error)));
+    const std::string ignored = one_line(ignored_extensions(data_));
+    fail("it is no valid glTF 2.0: " + (error.empty() ? "unknown fault" : one_line(parsed ? faults : error)) +
+         (ignored.empty() ? "" : " (it uses extensions that are not supported: " + ignored + ")"));
   }
   read_ = std::vector<std::atomic<bool>>(data_.accessors.size());
+}
+
+void Model::require_memory(std::uint64_t bytes, const char* what) const {
+  try {
+    memory_.require(bytes, what, "take a smaller scene");
+  } catch (const sim::UserError& error) {
+    fail(error.what());
+  }
+}
+
+void Model::take_memory(std::uint64_t bytes, const char* what) const {
+  require_memory(bytes, what);
+  memory_.take(bytes, what, {});
 }
 
 void Model::fail(const std::string& what) const { throw sim::UserError(path_.string() + ": " + what); }
@@ -257,6 +272,9 @@ std::span<const std::byte> Model::view_bytes(int view, const std::string& user) 
   const tinygltf::BufferView& v = at(data_.bufferViews, view, "buffer view", user);
   const std::string name = "buffer view " + std::to_string(view);
   const tinygltf::Buffer& buffer = at(data_.buffers, v.buffer, "buffer", name);
+  if (const std::string extension = compression_of_view(data_, view); !extension.empty()) {
+    fail(name + " is compressed by the extension " + extension + ", which is not supported");
+  }
   const std::uint64_t size = buffer.data.size();
   if (v.byteOffset > size || v.byteLength > size - v.byteOffset) {
     fail(name + " takes " + std::to_string(v.byteLength) + " bytes from byte " +
@@ -285,6 +303,54 @@ Model::Elements Model::elements(int view, std::uint64_t offset, std::uint64_t co
   return {bytes.subspan(offset), stride, static_cast<std::size_t>(count), component_type};
 }
 
+template <typename Store>
+void Model::apply_sparse(const tinygltf::Accessor& accessor, int components, const std::string& user,
+                         const Store& store) const {
+  const auto& sparse = accessor.sparse;
+  const int type = sparse.indices.componentType;
+  if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+      type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+    fail(user + ": sparse indices of component type " + std::to_string(type));
+  }
+  if (sparse.count < 1 || static_cast<std::size_t>(sparse.count) > accessor.count ||
+      sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) {
+    fail(user + ": " + std::to_string(sparse.count) + " sparse elements or a negative offset");
+  }
+  const auto count = static_cast<std::uint64_t>(sparse.count);
+  const Elements where = elements(
+      sparse.indices.bufferView, static_cast<std::uint64_t>(sparse.indices.byteOffset), count, type, 1, user);
+  const Elements what =
+      elements(sparse.values.bufferView, static_cast<std::uint64_t>(sparse.values.byteOffset), count,
+               accessor.componentType, components, user);
+  for (std::size_t i = 0; i < where.count; ++i) {
+    const std::uint32_t index = load_unsigned(where.bytes.data() + i * where.stride, type);
+    if (index >= accessor.count) {
+      fail(user + ": sparse index " + std::to_string(index) + " is out of range");
+    }
+    store(index, what.bytes.data() + i * what.stride);
+  }
+}
+
+bool Model::parse_with(const std::string& file, FileAccess& access, std::string& error) {
+  const std::string directory = access.directory().substr(0, access.directory().size() - 1);
+  tinygltf::TinyGLTF parser;
+  parser.SetImageLoader(keep_image, nullptr);
+  parser.SetFsCallbacks(access.callbacks());
+  std::string warning;
+  const auto size = static_cast<unsigned int>(file.size());
+  return file.starts_with("glTF")
+             ? parser.LoadBinaryFromMemory(&data_, &error, &warning,
+                                           reinterpret_cast<const unsigned char*>(file.data()), size,
+                                           directory)
+             : parser.LoadASCIIFromString(&data_, &error, &warning, file.data(), size, directory);
+}
+
+void Model::refuse_many_zeros(const tinygltf::Accessor& accessor, const std::string& name) const {
+  if (accessor.count > most_zeros) {
+    fail(name + " has " + std::to_string(accessor.count) + " elements and no buffer view");
+  }
+}
+
 std::vector<double> Model::read_values(int accessor, int components, const std::string& user) const {
   const tinygltf::Accessor& a = at(data_.accessors, accessor, "accessor", user);
   read_[static_cast<std::size_t>(accessor)] = true;
@@ -306,10 +372,7 @@ std::vector<double> Model::read_values(int accessor, int components, const std::
   const auto width = static_cast<std::size_t>(components);
   std::vector<double> values;
   if (a.bufferView < 0) {
-    constexpr std::size_t most_zeros = std::size_t{1} << 22;
-    if (a.count > most_zeros) {
-      fail(name + " has " + std::to_string(a.count) + " elements and no buffer view");
-    }
+    refuse_many_zeros(a, name);
     values.assign(a.count * width, 0.0);
   } else {
     const Elements e = elements(a.bufferView, a.byteOffset, a.count, a.componentType, components, name);
@@ -322,41 +385,14 @@ std::vector<double> Model::read_values(int accessor, int components, const std::
     }
   }
   if (a.sparse.isSparse) {
-    apply_sparse(a, components, values, name);
+    const std::size_t step = component_size(a.componentType);
+    apply_sparse(a, components, name, [&](std::size_t i, const std::byte* from) {
+      for (std::size_t c = 0; c < width; ++c) {
+        values[i * width + c] = load_value(from + c * step, a.componentType, a.normalized);
+      }
+    });
   }
   return values;
-}
-
-void Model::apply_sparse(const tinygltf::Accessor& accessor, int components, std::vector<double>& values,
-                         const std::string& user) const {
-  const auto& sparse = accessor.sparse;
-  const int type = sparse.indices.componentType;
-  if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-      type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
-    fail(user + ": sparse indices of component type " + std::to_string(type));
-  }
-  if (sparse.count < 1 || static_cast<std::size_t>(sparse.count) > accessor.count ||
-      sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) {
-    fail(user + ": " + std::to_string(sparse.count) + " sparse elements or a negative offset");
-  }
-  const auto count = static_cast<std::uint64_t>(sparse.count);
-  const Elements where = elements(
-      sparse.indices.bufferView, static_cast<std::uint64_t>(sparse.indices.byteOffset), count, type, 1, user);
-  const Elements what =
-      elements(sparse.values.bufferView, static_cast<std::uint64_t>(sparse.values.byteOffset), count,
-               accessor.componentType, components, user);
-  const auto width = static_cast<std::size_t>(components);
-  for (std::size_t i = 0; i < where.count; ++i) {
-    const std::uint32_t index = load_unsigned(where.bytes.data() + i * where.stride, type);
-    if (index >= accessor.count) {
-      fail(user + ": sparse index " + std::to_string(index) + " is out of range");
-    }
-    for (std::size_t c = 0; c < width; ++c) {
-      values[index * width + c] =
-          load_value(what.bytes.data() + i * what.stride + c * component_size(accessor.componentType),
-                     accessor.componentType, accessor.normalized);
-    }
-  }
 }
 
 std::vector<double> Model::read_matrices(int accessor, std::size_t count, const std::string& user) const {
@@ -393,18 +429,24 @@ std::vector<std::uint32_t> Model::read_indices(int accessor, const std::string& 
        type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)) {
     fail(name + " has the wrong type: unsigned scalars are needed");
   }
-  if (a.sparse.isSparse) {
-    fail(name + ": sparse vertex indices are not supported");
-  }
   if (a.count > 3 * options_.max_triangles) {
     fail(name + " has " + std::to_string(a.count) + " elements; at most " +
          std::to_string(3 * options_.max_triangles) + " are accepted");
   }
-  const Elements e = elements(a.bufferView, a.byteOffset, a.count, type, 1, name);
   std::vector<std::uint32_t> indices;
-  indices.reserve(e.count);
-  for (std::size_t i = 0; i < e.count; ++i) {
-    indices.push_back(load_unsigned(e.bytes.data() + i * e.stride, type));
+  if (a.bufferView < 0 && a.sparse.isSparse) {
+    refuse_many_zeros(a, name);
+    indices.assign(a.count, 0);
+  } else {
+    const Elements e = elements(a.bufferView, a.byteOffset, a.count, type, 1, name);
+    indices.reserve(e.count);
+    for (std::size_t i = 0; i < e.count; ++i) {
+      indices.push_back(load_unsigned(e.bytes.data() + i * e.stride, type));
+    }
+  }
+  if (a.sparse.isSparse) {
+    apply_sparse(a, 1, name,
+                 [&](std::size_t i, const std::byte* from) { indices[i] = load_unsigned(from, type); });
   }
   return indices;
 }

@@ -18,6 +18,11 @@
 
 namespace marti::scenes::gltf {
 
+class FileAccess;
+
+/// An accessor without a buffer view stands for this many zeros at most.
+inline constexpr std::size_t most_zeros = std::size_t{1} << 22U;
+
 class Model {
  public:
   /// Reads and parses the file and those it refers to. Throws UserError.
@@ -26,6 +31,12 @@ class Model {
   [[nodiscard]] const tinygltf::Model& data() const { return data_; }
   [[nodiscard]] const GltfOptions& options() const { return options_; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  /// Takes from options().memory. Throws UserError when there is not as much left; `what` begins the
+  /// sentence, as "its textures take". For the thread that opens the file.
+  void take_memory(std::uint64_t bytes, const char* what) const;
+  /// The same for what is given back soon: takes nothing.
+  void require_memory(std::uint64_t bytes, const char* what) const;
 
   /// Throws a UserError that begins with the file's path.
   [[noreturn]] void fail(const std::string& what) const;
@@ -68,13 +79,18 @@ class Model {
                                    const std::string& user) const;
   [[nodiscard]] Elements elements(int view, std::uint64_t offset, std::uint64_t count, int component_type,
                                   int components, const std::string& user) const;
-  void apply_sparse(const tinygltf::Accessor& accessor, int components, std::vector<double>& values,
-                    const std::string& user) const;
+  /// Hands each replacement to `store`: its element and its bytes.
+  template <typename Store>
+  void apply_sparse(const tinygltf::Accessor& accessor, int components, const std::string& user,
+                    const Store& store) const;
+  void refuse_many_zeros(const tinygltf::Accessor& accessor, const std::string& name) const;
   void parse();
+  bool parse_with(const std::string& file, FileAccess& access, std::string& error);
 
   std::filesystem::path path_;
   GltfOptions options_;
   tinygltf::Model data_;
+  mutable sim::MemoryBudget memory_;
   mutable std::vector<std::atomic<bool>> read_;  // for each accessor; animations are read by many threads
 };
 

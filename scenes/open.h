@@ -52,6 +52,11 @@ struct SceneFacts {
   Bounds bounds;
 };
 
+/// Bytes of host memory that the scene's vertices, primitives and decoded texels take.
+[[nodiscard]] std::uint64_t host_bytes(const Scene& scene);
+/// And those that facts_of() takes for as long as it sorts.
+[[nodiscard]] std::uint64_t host_bytes_of_facts(const Scene& scene);
+
 /// How many triangles have exactly no area. In time proportional to their number.
 [[nodiscard]] std::uint64_t count_degenerate(const Scene& scene);
 

@@ -8,6 +8,9 @@
 #include <system_error>
 #include <vector>
 
+#include "sim/units.h"
+#include "studies/image_file.h"
+
 namespace marti::studies {
 
 namespace {
@@ -119,8 +122,30 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.boolean("structure.mailboxes", false,
                  "no ray tests a primitive twice: each remembers the last ray, in a word of the node's own");
   schema.section("host_machine", "the computer that runs the simulation");
-  schema.size("host_machine.memory_limit", "8 GiB", {"1 MiB", "1024 TiB"},
-              "refuse a frame whose image and work log would take more");
+  schema.size(
+      "host_machine.memory_limit", "0 B", {"0 B", "1024 TiB"},
+      "refuse what would take more memory: scene, structure, work log, machine, plan of a sweep; 0: three "
+      "quarters of what the host, the container and `ulimit -v` allow; else at least 1 MiB");
+}
+
+void give_memory(const sim::MemoryBudget& memory, accel::StructureOptions& options) {
+  options.octree.memory = memory;
+  options.bsp.memory = memory;
+  options.grid.memory = memory;
+}
+
+sim::MemoryBudget read_memory(const sim::Config& config, std::uint64_t processes) {
+  constexpr std::int64_t least = std::int64_t{1} << 20U;
+  const std::int64_t limit = config.size("host_machine.memory_limit");
+  if (limit == 0) {
+    return sim::MemoryBudget(sim::default_memory_limit(processes));
+  }
+  if (limit < least) {
+    config.fail(
+        "host_machine.memory_limit",
+        sim::print_size(limit) + " is less than 1 MiB; 0 stands for three quarters of the host's memory");
+  }
+  return sim::MemoryBudget(static_cast<std::uint64_t>(limit), config.where("host_machine.memory_limit"));
 }
 
 FrameConfig read_frame(sim::Config& config) {
@@ -168,7 +193,10 @@ FrameConfig read_frame(sim::Config& config) {
                               "image.voxel_cut");
   }
   read_structure(config, frame);
-  frame.memory_limit = config.size("host_machine.memory_limit");
+  frame.memory = read_memory(config);
+  give_memory(frame.memory, frame.structure_options);
+  frame.open.gltf.memory = frame.memory;
+  frame.open.gltf.size_first = size_of_image;
   return frame;
 }
 

@@ -9,6 +9,7 @@
 #include "processors/program/render.h"
 #include "scenes/open.h"
 #include "sim/config.h"
+#include "sim/memory_budget.h"
 #include "sim/schema.h"
 #include "studies/plan/plan.h"
 
@@ -34,15 +35,22 @@ struct FrameConfig {
   std::string structure;
   accel::StructureOptions structure_options;
   processors::RenderOptions render;
-  bool exact_too = false;         ///< with the voxel cut: render the exact image beside it
-  std::int64_t memory_limit = 0;  ///< host bytes that image and work log may take
-  KeptItems keep;                 ///< of the plan; not a key of the configuration: it decides no result
+  bool exact_too = false;    ///< with the voxel cut: render the exact image beside it
+  sim::MemoryBudget memory;  ///< of scene, structure, image and work log together
+  KeptItems keep;            ///< of the plan; not a key of the configuration: it decides no result
 };
 
 /// The options with the image made so small that its longer side has at most `side` pixels.
 [[nodiscard]] processors::RenderOptions made_small(processors::RenderOptions options, double side);
 
 void declare_frame_keys(sim::Schema& schema);
+
+/// By host_machine.memory_limit; where that is 0, this process' share of the host's memory, of which
+/// `processes` equal ones run there. Throws UserError naming file, line and key.
+[[nodiscard]] sim::MemoryBudget read_memory(const sim::Config& config, std::uint64_t processes = 1);
+
+/// Whichever structure is built may take what is left of it.
+void give_memory(const sim::MemoryBudget& memory, accel::StructureOptions& options);
 
 /// Throws UserError naming file, line and key.
 [[nodiscard]] FrameConfig read_frame(sim::Config& config);

@@ -8,7 +8,6 @@
 #include "accel/precision.h"
 #include "accel/structure.h"
 #include "sim/error.h"
-#include "sim/units.h"
 #include "studies/image_file.h"
 #include "studies/plan/make_plan.h"
 
@@ -20,6 +19,7 @@ namespace {
 constexpr std::uint32_t sample_side = 64;
 // And with as many samples of each.
 constexpr std::uint32_t sample_rays = 4;
+constexpr std::string_view smaller_scene = "take a smaller scene";
 
 }  // namespace
 
@@ -57,13 +57,9 @@ void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
                            (static_cast<double>(sample.width) * sample.height * sample.samples) * pixels *
                            config.render.samples * 2.0 +
                        frames * pixels * sizeof(glm::vec3);
-  if (bytes > static_cast<double>(config.memory_limit)) {
-    throw sim::UserError(
-        "the image and its work log may take " +
-        sim::print_size(static_cast<std::int64_t>(std::min(bytes, 9e18)) >> 20U << 20U) +
-        ", more than host_machine.memory_limit = " + sim::print_size(config.memory_limit) +
-        ": raise the limit, or lower image.width, image.height, image.samples or image.max_depth");
-  }
+  config.memory.require(static_cast<std::uint64_t>(std::min(bytes, 9e18)),
+                        "the image and its work log may take",
+                        "lower image.width, image.height, image.samples or image.max_depth");
 }
 
 namespace {
@@ -96,14 +92,32 @@ std::vector<std::unique_ptr<accel::Structure>> kept_structures(
   return kept;
 }
 
+// All textures, and the samples of the largest as its decoder gives them.
+void require_textures(const FrameConfig& config, const scenes::Scene& scene, std::uint64_t texels) {
+  constexpr std::uint64_t bytes_a_texel = 4;
+  std::uint64_t largest = 0;
+  for (const scenes::Texture& texture : scene.textures) {
+    largest = std::max(largest, texture.texels.empty() ? texture.size() : 0);
+  }
+  config.memory.require(scenes::host_bytes(scene) + bytes_a_texel * (texels + std::min(largest, texels)),
+                        config.scene + ": the scene with its textures takes", smaller_scene);
+}
+
 // A frame of an open scene and, where there are facts, by the run's plan.
 FunctionalRun render_and_record(const FrameConfig& config, scenes::SceneFacts scene_facts,
                                 const scenes::Scene& scene, const PlanFacts* facts, FunctionalRun run) {
+  FrameConfig planned = config;
+  planned.memory.take(scenes::host_bytes(scene) + accel::TriangleSet::host_bytes(scene), "the scene takes",
+                      smaller_scene);
+  give_memory(planned.memory, planned.structure_options);
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
   const std::unique_ptr<accel::Structure> structure =
-      accel::make_structure(config.structure, triangles, config.structure_options);
-  const std::vector<std::unique_ptr<accel::Structure>> others = kept_structures(config, triangles);
-  FrameConfig planned = config;
+      accel::make_structure(config.structure, triangles, planned.structure_options);
+  const std::vector<std::unique_ptr<accel::Structure>> others = kept_structures(planned, triangles);
+  // The work log has a copy of the tree.
+  planned.memory.take(accel::host_bytes(*structure) + accel::bytes_of(structure->topology()),
+                      "the structure and its copy in the work log take",
+                      "lower structure.max_level or raise structure.max_objects");
   if (facts != nullptr) {
     plan_structure(run.plan, *facts, *structure);
     planned.render = planned_options(run.plan, *facts);
@@ -157,11 +171,15 @@ FunctionalRun run_functional(const FrameConfig& config) {
 }
 
 FunctionalRun run_planned(const FrameConfig& config, scenes::Scene scene, scenes::FileUse file) {
+  config.memory.require(scenes::host_bytes(scene) + scenes::host_bytes_of_facts(scene),
+                        "the scene, sorted to be described, takes", smaller_scene);
   PlanFacts facts = facts_of_frame(scene, config.render, config.structure, config.keep);
   facts.file = std::move(file);
   FunctionalRun run;
   run.plan = make_plan(facts);
   scenes::SceneFacts scene_facts = scenes::facts_of(scene);
+  require_textures(config, scene,
+                   is_left_out(run.plan, PlanItem::textures) ? facts.texels_needed : facts.texels);
   try {
     drop_parts(run.plan, facts.needs, decode_image, scene);
   } catch (const sim::UserError& error) {

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "scenes/tessellate.h"
 #include "sim/error.h"
 #include "sim/files.h"
+#include "sim/memory_budget.h"
 #include "sim/units.h"
 #include "studies/command_error.h"
 #include "studies/compare/compare.h"
@@ -26,6 +28,7 @@
 #include "studies/error/error.h"
 #include "studies/error/error_keys.h"
 #include "studies/frames/frames.h"
+#include "studies/host_threads.h"
 #include "studies/image_file.h"
 #include "studies/operations/operations.h"
 #include "studies/output.h"
@@ -322,13 +325,21 @@ struct SceneArguments {
   scenes::GltfOptions gltf;
 };
 
+// Without a configuration, the limit is the host's.
+scenes::OpenOptions options_of(const SceneArguments& arguments) {
+  scenes::OpenOptions options{{}, arguments.gltf};
+  options.gltf.size_first = studies::size_of_image;
+  options.gltf.memory = sim::MemoryBudget(sim::default_memory_limit());
+  return options;
+}
+
 scenes::Scene open(const SceneArguments& arguments) {
-  return scenes::open_scene(arguments.source, {{}, arguments.gltf}, studies::decode_image);
+  return scenes::open_scene(arguments.source, options_of(arguments), studies::decode_image);
 }
 
 std::string scene_info(const SceneArguments& arguments) {
   const scenes::AnimatedScene scene =
-      scenes::open_animated(arguments.source, {{}, arguments.gltf}, studies::decode_image);
+      scenes::open_animated(arguments.source, options_of(arguments), studies::decode_image);
   const scenes::Scene pose = scene.asked_for(arguments.gltf.time, arguments.source);
   const std::string need = accel::describe_need(accel::precision_need(accel::TriangleSet(pose)));
   return scenes::describe(pose) + (need.empty() ? "" : "note: " + need + "\n") +
@@ -450,13 +461,14 @@ int main(int argc, char** argv) {
   // A reader that goes away is an error of writing like a full disk.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is refused like one on a full disk
-  marti::studies::end_cleanly_on_signals();
   // One of several processes takes the others with it.
   const auto end = [](int status) {
     marti::studies::end_all_ranks(status);
     return status;
   };
   try {
+    marti::studies::end_cleanly_on_signals();
+    marti::studies::take_only_threads_there_are();
     return parse_and_run(argc, argv);
   } catch (const marti::sim::UserError& error) {
     std::fprintf(stderr, "marti: %s\n", error.what());
@@ -464,6 +476,14 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "marti: not enough memory for this scene or machine\n");
     return end(wrong_input);
+  } catch (const std::system_error& error) {
+    // What std::thread throws where there can be no more of them.
+    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+    std::fprintf(stderr,
+                 no_thread ? "marti: the system lets this process have no more threads: %s\n"
+                           : "marti: internal error: %s\n",
+                 error.what());
+    return end(no_thread ? wrong_input : our_fault);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "marti: internal error: %s\n", error.what());
     return end(our_fault);

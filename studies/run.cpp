@@ -1,7 +1,6 @@
 #include <string>
 #include <utility>
 
-#include "sim/units.h"
 #include "studies/key_parts.h"
 #include "studies/machine_keys.h"
 #include "studies/plan/machine_plan.h"
@@ -14,12 +13,8 @@ namespace marti::studies {
 
 void refuse_beyond_memory(const sim::Config& config, const FrameConfig& frame,
                           const processors::MachineConfig& machine) {
-  const std::uint64_t bytes = processors::host_bytes(machine);
-  if (bytes > static_cast<std::uint64_t>(frame.memory_limit)) {
-    config.fail("machine.nodes",
-                "simulating these nodes and their caches takes about " +
-                    sim::print_size(static_cast<std::int64_t>(bytes >> 20U << 20U)) +
-                    ", more than host_machine.memory_limit = " + sim::print_size(frame.memory_limit));
+  if (const std::string excess = frame.memory.excess(processors::host_bytes(machine)); !excess.empty()) {
+    config.fail("machine.nodes", "simulating these nodes and their caches takes" + excess);
   }
 }
 
@@ -36,12 +31,10 @@ namespace {
 
 void refuse_maps_beyond_memory(const sim::Config& config, const RecordConfig& record,
                                const FrameConfig& frame) {
-  const std::uint64_t bytes = HeatMap::host_bytes(std::uint64_t{frame.render.width} * frame.render.height);
-  if (record.heat_maps && bytes > static_cast<std::uint64_t>(frame.memory_limit)) {
-    config.fail("record.heat_maps",
-                "maps of this image take about " +
-                    sim::print_size(static_cast<std::int64_t>(bytes >> 20U << 20U)) +
-                    ", more than host_machine.memory_limit = " + sim::print_size(frame.memory_limit));
+  const std::string excess =
+      frame.memory.excess(HeatMap::host_bytes(std::uint64_t{frame.render.width} * frame.render.height));
+  if (record.heat_maps && !excess.empty()) {
+    config.fail("record.heat_maps", "maps of this image take" + excess);
   }
 }
 

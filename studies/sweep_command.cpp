@@ -10,6 +10,7 @@
 #include "sim/error.h"
 #include "sim/files.h"
 #include "studies/config_file.h"
+#include "studies/frame_keys.h"
 #include "studies/ranks/join_sweep.h"
 #include "studies/ranks/launch.h"
 #include "studies/ranks/ranks.h"
@@ -45,8 +46,9 @@ SweepOptions options_of(const SweepArguments& arguments) {
   return options;
 }
 
-std::uint64_t memory_limit(const sim::Config& config) {
-  return static_cast<std::uint64_t>(config.size("host_machine.memory_limit"));
+// The ranks of one computer share what it has; a limit that the user gives is each rank's.
+sim::MemoryBudget memory_of(const sim::Config& config, const Ranks* ranks) {
+  return read_memory(config, ranks == nullptr ? 1 : ranks->on_this_computer());
 }
 
 // A rank that was started beside rank 0. The file may not be there: rank 0 sends its text. What is wrong with
@@ -59,7 +61,7 @@ void join(Ranks& ranks, const SweepArguments& arguments) {
     sim::Config config =
         sim::Config::from_text(sweep_schema(), text, arguments.config, arguments.assignments);
     SweepPlan plan = plan_sweep(config);
-    return JoinedSweep{std::move(plan), memory_limit(config)};
+    return JoinedSweep{std::move(plan), memory_of(config, &ranks).limit()};
   });
 }
 
@@ -104,11 +106,12 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
   if (arguments.directory.empty()) {
     throw sim::UserError("-o DIR is missing: the directory of the sweep's results (--plan needs none)");
   }
-  const SweepReport report = run_sweep(plan, options, memory_limit(config), [&](const std::string& text) {
-    if (!arguments.json) {
-      print(text);
-    }
-  });
+  const SweepReport report =
+      run_sweep(plan, options, memory_of(config, options.ranks), [&](const std::string& text) {
+        if (!arguments.json) {
+          print(text);
+        }
+      });
   if (arguments.json) {
     print(json_of(arguments.best.empty()
                       ? points_table(report.store)

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "processors/replay.h"
-#include "sim/units.h"
 #include "studies/build_keys.h"
 #include "studies/frames/frame_ways.h"
 #include "studies/machine_keys.h"
@@ -15,25 +14,20 @@ namespace {
 
 /// The images of all frames are kept until all are done, so that their files appear together.
 void refuse_many_images(const sim::Config& config, const FrameConfig& frame) {
-  const double bytes =
-      static_cast<double>(frame.frames.count) * frame.render.width * frame.render.height * sizeof(glm::vec3);
-  if (bytes > static_cast<double>(frame.memory_limit)) {
+  const std::uint64_t bytes =
+      std::uint64_t{frame.frames.count} * frame.render.width * frame.render.height * sizeof(glm::vec3);
+  if (const std::string excess = frame.memory.excess(bytes); !excess.empty()) {
     config.fail("frames.count",
-                "the images of " + std::to_string(frame.frames.count) + " frames take " +
-                    sim::print_size(static_cast<std::int64_t>(bytes) >> 20U << 20U) +
-                    ", more than host_machine.memory_limit = " + sim::print_size(frame.memory_limit));
+                "the images of " + std::to_string(frame.frames.count) + " frames take" + excess);
   }
 }
 
 /// All ways are simulated at the same time.
 void refuse_large_machines(const sim::Config& config, const FramesConfig& frames) {
-  const double bytes =
-      static_cast<double>(frame_ways) * static_cast<double>(processors::host_bytes(frames.machine));
-  if (bytes > static_cast<double>(frames.frame.memory_limit)) {
+  const std::string excess = frames.frame.memory.excess(frame_ways * processors::host_bytes(frames.machine));
+  if (!excess.empty()) {
     config.fail("machine.nodes", "simulating " + std::to_string(frame_ways) +
-                                     " machines of these nodes and their caches would take more than "
-                                     "host_machine.memory_limit = " +
-                                     sim::print_size(frames.frame.memory_limit));
+                                     " machines of these nodes and their caches takes" + excess);
   }
 }
 

@@ -107,12 +107,10 @@ SchemesConfig read_schemes(sim::Config& config) {
     const std::filesystem::path& file = schemes.machines.emplace_back(beside(config, name));
     const NamedMachine machine = read_machine_file(file);
     const std::uint32_t most = std::max(schemes.nodes.back(), fewest_nodes(machine.config));
-    const std::uint64_t bytes =
-        processors::host_bytes(read_machine_file(file, most, machine.config.pipeline).config);
-    if (bytes > static_cast<std::uint64_t>(schemes.frame.memory_limit)) {
-      config.fail("schemes.nodes", "simulating that many nodes of " + name +
-                                       " takes more than host_machine.memory_limit = " +
-                                       sim::print_size(schemes.frame.memory_limit));
+    const std::string excess = schemes.frame.memory.excess(
+        processors::host_bytes(read_machine_file(file, most, machine.config.pipeline).config));
+    if (!excess.empty()) {
+      config.fail("schemes.nodes", "simulating that many nodes of " + name + " takes" + excess);
     }
   }
   if (schemes.machines.empty()) {

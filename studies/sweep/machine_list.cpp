@@ -34,10 +34,15 @@ std::size_t MachineList::enter(ReadPoint& read) {
   std::string key = digest.hex();
   const auto [place, fresh] = machine_of_key_.emplace(key, machines_.size());
   if (fresh) {
-    machines_.push_back({std::move(key), frame, read.machine, std::move(read.settings)});
+    machines_.push_back({std::move(key), frame, read.machine, settings_.share(std::move(read.settings))});
     first_point_.push_back(no_point);
   }
   return place->second;
+}
+
+void MachineList::reserve(std::size_t machines) {
+  machines_.reserve(machines);
+  first_point_.reserve(machines);
 }
 
 void MachineList::used_by_point(std::size_t machine, std::size_t point) {
@@ -53,8 +58,16 @@ void MachineList::move_into(SweepPlan& plan) && {
   std::vector<std::size_t> place(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
     place[order[i]] = i;
-    plan.machines.push_back(std::move(machines_[order[i]]));
   }
+  // In place, cycle by cycle: a second list would take as much again.
+  std::vector<std::size_t> to = place;
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    while (to[i] != i) {
+      std::swap(machines_[i], machines_[to[i]]);
+      std::swap(to[i], to[to[i]]);
+    }
+  }
+  plan.machines = std::move(machines_);
   plan.frames = std::move(frames_);
   for (SweepPoint& point : plan.points) {
     point.machine = place[point.machine];

@@ -14,6 +14,8 @@ namespace marti::studies {
 
 class MachineList {
  public:
+  /// For as many machines as may come: a list that grows by doubling takes three times as much for a while.
+  void reserve(std::size_t machines);
   /// The machine's number, in the order of entering; equal machines have one. Takes the settings out of
   /// `read`. Opens a scene that is a file when its frame is new. Throws UserError when it cannot be used.
   std::size_t enter(ReadPoint& read);
@@ -28,6 +30,7 @@ class MachineList {
 
   std::size_t enter_frame(const ReadPoint& read);
 
+  SettingsPool settings_;
   std::vector<SweepFrame> frames_;
   std::vector<SweepMachine> machines_;
   std::vector<std::size_t> first_point_;  // that asks for the machine, or no_point

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <map>
-#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 
 #include "sim/error.h"
 #include "studies/sweep/store_schema.h"
@@ -38,18 +38,19 @@ class Settings {
     }
   }
 
-  // The sections of a list of settings, ascending.
-  std::vector<std::int64_t> sections_of(const std::vector<sim::EffectiveValue>& values) {
+  SharedSettings shared(std::vector<sim::EffectiveValue> settings) {
+    return pool_.share(std::move(settings));
+  }
+
+  // The sections of settings, ascending.
+  std::vector<std::int64_t> sections_of(const SharedSettings& settings) {
     std::vector<std::int64_t> sections;
-    std::size_t begin = 0;
-    while (begin < values.size()) {
-      const std::string_view name = section_name(values[begin].key);
-      std::size_t end = begin;
-      while (end < values.size() && section_name(values[end].key) == name) {
-        ++end;
+    for (const SettingsPart& part : settings) {
+      const auto [known, is_new] = section_of_part_.try_emplace(part.get(), 0);
+      if (is_new) {
+        known->second = section_of(*part);
       }
-      sections.push_back(section_of(std::span(values).subspan(begin, end - begin)));
-      begin = end;
+      sections.push_back(known->second);
     }
     std::sort(sections.begin(), sections.end());
     sim::ensure(std::adjacent_find(sections.begin(), sections.end()) == sections.end(),
@@ -58,8 +59,6 @@ class Settings {
   }
 
  private:
-  static std::string_view section_name(std::string_view key) { return key.substr(0, key.rfind('.')); }
-
   const std::string& joined(std::string_view key, std::string_view value) {
     text_.assign(key);
     text_ += '\0';
@@ -76,7 +75,7 @@ class Settings {
     return at->second;
   }
 
-  std::int64_t section_of(std::span<const sim::EffectiveValue> values) {
+  std::int64_t section_of(const std::vector<sim::EffectiveValue>& values) {
     members_.clear();
     for (const sim::EffectiveValue& value : values) {
       members_.push_back(setting(value));
@@ -96,6 +95,8 @@ class Settings {
   SqliteStatement add_section_;
   std::unordered_map<std::string, std::int64_t> settings_;
   std::map<std::vector<std::int64_t>, std::int64_t> sections_;
+  SettingsPool pool_;  // of what is not shared yet: parts are known by their addresses
+  std::unordered_map<const void*, std::int64_t> section_of_part_;
   std::int64_t next_setting_ = 1;
   std::int64_t next_section_ = 1;
   std::string text_;
@@ -131,7 +132,7 @@ std::vector<std::int64_t> enter_frames(SqliteConnection& connection, const Sweep
     const auto [at, is_new] = known.try_emplace(wanted.key, next);
     if (is_new) {
       frame.bind(1, next).bind(2, std::string_view(wanted.key)).run();
-      add_sections(section, next, settings.sections_of(wanted.settings));
+      add_sections(section, next, settings.sections_of(settings.shared(wanted.settings)));
       ++next;
     }
     ids.push_back(at->second);

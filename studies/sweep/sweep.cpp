@@ -11,7 +11,6 @@
 
 #include "sim/error.h"
 #include "sim/files.h"
-#include "sim/units.h"
 #include "studies/output.h"
 #include "studies/ranks/rank_sweep.h"
 #include "studies/results/csv.h"
@@ -28,15 +27,11 @@ namespace marti::studies {
 
 namespace {
 
-void refuse_large_machines(const SweepPlan& plan, std::uint64_t limit) {
+void refuse_large_machines(const SweepPlan& plan, const sim::MemoryBudget& memory) {
   for (const SweepMachine& machine : plan.machines) {
-    const std::uint64_t bytes = processors::host_bytes(machine.config);
-    if (bytes > limit) {
-      throw sim::UserError(
-          "a machine of " + std::to_string(machine.config.all_nodes()) + " nodes takes about " +
-          sim::print_size(static_cast<std::int64_t>(bytes >> 20U << 20U)) +
-          ", more than host_machine.memory_limit = " + sim::print_size(static_cast<std::int64_t>(limit)));
-    }
+    memory.require(processors::host_bytes(machine.config),
+                   "a machine of " + std::to_string(machine.config.all_nodes()) + " nodes takes",
+                   "lower machine.nodes or cache.size");
   }
 }
 
@@ -69,9 +64,9 @@ SweepOutlook look_ahead(const SweepPlan& plan, const SweepOptions& options) {
   return outlook_of(plan, machines, frames, threads_of(options));
 }
 
-SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, std::uint64_t memory_limit,
+SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
                       const std::function<void(const std::string&)>& announce) {
-  refuse_large_machines(plan, memory_limit);
+  refuse_large_machines(plan, limit);
   prepare_output(options.directory);
   announce(describe(plan, look_ahead(plan, options)));
   const unsigned threads = threads_of(options);
@@ -86,7 +81,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, std::u
   report.traced = left.frames_left();
 
   const auto begin = std::chrono::steady_clock::now();
-  const SweepMemory memory = shares_of(memory_limit);
+  const SweepMemory memory = shares_of(limit.limit());
   LogShelf logs(memory.logs);
   StripShelf strips(memory.strips);
   MemoryGate machines(memory.machines);

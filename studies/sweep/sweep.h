@@ -37,7 +37,7 @@ struct SweepReport {
 /// Runs what of the plan is not in the store yet. `announce` is called with the plan as text before anything
 /// is done. A program that is ended by a signal says what is saved and exits with 128 + signal. Throws
 /// UserError; what is done by then is saved.
-SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, std::uint64_t memory_limit,
+SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
                       const std::function<void(const std::string&)>& announce);
 
 }  // namespace marti::studies

@@ -64,6 +64,13 @@ class Planner {
     name_axes();
     const std::vector<std::uint64_t> passing = filter();
     find_strides_of_bases();
+    if (const std::string excess = read_memory(config_).excess(plan_bytes(passing.size(), plan_.axes.size()));
+        !excess.empty()) {
+      throw sim::UserError(config_.name() + ": sweep: the plan of " + std::to_string(passing.size()) +
+                           " points takes" + excess + ": raise the limit, or split the sweep");
+    }
+    plan_.points.reserve(passing.size());
+    found_.reserve(passing.size() + 1);
     for (std::size_t begin = 0; begin < passing.size(); begin += points_at_once) {
       add(std::span(passing).subspan(begin, std::min(points_at_once, passing.size() - begin)));
     }
@@ -223,6 +230,7 @@ class Planner {
     }
     note_use(read.config);
     SweepPoint point;
+    point.values.reserve(plan_.axes.size());
     if (points_.named()) {
       point.values.emplace_back(points_.name(number));
     }
@@ -305,6 +313,18 @@ class Planner {
 };
 
 }  // namespace
+
+std::uint64_t plan_bytes(std::uint64_t points, std::size_t axes) {
+  constexpr std::uint64_t overhead = 16;  // of an allocation
+  constexpr std::uint64_t key = 48;       // of 32 digits, beside its string
+  constexpr std::uint64_t sections = 16;  // of a configuration, at most, that a machine reads
+  const std::uint64_t machine =
+      sizeof(SweepMachine) + key + overhead + sections * sizeof(SettingsPart) + sizeof(std::size_t);
+  const std::uint64_t known = sizeof(std::pair<std::string, std::size_t>) + key + 4 * overhead;
+  const std::uint64_t point = sizeof(SweepPoint) + overhead + axes * sizeof(sim::Value);
+  // And the numbers by which machines are put in order.
+  return points * (machine + known + point + 4 * sizeof(std::size_t));
+}
 
 SweepPlan plan_sweep(sim::Config& config) { return Planner(config).plan(); }
 

@@ -10,6 +10,7 @@
 #include "processors/machine_config.h"
 #include "sim/config.h"
 #include "studies/frame_keys.h"
+#include "studies/sweep/shared_settings.h"
 
 namespace marti::studies {
 
@@ -29,7 +30,7 @@ struct SweepMachine {
   std::string key;        ///< 32 hexadecimal digits of the frame's key and the machine's settings
   std::size_t frame = 0;  ///< index into SweepPlan::frames
   processors::MachineConfig config;
-  std::vector<sim::EffectiveValue> settings;  ///< the machine's keys only, in the order of the schema
+  SharedSettings settings;  ///< the machine's keys only
 };
 
 /// One point of the sweep's axes.
@@ -72,7 +73,8 @@ struct SweepPlan {
 /// Reads [sweep] and [prices] of a configuration of sweep_schema() and makes its points. Machines are read on
 /// all host cores; the plan is the same at any number of them. A scene that is a file is opened: its content
 /// is part of the frame's key. Throws UserError naming file, line and key; for a point whose machine cannot
-/// be built, of the first such point in order, with what the point gives.
+/// be built, of the first such point in order, with what the point gives; for a plan beyond
+/// host_machine.memory_limit, before its points are read.
 [[nodiscard]] SweepPlan plan_sweep(sim::Config& config);
 
 /// What is known besides the plan before it runs.
@@ -83,6 +85,10 @@ struct SweepOutlook {
   std::optional<std::uint64_t> log_bytes;      ///< estimated memory of the work logs in use
   std::optional<std::uint64_t> machine_bytes;  ///< and of the machines that are timed at once
 };
+
+/// Host bytes that a plan takes, about, in which each of `points` points has `axes` values and a machine of
+/// its own. A text among the values that is longer than 15 bytes takes more.
+[[nodiscard]] std::uint64_t plan_bytes(std::uint64_t points, std::size_t axes);
 
 /// The plan as text for people, a few lines.
 [[nodiscard]] std::string describe(const SweepPlan& plan, const SweepOutlook& outlook = {});

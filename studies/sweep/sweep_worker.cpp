@@ -44,9 +44,11 @@ void do_trace(const SweepSite& site, TaskSource& source, const SweepTask& task) 
 
 std::string name_of(const SweepMachine& machine) {
   std::string name;
-  for (const sim::EffectiveValue& value : machine.settings) {
-    if (value.given) {
-      name += (name.empty() ? "" : ", ") + value.key + " = " + value.value;
+  for (const SettingsPart& part : machine.settings) {
+    for (const sim::EffectiveValue& value : *part) {
+      if (value.given) {
+        name += (name.empty() ? "" : ", ") + value.key + " = " + value.value;
+      }
     }
   }
   return name;

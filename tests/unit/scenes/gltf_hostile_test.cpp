@@ -144,7 +144,7 @@ const std::vector<Fault>& faults() {
        [](GltfFile& f) {
          f.json["buffers"] = json::array({{{"byteLength", 4}, {"uri", "not-there.bin"}}});
        }},
-      {"buffer from a device", "File not found",
+      {"buffer from a device", "leads out of the scene's folder",
        [](GltfFile& f) {
          f.json["buffers"] = json::array({{{"byteLength", 4}, {"uri", "../../../../../../../dev/zero"}}});
        }},

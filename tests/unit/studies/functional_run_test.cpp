@@ -14,7 +14,7 @@ FrameConfig teapot(const char* structure, std::uint64_t max_entries) {
   config.structure_options.bsp.max_entries = max_entries;
   config.render.width = 8;
   config.render.height = 8;
-  config.memory_limit = std::int64_t{1} << 30;
+  config.memory = sim::MemoryBudget(std::uint64_t{1} << 30U);
   return config;
 }
 

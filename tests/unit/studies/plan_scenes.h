@@ -23,7 +23,7 @@ inline FrameConfig small_frame(const std::string& structure = "octree", std::uin
   config.structure_options.bsp.max_objects = 2;
   config.render.width = side;
   config.render.height = side;
-  config.memory_limit = std::int64_t{1} << 30;
+  config.memory = sim::MemoryBudget(std::uint64_t{1} << 30U);
   return config;
 }
 

@@ -27,7 +27,7 @@ FrameConfig small_frame(const std::string& scene) {
   frame.render.width = 20;
   frame.render.height = 16;
   frame.render.max_depth = 4;
-  frame.memory_limit = std::int64_t{1} << 32U;
+  frame.memory = sim::MemoryBudget(std::uint64_t{1} << 32U);
   return frame;
 }
 

@@ -25,6 +25,7 @@ inline std::string made_key(std::uint64_t number) {
 /// is measured against the first.
 inline studies::SweepPlan made_plan(std::size_t machines, std::size_t first = 0) {
   studies::SweepPlan plan;
+  studies::SettingsPool pool;
   plan.axes = {"point", "machine.nodes", "cache.size", "bus.\"odd\"", "l2.on"};
   for (std::size_t frame = 0; frame < 2; ++frame) {
     studies::SweepFrame& made = plan.frames.emplace_back();
@@ -36,15 +37,16 @@ inline studies::SweepPlan made_plan(std::size_t machines, std::size_t first = 0)
     studies::SweepMachine& made = plan.machines.emplace_back();
     made.key = made_key(i);
     made.frame = i % 2;
+    std::vector<sim::EffectiveValue> settings;
     for (const char* section : {"machine", "cache", "interconnect", "banks", "host", "packets", "costs",
                                 "layout", "local", "database", "build", "l2"}) {
       for (int key = 0; key < 6; ++key) {
-        made.settings.push_back(
-            {std::string(section) + ".key" + std::to_string(key), "\"16 KiB\"", false, ""});
+        settings.push_back({std::string(section) + ".key" + std::to_string(key), "\"16 KiB\"", false, ""});
       }
     }
-    made.settings[0].value = std::to_string(i % 64);
-    made.settings[6].value = std::to_string(i / 64) + " KiB";
+    settings[0].value = std::to_string(i % 64);
+    settings[6].value = std::to_string(i / 64) + " KiB";
+    made.settings = pool.share(std::move(settings));
     plan.points.push_back({{std::string("named"), static_cast<std::int64_t>(i % 64),
                             0.5 * static_cast<double>(i), std::string("it's \"quoted\"; --"), i % 2 == 0},
                            i - first,

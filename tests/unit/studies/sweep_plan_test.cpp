@@ -166,7 +166,7 @@ RC_GTEST_PROP(SweepPlan, IsTheCrossProductWithEachMachineOnce, ()) {
   std::map<std::string, std::string> key_of_machine;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SweepMachine& machine = plan.machines.at(plan.points[i].machine);
-    RC_ASSERT(text_of(machine.settings) == points[i].machine);
+    RC_ASSERT(text_of(all_of(machine.settings)) == points[i].machine);
     RC_ASSERT(text_of(plan.frames.at(machine.frame).settings) == points[i].frame);
     // Equal keys, equal values, and the other way round.
     const auto [place, fresh] =
@@ -211,7 +211,7 @@ RC_GTEST_PROP(SweepPlan, MeasuresEachPointAgainstItsMachineOfOneNode, ()) {
     const SweepPoint& point = plan.points.at(i++);
     given.insert(given.end(), {"machine.nodes=1", "count.sharing=false"});
     const Naive base = naive(given);
-    RC_ASSERT(text_of(plan.machines.at(point.base).settings) == base.machine);
+    RC_ASSERT(text_of(all_of(plan.machines.at(point.base).settings)) == base.machine);
     RC_ASSERT(plan.machines[point.base].frame == plan.machines[point.machine].frame);
   });
 }

@@ -1,0 +1,72 @@
+#include "scenes/gltf_extensions.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace marti::scenes::gltf {
+
+namespace {
+
+constexpr std::array<std::string_view, 5> supported_extensions = {
+    "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior",
+    "KHR_materials_transmission", "KHR_mesh_quantization"};
+constexpr const char* draco = "KHR_draco_mesh_compression";
+
+bool is_supported(const std::string& extension) {
+  return std::find(supported_extensions.begin(), supported_extensions.end(), extension) !=
+         supported_extensions.end();
+}
+
+std::string meshopt_among(const tinygltf::ExtensionMap& extensions) {
+  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+    if (extensions.contains(name)) {
+      return name;
+    }
+  }
+  return {};
+}
+
+bool has_no_bytes(const tinygltf::Model& file, int accessor) {
+  return accessor >= 0 && static_cast<std::size_t>(accessor) < file.accessors.size() &&
+         file.accessors[static_cast<std::size_t>(accessor)].bufferView < 0;
+}
+
+}  // namespace
+
+std::string missing_requirement(const tinygltf::Model& file) {
+  const auto missing =
+      std::find_if_not(file.extensionsRequired.begin(), file.extensionsRequired.end(), is_supported);
+  return missing == file.extensionsRequired.end() ? std::string() : *missing;
+}
+
+std::string ignored_extensions(const tinygltf::Model& file) {
+  std::string names;
+  for (const std::string& extension : file.extensionsUsed) {
+    if (!is_supported(extension)) {
+      names += (names.empty() ? "" : ", ") + extension;
+    }
+  }
+  return names;
+}
+
+std::string compression_of_view(const tinygltf::Model& file, int view) {
+  const tinygltf::BufferView& compressed = file.bufferViews[static_cast<std::size_t>(view)];
+  const tinygltf::Buffer& buffer = file.buffers[static_cast<std::size_t>(compressed.buffer)];
+  // A buffer with the extension stands for bytes that are only there after decompression, unless it has an
+  // URI. What tinygltf gives a buffer without one in a .glb file is the file's own.
+  return buffer.uri.empty() && !meshopt_among(buffer.extensions).empty() ? meshopt_among(buffer.extensions)
+                                                                         : std::string();
+}
+
+std::string compression_of_primitive(const tinygltf::Model& file, const tinygltf::Primitive& primitive) {
+  const bool compressed =
+      primitive.extensions.contains(draco) &&
+      (has_no_bytes(file, primitive.indices) ||
+       std::any_of(primitive.attributes.begin(), primitive.attributes.end(),
+                   [&](const auto& attribute) { return has_no_bytes(file, attribute.second); }));
+  return compressed ? draco : std::string();
+}
+
+}  // namespace marti::scenes::gltf

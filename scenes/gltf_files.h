@@ -1,0 +1,45 @@
+// Inside of the folder: which files a glTF file may have read, for tinygltf's callbacks.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include <tiny_gltf.h>
+
+#include "sim/memory_budget.h"
+
+namespace marti::scenes::gltf {
+
+/// Files in the folder of the scene and below, once all links are resolved. An URI that leads elsewhere (by
+/// "..", also as "%2e%2e", by a symbolic link, an absolute path or a scheme such as "file:") is refused, and
+/// so is a file that is too large for the budget.
+class FileAccess {
+ public:
+  /// `directory` is the scene's folder; the budget must outlive this. No file may have more than `max_bytes`.
+  FileAccess(const std::filesystem::path& directory, std::uint64_t max_bytes, sim::MemoryBudget& memory);
+
+  /// With the slash at its end.
+  [[nodiscard]] const std::string& directory() const { return directory_; }
+  /// Refers to this.
+  [[nodiscard]] tinygltf::FsCallbacks callbacks();
+  /// Why a file was refused, as one sentence; empty when none was.
+  [[nodiscard]] const std::string& refusal() const { return refusal_; }
+
+ private:
+  bool may_read(const std::string& name);
+  bool read(const std::string& name, std::vector<unsigned char>& bytes, std::string& error);
+
+  std::string directory_;
+  std::filesystem::path root_;  // the folder without links
+  std::uint64_t max_bytes_;
+  sim::MemoryBudget& memory_;
+  std::string refusal_;
+};
+
+/// Foreign text in quotation marks and in ASCII, what cannot be printed escaped, the rest after 200
+/// characters cut off.
+[[nodiscard]] std::string shown(std::string_view text);
+
+}  // namespace marti::scenes::gltf

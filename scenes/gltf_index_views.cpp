@@ -1,0 +1,81 @@
+#include "scenes/gltf_index_views.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include <nlohmann/json.hpp>
+
+namespace marti::scenes::gltf {
+
+namespace {
+
+using nlohmann::json;
+
+// A member that is a list; an empty one where there is no such list.
+json& list_in(json& object, const char* name) {
+  static thread_local json none;
+  none = json::array();
+  return object.is_object() && object.contains(name) && object[name].is_array() ? object[name] : none;
+}
+
+void set_number(std::string& bytes, std::size_t at, std::size_t value) {
+  const auto number = static_cast<std::uint32_t>(value);
+  std::memcpy(bytes.data() + at, &number, sizeof number);
+}
+
+}  // namespace
+
+IndexViews given_index_views(std::string_view text) {
+  IndexViews given;
+  json file = json::parse(text, nullptr, false);
+  if (file.is_discarded() || list_in(file, "bufferViews").empty()) {
+    return given;
+  }
+  std::vector<std::size_t> indices;
+  for (json& mesh : list_in(file, "meshes")) {
+    for (const json& primitive : list_in(mesh, "primitives")) {
+      if (primitive.is_object() && primitive.contains("indices") &&
+          primitive["indices"].is_number_unsigned()) {
+        indices.push_back(primitive["indices"].get<std::size_t>());
+      }
+    }
+  }
+  json& accessors = list_in(file, "accessors");
+  for (const std::size_t index : indices) {
+    if (index < accessors.size() && accessors[index].is_object() &&
+        !accessors[index].contains("bufferView")) {
+      accessors[index]["bufferView"] = 0;
+      given.accessors.push_back(static_cast<int>(index));
+    }
+  }
+  if (!given.accessors.empty()) {
+    given.json = file.dump(-1, ' ', false, json::error_handler_t::replace);
+  }
+  return given;
+}
+
+std::string with_json(std::string_view glb, std::string json) {
+  constexpr std::size_t header = 12;
+  constexpr std::size_t chunk = 8;
+  std::uint32_t old = 0;
+  std::memcpy(&old, glb.data() + header, sizeof old);
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string file(glb.substr(0, header + chunk));
+  file += json;
+  file += glb.substr(std::min(glb.size(), header + chunk + old));
+  set_number(file, 8, file.size());
+  set_number(file, header, json.size());
+  return file;
+}
+
+void take_index_views(const IndexViews& given, tinygltf::Model& file) {
+  for (const int accessor : given.accessors) {
+    if (static_cast<std::size_t>(accessor) < file.accessors.size()) {
+      file.accessors[static_cast<std::size_t>(accessor)].bufferView = -1;
+    }
+  }
+}
+
+}  // namespace marti::scenes::gltf

@@ -1,0 +1,82 @@
+#include "scenes/gltf_instances.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "scenes/gltf_vertices.h"
+
+namespace marti::scenes::gltf {
+
+namespace {
+
+/// Elements of an accessor; nothing where there is none. What is wrong with it is found when it is read.
+std::optional<std::uint64_t> count_of(const tinygltf::Model& file, int accessor) {
+  if (accessor < 0 || static_cast<std::size_t>(accessor) >= file.accessors.size()) {
+    return std::nullopt;
+  }
+  const tinygltf::Accessor& a = file.accessors[static_cast<std::size_t>(accessor)];
+  const auto view = static_cast<std::size_t>(a.bufferView);
+  std::uint64_t most = most_zeros;
+  if (a.bufferView >= 0 && view < file.bufferViews.size()) {
+    const auto buffer = static_cast<std::size_t>(file.bufferViews[view].buffer);
+    most = buffer < file.buffers.size() ? file.buffers[buffer].data.size() : 0;
+  }
+  return std::min<std::uint64_t>(a.count, most);
+}
+
+/// One mesh, as each of its nodes has it.
+Expanded expanded_mesh(const tinygltf::Model& file, const tinygltf::Mesh& mesh) {
+  Expanded expanded;
+  std::set<int> shared;  // a node's primitives share the vertices of an accessor
+  for (const tinygltf::Primitive& primitive : mesh.primitives) {
+    const int positions = attribute(primitive.attributes, "POSITION");
+    const std::optional<std::uint64_t> vertices = count_of(file, positions);
+    if (primitive.mode < TINYGLTF_MODE_TRIANGLES || !vertices) {
+      continue;
+    }
+    const std::uint64_t corners = count_of(file, primitive.indices).value_or(*vertices);
+    expanded.vertices += shared.insert(positions).second ? *vertices : 0;
+    expanded.triangles += primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : corners;
+    expanded.normals = expanded.normals || attribute(primitive.attributes, "NORMAL") >= 0;
+    expanded.coordinates = expanded.coordinates || attribute(primitive.attributes, "TEXCOORD_0") >= 0;
+  }
+  return expanded;
+}
+
+}  // namespace
+
+std::uint64_t Expanded::bytes() const {
+  constexpr std::uint64_t vector = sizeof(glm::dvec3);
+  const std::uint64_t vertex = vector + 1 + (normals ? vector : 0) + (coordinates ? sizeof(glm::dvec2) : 0);
+  // Two: the scene that is kept, and the one that is handed out.
+  return 2 * (vertices * vertex + triangles * sizeof(Triangle)) + sources * 3 * vector;
+}
+
+Expanded expanded_instances(const Model& model, const std::vector<SceneNode>& nodes) {
+  const tinygltf::Model& file = model.data();
+  Expanded all;
+  std::map<int, Expanded> known;
+  for (const SceneNode& node : nodes) {
+    const int mesh = file.nodes[static_cast<std::size_t>(node.node)].mesh;
+    if (mesh < 0 || static_cast<std::size_t>(mesh) >= file.meshes.size()) {
+      continue;
+    }
+    auto found = known.find(mesh);
+    if (found == known.end()) {
+      found = known.emplace(mesh, expanded_mesh(file, file.meshes[static_cast<std::size_t>(mesh)])).first;
+      all.sources += found->second.vertices;
+    }
+    all.vertices += found->second.vertices;
+    all.triangles += found->second.triangles;
+    all.normals = all.normals || found->second.normals;
+    all.coordinates = all.coordinates || found->second.coordinates;
+  }
+  // The loader accepts no more.
+  all.vertices = std::min(all.vertices, model.options().max_triangles);
+  all.triangles = std::min(all.triangles, model.options().max_triangles);
+  return all;
+}
+
+}  // namespace marti::scenes::gltf

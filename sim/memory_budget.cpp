@@ -1,0 +1,137 @@
+#include "sim/memory_budget.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include "sim/error.h"
+#include "sim/units.h"
+
+namespace marti::sim {
+
+namespace {
+
+constexpr std::uint64_t most_bytes = std::numeric_limits<std::int64_t>::max();
+constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20U;
+
+// From a mebibyte on, whole ones: what is needed rounded up, what there is rounded down.
+std::string needed_text(std::uint64_t bytes) {
+  bytes = std::min(bytes, most_bytes - mebibyte);
+  return print_size(
+      static_cast<std::int64_t>(bytes < mebibyte ? bytes : (bytes + mebibyte - 1) / mebibyte * mebibyte));
+}
+
+std::string limit_text(std::uint64_t bytes, bool exact) {
+  bytes = std::min(bytes, most_bytes);
+  return print_size(
+      static_cast<std::int64_t>(exact || bytes < mebibyte ? bytes : bytes / mebibyte * mebibyte));
+}
+
+// The number that a file begins with; none where there is no such file or it says "max".
+std::uint64_t number_in(const std::filesystem::path& file) {
+  std::string text;
+  std::ifstream(file) >> text;
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc{} && end == text.data() + text.size() ? number : most_bytes;
+}
+
+// The least limit of a group and of those above it.
+std::uint64_t least_limit(const std::filesystem::path& mount, std::filesystem::path group,
+                          const std::string& file) {
+  std::uint64_t least = number_in(mount / file);
+  for (group = group.relative_path(); !group.empty(); group = group.parent_path()) {
+    least = std::min(least, number_in(mount / group / file));
+  }
+  return least;
+}
+
+std::uint64_t group_limit(const std::filesystem::path& root) {
+  const std::filesystem::path mount = root / "sys/fs/cgroup";
+  // Inside of a container the group's own path may not be there, but the mount is then the group.
+  std::uint64_t least =
+      std::min(number_in(mount / "memory.max"), number_in(mount / "memory/memory.limit_in_bytes"));
+  std::ifstream groups(root / "proc/self/cgroup");
+  for (std::string line; std::getline(groups, line);) {
+    const std::size_t first = line.find(':');
+    const std::size_t second = line.find(':', first == std::string::npos ? first : first + 1);
+    if (second == std::string::npos) {
+      continue;
+    }
+    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
+    const std::filesystem::path group = line.substr(second + 1);
+    if (controllers == ",,") {
+      least = std::min(least, least_limit(mount, group, "memory.max"));
+    } else if (controllers.find(",memory,") != std::string::npos) {
+      least = std::min(least, least_limit(mount / "memory", group, "memory.limit_in_bytes"));
+    }
+  }
+  return least;
+}
+
+// "MemTotal:  24683304 kB", in units of 1,024 bytes.
+std::uint64_t host_memory(const std::filesystem::path& root) {
+  std::ifstream info(root / "proc/meminfo");
+  std::string name;
+  std::uint64_t kibibytes = 0;
+  if (info >> name >> kibibytes && name == "MemTotal:" && kibibytes > 0 && kibibytes < most_bytes / 1024) {
+    return kibibytes * 1024;
+  }
+  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+         static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+}
+
+}  // namespace
+
+MemoryBudget::MemoryBudget(std::uint64_t limit, std::string where)
+    : limit_(limit), where_(std::move(where)) {}
+
+std::string MemoryBudget::excess(std::uint64_t bytes) const {
+  if (bytes <= left()) {
+    return {};
+  }
+  std::ostringstream text;
+  text << " about " << needed_text(bytes);
+  if (taken_ >= mebibyte) {
+    text << " beside " << needed_text(taken_) << " that are taken";
+  }
+  text << ", more than host_machine.memory_limit = " << limit_text(limit_, !where_.empty());
+  if (where_.empty()) {
+    text << " (three quarters of what the host lets this process have)";
+  }
+  return text.str();
+}
+
+void MemoryBudget::require(std::uint64_t bytes, std::string_view what, std::string_view remedy) const {
+  if (const std::string excess = this->excess(bytes); !excess.empty()) {
+    throw UserError((where_.empty() ? "" : where_ + ": ") + std::string(what) + excess + ": raise the limit" +
+                    (remedy.empty() ? "" : ", or " + std::string(remedy)));
+  }
+}
+
+void MemoryBudget::take(std::uint64_t bytes, std::string_view what, std::string_view remedy) {
+  require(bytes, what, remedy);
+  taken_ += bytes;
+}
+
+std::uint64_t usable_memory(const std::filesystem::path& root) {
+  std::uint64_t least = std::min(host_memory(root), group_limit(root));
+  rlimit space{};
+  if (getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY) {
+    least = std::min<std::uint64_t>(least, space.rlim_cur);
+  }
+  return least;
+}
+
+std::uint64_t default_memory_limit(std::uint64_t processes) {
+  static const std::uint64_t usable = usable_memory();  // a sweep asks for each of its points
+  return usable / 4 * 3 / std::max<std::uint64_t>(1, processes);
+}
+
+}  // namespace marti::sim

@@ -1,0 +1,92 @@
+// Builders stay within their budget, by the measure of the operating system, and say what to change.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <random>
+
+#include "accel/structure.h"
+#include "tests/support/measured_memory.h"
+#include "tests/support/user_error.h"
+
+namespace marti::accel {
+namespace {
+
+constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20U;
+
+// Small triangles all over a cube: the trees over them grow until their levels end.
+std::shared_ptr<const TriangleSet> scattered(std::size_t count) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(0.0, 1.0);
+  std::uniform_real_distribution<double> size(0.0, 0.4);
+  std::vector<TriangleCorners> triangles(count);
+  for (TriangleCorners& corners : triangles) {
+    const double x = place(random);
+    const double y = place(random);
+    const double z = place(random);
+    corners = {x, y, z, x + size(random), y, z, x, y + size(random), z + size(random)};
+  }
+  return std::make_shared<const TriangleSet>(std::move(triangles));
+}
+
+StructureOptions options_of(std::uint64_t limit) {
+  StructureOptions options;
+  options.octree.max_objects = 1;
+  options.octree.max_level = 7;
+  options.octree.threads = 1;
+  options.octree.memory = sim::MemoryBudget(limit);
+  options.bsp.max_objects = 1;
+  options.bsp.max_level = 7;
+  options.bsp.memory = options.octree.memory;
+  options.grid.density = 1000.0;
+  options.grid.memory = options.octree.memory;
+  return options;
+}
+
+class BuildMemory : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(BuildMemory, NeverExceedsTheBudget) {
+  if (!test::memory_can_be_measured) {
+    GTEST_SKIP() << "a sanitizer takes memory of its own";
+  }
+  const auto triangles = scattered(2000);
+  bool built = false;
+  for (const std::uint64_t limit : {1 * mebibyte, 6 * mebibyte, 30 * mebibyte, 2048 * mebibyte}) {
+    std::string complaint;
+    const std::uint64_t peak = test::peak_bytes([&] {
+      complaint =
+          test::user_error_of([&] { (void)make_structure(GetParam(), triangles, options_of(limit)); });
+    });
+    // Pages, the allocator's own, and what is counted only every so many nodes.
+    EXPECT_LT(peak, limit + 3 * mebibyte) << limit;
+    const std::string now = limit > 1024 * mebibyte ? "no UserError" : test::user_error_of([&] {
+      (void)make_structure(GetParam(), triangles, options_of(limit));
+    });
+    built = built || now == "no UserError";
+    if (limit == mebibyte) {
+      EXPECT_NE(now.find("structure."), std::string::npos) << now;
+      EXPECT_NE(now.find("host_machine.memory_limit = 1 MiB"), std::string::npos) << now;
+    }
+    if (limit == 2048 * mebibyte) {
+      EXPECT_GT(peak, 10 * mebibyte) << "the tree must be one that the smaller limits refuse";
+    }
+  }
+  EXPECT_TRUE(built);
+}
+
+// What is said of a structure that is built.
+TEST_P(BuildMemory, OfABuiltStructureIsKnown) {
+  const auto triangles = scattered(500);
+  const auto structure = make_structure(GetParam(), triangles, options_of(2048 * mebibyte));
+  EXPECT_GE(host_bytes(*structure), bytes_of(structure->topology()));
+  if (!test::memory_can_be_measured) {
+    GTEST_SKIP() << "a sanitizer takes memory of its own";
+  }
+  const std::uint64_t peak = test::peak_bytes(
+      [&] { static const auto kept = make_structure(GetParam(), triangles, options_of(2048 * mebibyte)); });
+  EXPECT_LT(host_bytes(*structure), peak + mebibyte);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, BuildMemory, ::testing::Values("octree", "bsp", "grid"));
+
+}  // namespace
+}  // namespace marti::accel

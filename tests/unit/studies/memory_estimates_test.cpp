@@ -1,0 +1,110 @@
+// What is estimated before memory is taken, beside what the operating system counts. A program of its own:
+// each measurement forks, and a fork has no threads of oneTBB's.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "processors/machine_config.h"
+#include "processors/replay.h"
+#include "studies/run_result.h"
+#include "studies/sweep/sweep_keys.h"
+#include "studies/sweep/sweep_plan.h"
+#include "tests/support/measured_memory.h"
+#include "tests/support/random_machine.h"
+#include "tests/support/user_error.h"
+
+namespace marti::studies {
+namespace {
+
+using processors::CacheOrganisation;
+using processors::MachineConfig;
+
+struct Case {
+  const char* name;
+  void (*change)(MachineConfig& machine);
+};
+
+TEST(MemoryEstimates, OfMachinesAreNotTooLow) {
+  if (!test::memory_can_be_measured) {
+    GTEST_SKIP() << "a sanitizer takes memory of its own";
+  }
+  const std::vector<Case> cases = {
+      {"no cache", [](MachineConfig& m) { m.cache.organisation = CacheOrganisation::none; }},
+      {"unified", [](MachineConfig& m) { m.cache.organisation = CacheOrganisation::unified; }},
+      {"contexts",
+       [](MachineConfig& m) {
+         m.cache.organisation = CacheOrganisation::none;
+         m.contexts = 4;
+       }},
+      {"replicated",
+       [](MachineConfig& m) {
+         m.cache.organisation = CacheOrganisation::none;
+         m.placement = processors::Placement::replicated;
+       }},
+  };
+  test::Random random(3);
+  const processors::WorkLog log = test::random_log(random, 16, 16);
+  for (const Case& one : cases) {
+    MachineConfig machine;
+    machine.nodes = 1U << 16U;
+    machine.packets = {1, 1, processors::PacketOrder::scanline};
+    one.change(machine);
+    const auto peak = static_cast<double>(test::peak_bytes([&] { (void)replay(log, machine); }));
+    const auto estimate = static_cast<double>(processors::host_bytes(machine));
+    EXPECT_GT(estimate, 0.9 * peak) << one.name << ": " << estimate / machine.nodes
+                                    << " bytes a node, measured " << peak / machine.nodes;
+    EXPECT_LT(estimate, 2.0 * peak) << one.name << ": " << estimate / machine.nodes
+                                    << " bytes a node, measured " << peak / machine.nodes;
+  }
+}
+
+sim::Config sweep_of(const std::string& nodes, const std::string& latencies) {
+  return sim::Config::from_text(
+      sweep_schema(),
+      "scene.source = \"teapot:2\"\n[sweep.axes]\nmachine.nodes = { from = 1, to = " + nodes +
+          ", steps = " + nodes + " }\nhost.latency_cycles = { from = 1, to = " + latencies +
+          ", steps = " + latencies + " }\n",
+      "sweep.toml");
+}
+
+// Of 20,000 points with a machine each.
+TEST(MemoryEstimates, OfPlansAreNotTooLow) {
+  if (!test::memory_can_be_measured) {
+    GTEST_SKIP() << "a sanitizer takes memory of its own";
+  }
+  constexpr std::uint64_t points = 20'000;
+  const auto peak = static_cast<double>(test::peak_bytes([] {
+    sim::Config config = sweep_of("100", "200");
+    static const SweepPlan plan = plan_sweep(config);
+  }));
+  // What does not grow with the points: the configuration, and those that are read at a time.
+  const auto fixed = static_cast<double>(test::peak_bytes([] {
+    sim::Config config = sweep_of("10", "60");
+    static const SweepPlan plan = plan_sweep(config);
+  }));
+  const auto estimate = static_cast<double>(plan_bytes(points, 2));
+  EXPECT_GT(estimate, 0.9 * (peak - fixed))
+      << estimate / points << " bytes a point, " << (peak - fixed) / points;
+  EXPECT_LT(estimate, 2.0 * (peak - fixed))
+      << estimate / points << " bytes a point, " << (peak - fixed) / points;
+}
+
+TEST(MemoryEstimates, EqualSectionsAreShared) {
+  sim::Config config = sweep_of("4", "5");
+  const SweepPlan plan = plan_sweep(config);
+  ASSERT_GE(plan.machines.size(), 20U);
+  std::set<const void*> parts;
+  std::size_t all = 0;
+  for (const SweepMachine& machine : plan.machines) {
+    for (const SettingsPart& part : machine.settings) {
+      parts.insert(part.get());
+      ++all;
+    }
+  }
+  EXPECT_LT(4 * parts.size(), all);
+}
+
+}  // namespace
+}  // namespace marti::studies
