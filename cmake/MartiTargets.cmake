@@ -47,11 +47,12 @@ endif()
 # The folders that are installed as libraries, each a component of the package (cmake/MartiPackage.cmake).
 set(MARTI_COMPONENTS sim scenes accel memory processors)
 
-# marti_add_library(<folder> SOURCES ... [PUBLIC libs...] [PRIVATE libs...]): the static library of one
-# folder, target marti_<folder>, alias marti::<folder>. Headers are included from the project's root.
+# marti_add_library(<folder> [PUBLIC libs...] [PRIVATE libs...]): the static library of all sources of one folder,
+# target marti_<folder>, alias marti::<folder>. Headers are included from the project's root.
 function(marti_add_library folder)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
-  add_library(marti_${folder} STATIC ${ARG_SOURCES})
+  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
+  add_library(marti_${folder} STATIC ${sources})
   add_library(marti::${folder} ALIAS marti_${folder})
   set_target_properties(marti_${folder} PROPERTIES EXPORT_NAME ${folder})
   target_include_directories(marti_${folder} PUBLIC

@@ -22,10 +22,7 @@ constexpr std::string_view expected =
 // file says what else is wrong with it.
 bool is_study(const fs::path& file) {
   check_store_file(file);
-  std::error_code ignored;
-  const bool has_log = fs::exists(file.string() + "-wal", ignored);
-  SqliteConnection connection(
-      file, has_log ? SqliteConnection::Access::read : SqliteConnection::Access::read_alone);
+  SqliteConnection connection(file, SqliteConnection::Access::read);
   return connection.integer("SELECT count(*) FROM pragma_table_info('columns') WHERE name = 'table_name'") >
          0;
 }

@@ -174,7 +174,7 @@ ReportData read_study_report(const fs::path& directory) {
   ReportData report;
   report.kind = "study";
   report.title = "Study";
-  SqliteConnection connection(file, SqliteConnection::Access::read_alone);
+  SqliteConnection connection(file, SqliteConnection::Access::read);
   const Descriptions descriptions = descriptions_of(connection);
   std::size_t rows_left = most_rows;
   for (const std::string& name : tables_of(connection)) {

@@ -1,6 +1,7 @@
 #include "studies/results/sqlite_connection.h"
 
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <cstring>
 #include <new>
@@ -30,19 +31,47 @@ std::string uri_of(const std::filesystem::path& file) {
   return uri + "?immutable=1";
 }
 
+// Where the file itself is: what belongs to it lies beside it and not beside a link to it.
+std::filesystem::path place_of(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path place = std::filesystem::canonical(file, error);
+  return error ? std::filesystem::absolute(file) : place;
+}
+
+bool may_be_changed(const std::filesystem::path& place) {
+  return access(place.c_str(), R_OK | W_OK) == 0 && access(place.parent_path().c_str(), W_OK | X_OK) == 0;
+}
+
 }  // namespace
 
-SqliteConnection::SqliteConnection(const std::filesystem::path& file, Access access)
-    : name_(file.string()), writes_(access == Access::write || access == Access::write_alone) {
-  int flags = SQLITE_OPEN_NOMUTEX;
-  flags |= writes_ ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
-  int status = SQLITE_OK;
-  if (access == Access::read_alone) {
-    status = sqlite3_open_v2(uri_of(file).c_str(), &connection_, flags | SQLITE_OPEN_URI, nullptr);
-  } else {
-    status = sqlite3_open_v2(file.c_str(), &connection_, flags,
-                             access == Access::write_alone ? "unix-none" : nullptr);
+bool has_log_or_journal(const std::filesystem::path& database) {
+  const std::string place = place_of(database).string();
+  for (const char* suffix : {"-wal", "-journal"}) {
+    std::error_code error;
+    const std::uintmax_t bytes = std::filesystem::file_size(place + suffix, error);
+    if (!error && bytes > 0) {
+      return true;
+    }
   }
+  return false;
+}
+
+SqliteConnection::SqliteConnection(const std::filesystem::path& file, Access access)
+    : name_(file.string()), writes_(access != Access::read) {
+  int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_READWRITE;
+  std::string place = file.string();
+  if (writes_) {
+    flags |= SQLITE_OPEN_CREATE;
+  } else if (!may_be_changed(place_of(file))) {
+    flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_READONLY;
+    cannot_recover_ = has_log_or_journal(file);
+    if (!cannot_recover_) {
+      place = uri_of(place_of(file));
+      flags |= SQLITE_OPEN_URI;
+    }
+  }
+  const int status = sqlite3_open_v2(place.c_str(), &connection_, flags,
+                                     access == Access::write_alone ? "unix-none" : nullptr);
   try {
     check(status);
     check(sqlite3_extended_result_codes(connection_, 1));
@@ -68,6 +97,12 @@ void SqliteConnection::check(int status) const {
   if (kind == SQLITE_IOERR || kind == SQLITE_CANTOPEN) {
     const int reason = sqlite3_system_errno(connection_);
     message += reason == 0 ? "" : std::string(" (") + std::strerror(reason) + ")";
+  }
+  if (cannot_recover_ && (kind == SQLITE_READONLY || kind == SQLITE_CANTOPEN)) {
+    message +=
+        "; the program that wrote it was ended in the middle, and what it left beside the file can only be "
+        "taken in where both may be written: run it again there, or copy the file together with its -journal "
+        "or -wal into a directory that may be written";
   }
   if (kind == SQLITE_CORRUPT || kind == SQLITE_NOTADB) {
     message += "; the file is damaged or no database: take a copy that is whole, or remove it";
@@ -182,16 +217,31 @@ Cell SqliteStatement::cell(int column) const {
   }
 }
 
-std::int64_t SqliteStatement::integer(int column) const { return sqlite3_column_int64(statement_, column); }
+bool SqliteStatement::has(int column, ColumnType type) const {
+  const int found = sqlite3_column_type(statement_, column);
+  const int wanted = type == ColumnType::integer ? SQLITE_INTEGER
+                     : type == ColumnType::real  ? SQLITE_FLOAT
+                                                 : SQLITE_TEXT;
+  if (found != wanted && found != SQLITE_NULL) {
+    throw sim::UserError(connection_.name_ + ": its column " + column_name(column) +
+                         " holds a value that is no " + std::string(sql_type(type)) +
+                         "; the file was damaged or changed: take a copy that is whole, or remove it");
+  }
+  return found == wanted;
+}
+
+std::int64_t SqliteStatement::integer(int column) const {
+  return has(column, ColumnType::integer) ? sqlite3_column_int64(statement_, column) : 0;
+}
 
 std::optional<std::int64_t> SqliteStatement::optional_integer(int column) const {
-  if (sqlite3_column_type(statement_, column) == SQLITE_NULL) {
-    return std::nullopt;
-  }
-  return integer(column);
+  return has(column, ColumnType::integer) ? std::optional(integer(column)) : std::nullopt;
 }
 
 std::string SqliteStatement::text(int column) const {
+  if (!has(column, ColumnType::text)) {
+    return {};
+  }
   const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
   const int size = sqlite3_column_bytes(statement_, column);
   return bytes == nullptr ? std::string() : std::string(bytes, static_cast<std::size_t>(size));

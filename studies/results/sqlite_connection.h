@@ -21,8 +21,11 @@ class SqliteConnection {
   enum class Access : std::uint8_t {
     write,        ///< the file is made if it is not there
     write_alone,  ///< it has a name that nobody else knows: it is written without any lock
-    read,         ///< the file must be there; others may write it
-    read_alone    ///< nobody writes it: it is read without any lock or file beside it
+    /// The file must be there; others may write it. What a writer that was killed has left beside it (a
+    /// journal, a log) is taken in first, where the file and its directory may be written. Where they may
+    /// not, such a rest that cannot be read is a UserError that says what to do, and a file without one is
+    /// read without any lock.
+    read
   };
   SqliteConnection(const std::filesystem::path& file, Access access);
   ~SqliteConnection();
@@ -46,6 +49,7 @@ class SqliteConnection {
 
   std::string name_;
   bool writes_;
+  bool cannot_recover_ = false;  // something lies beside the file, and it cannot be taken in
   sqlite3* connection_ = nullptr;
 };
 
@@ -71,7 +75,8 @@ class SqliteStatement {
   /// Makes it ready for other parameters. Those bound stay.
   void reset();
 
-  // The present row, columns counted from 0. NULL reads as 0 or as an empty text.
+  // The present row, columns counted from 0. NULL reads as 0 or as an empty text; a value of another type is
+  // a UserError, because the file is not what the program has written.
   [[nodiscard]] int columns() const;
   [[nodiscard]] std::string column_name(int column) const;
   [[nodiscard]] Cell cell(int column) const;
@@ -80,6 +85,9 @@ class SqliteStatement {
   [[nodiscard]] std::string text(int column) const;
 
  private:
+  // Whether there is a value; throws unless it is of this type.
+  [[nodiscard]] bool has(int column, ColumnType type) const;
+
   SqliteConnection& connection_;
   sqlite3_stmt* statement_ = nullptr;
 };
@@ -96,6 +104,9 @@ class SqliteTransaction {
  private:
   SqliteConnection& connection_;
 };
+
+/// Whether a log or a journal that is not empty lies beside the file: it may hold what the file lacks.
+[[nodiscard]] bool has_log_or_journal(const std::filesystem::path& database);
 
 /// A name as SQL writes it, whatever it is made of.
 [[nodiscard]] std::string sql_name(std::string_view name);

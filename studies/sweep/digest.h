@@ -14,6 +14,8 @@ class Digest {
   void add(std::string_view text);
   /// 32 hexadecimal digits, most significant first.
   [[nodiscard]] std::string hex() const;
+  /// Both halves in one number, as a checksum.
+  [[nodiscard]] std::uint64_t folded() const { return high_ ^ low_; }
 
  private:
   std::uint64_t high_ = 0x6c62272e07bb0142ULL;

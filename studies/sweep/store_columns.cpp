@@ -74,8 +74,8 @@ void append(std::vector<StoreColumn>& into, std::vector<StoreColumn> more) {
 
 std::vector<StoreColumn> store_columns(std::span<const std::string> axes) {
   std::vector<StoreColumn> all = {
-      {"store", "what", "", "format or version"},
-      {"store", "value", "", "of the store, of the program that made it"},
+      {"store", "what", "", "format, version, build or checksum"},
+      {"store", "value", "", "of the store, of the program that made it, of the plan"},
       {"provenance", "what", "", "property of the present plan"},
       {"provenance", "value", "", "its value"},
       {"settings", "id", "", "number of the setting"},
@@ -116,7 +116,8 @@ std::vector<StoreColumn> store_columns(std::span<const std::string> axes) {
       {"histograms", "lowest", "ps", "the shortest wait of the bucket"},
       {"histograms", "highest", "ps", "the longest"},
       {"histograms", "count", "1", "waits in the bucket"},
-      {"results", "machine", "", "the machine"}};
+      {"results", "machine", "", "the machine"},
+      {"results", "checksum", "", "of the row and its histograms"}};
   for (const Column& column : sweep_columns()) {
     all.push_back({"results", column.name, column.unit, column.description});
   }
@@ -124,7 +125,8 @@ std::vector<StoreColumn> store_columns(std::span<const std::string> axes) {
                {"frame_results", "scene", "", "the scene's own name"},
                {"frame_results", "scene_hash", "", "of what the frame depends on, FNV-1a"},
                {"frame_results", "image_hash", "", "of the bits of all pixels, FNV-1a"},
-               {"frame_results", "hit_hash", "", "of the outcome of every ray"}});
+               {"frame_results", "hit_hash", "", "of the outcome of every ray"},
+               {"frame_results", "checksum", "", "of the row and its notes"}});
   for (const Column& column : frame_columns()) {
     all.push_back({"frame_results", column.name, column.unit, column.description});
   }

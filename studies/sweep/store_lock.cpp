@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <string_view>
 
 #include "sim/error.h"
 
@@ -36,17 +37,44 @@ std::string holder_of(int descriptor) {
 bool still_there(int descriptor, const std::filesystem::path& file) {
   struct stat open_file {};
   struct stat named_file {};
-  return fstat(descriptor, &open_file) == 0 && stat(file.c_str(), &named_file) == 0 &&
+  return fstat(descriptor, &open_file) == 0 && lstat(file.c_str(), &named_file) == 0 &&
          open_file.st_dev == named_file.st_dev && open_file.st_ino == named_file.st_ino;
+}
+
+constexpr std::string_view first_word = "process ";
+
+// A file that is written and then removed must be a lock: no link to something else, and no other's file.
+std::string why_no_lock(int descriptor) {
+  struct stat status {};
+  if (fstat(descriptor, &status) != 0) {
+    return std::strerror(errno);
+  }
+  if (!S_ISREG(status.st_mode)) {
+    return "it is not a regular file";
+  }
+  if (status.st_nlink > 1) {
+    return "it has a second name (a hard link)";
+  }
+  std::array<char, first_word.size()> begin{};
+  const ssize_t bytes = pread(descriptor, begin.data(), begin.size(), 0);
+  const bool is_lock = bytes == 0 || std::string_view(begin.data(), begin.size()) == first_word;
+  return is_lock ? "" : "it is a file of something else";
 }
 
 }  // namespace
 
 StoreLock::StoreLock(const std::filesystem::path& store) : file_(store.string() + ".lock") {
   for (;;) {
-    descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) {
+    // O_NONBLOCK: a pipe that nobody writes to is refused and not waited for.
+    descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    if (descriptor_ < 0 && errno != ELOOP) {
       throw sim::UserError(file_.string() + ": cannot be made: " + std::strerror(errno));
+    }
+    const std::string fault = descriptor_ < 0 ? "it is a symbolic link" : why_no_lock(descriptor_);
+    if (!fault.empty()) {
+      ::close(descriptor_);
+      throw sim::UserError(file_.string() + ": cannot be the lock of the store: " + fault +
+                           "; remove it if nothing else needs it, or give another directory");
     }
     if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
       const int reason = errno;
@@ -63,7 +91,7 @@ StoreLock::StoreLock(const std::filesystem::path& store) : file_(store.string() 
     }
     ::close(descriptor_);
   }
-  const std::string holder = "process " + std::to_string(getpid()) + " on " + host_name() + "\n";
+  const std::string holder = std::string(first_word) + std::to_string(getpid()) + " on " + host_name() + "\n";
   // Only for people: a full disk does not keep the lock from locking.
   if (ftruncate(descriptor_, 0) == 0) {
     [[maybe_unused]] const ssize_t written = pwrite(descriptor_, holder.data(), holder.size(), 0);

@@ -9,7 +9,8 @@ namespace marti::studies {
 /// gone with the process that held it, however that ended; what the file says is only for people.
 class StoreLock {
  public:
-  /// Throws UserError when another process holds it or the file cannot be made.
+  /// Throws UserError when another process holds it, when the file cannot be made, and when what has its name
+  /// is no lock: a link, a pipe, a file of something else. That is not touched.
   explicit StoreLock(const std::filesystem::path& store);
   ~StoreLock();
   StoreLock(const StoreLock&) = delete;

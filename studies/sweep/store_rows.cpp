@@ -60,7 +60,9 @@ RowWriter::RowWriter(SqliteConnection& connection)
       result_(connection, insert_sql("results", sweep_columns().size() + first_result_counter)),
       bucket_(connection, "INSERT INTO wait_buckets VALUES (?, ?, ?, ?, ?)"),
       frame_(connection, insert_sql("frame_results", frame_columns().size() + first_frame_counter)),
-      note_(connection, "INSERT INTO frame_notes VALUES (?, ?, ?)") {}
+      note_(connection, "INSERT INTO frame_notes VALUES (?, ?, ?)"),
+      machine_sums_(connection, RowSums::Kind::machines),
+      frame_sums_(connection, RowSums::Kind::frames) {}
 
 bool RowWriter::there(SqliteStatement& statement, std::int64_t id) {
   const bool found = statement.bind(1, id).next();
@@ -86,6 +88,7 @@ void RowWriter::add(std::int64_t machine, const SweepRow& row) {
       bucket_.bind(5, bucket.count).run();
     }
   }
+  machine_sums_.seal(machine);
 }
 
 void RowWriter::add(std::int64_t frame, const FrameRow& row) {
@@ -99,6 +102,7 @@ void RowWriter::add(std::int64_t frame, const FrameRow& row) {
   for (std::size_t i = 0; i < row.notes.size(); ++i) {
     note_.bind(1, frame).bind(2, static_cast<std::int64_t>(i)).bind(3, std::string_view(row.notes[i])).run();
   }
+  frame_sums_.seal(frame);
 }
 
 RowReader::RowReader(SqliteConnection& connection)

@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "studies/results/sqlite_connection.h"
+#include "studies/sweep/store_sums.h"
 #include "studies/sweep/sweep_row.h"
 
 namespace marti::studies {
 
-/// Adds rows; its statements are prepared once.
+/// Adds rows with their checksums; its statements are prepared once. Within a transaction.
 class RowWriter {
  public:
   explicit RowWriter(SqliteConnection& connection);
@@ -29,6 +30,8 @@ class RowWriter {
   SqliteStatement bucket_;
   SqliteStatement frame_;
   SqliteStatement note_;
+  RowSums machine_sums_;
+  RowSums frame_sums_;
 };
 
 /// Reads rows; its statements are prepared once.

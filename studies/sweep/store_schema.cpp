@@ -20,7 +20,7 @@ namespace marti::studies {
 namespace {
 
 constexpr std::int64_t application = 0x6d617274;  // "mart"
-constexpr std::int64_t format = 1;
+constexpr std::int64_t format = 2;                // 1: without checksums
 
 constexpr std::string_view what_to_do =
     "; give another directory, or remove the file and run the sweep again";
@@ -146,13 +146,8 @@ void check_store_file(const std::filesystem::path& file) {
     }
     return value;
   };
-  const auto has_log = [&](const char* suffix) {
-    std::error_code ignored;
-    const std::uintmax_t size = std::filesystem::file_size(file.string() + suffix, ignored);
-    return !ignored && size > 0;
-  };
   const std::uint64_t page = big_endian(16, 2) == 1 ? 65536 : big_endian(16, 2);
-  if (bytes < page * big_endian(28, 4) && !has_log("-wal") && !has_log("-journal")) {
+  if (bytes < page * big_endian(28, 4) && !has_log_or_journal(file)) {
     throw sim::UserError(file.string() + ": is damaged: it has " + std::to_string(bytes) + " bytes of " +
                          std::to_string(page * big_endian(28, 4)) + std::string(what_to_do));
   }
@@ -163,17 +158,19 @@ bool is_empty_database(SqliteConnection& connection) {
          connection.integer("SELECT COUNT(*) FROM sqlite_schema") == 0;
 }
 
-void check_store_format(SqliteConnection& connection, const std::filesystem::path& file) {
+std::int64_t check_store_format(SqliteConnection& connection, const std::filesystem::path& file) {
   if (connection.integer("PRAGMA application_id") != application) {
     throw sim::UserError(file.string() + ": is a database, but not the store of a sweep" +
                          std::string(what_to_do));
   }
   const std::int64_t found = connection.integer("PRAGMA user_version");
-  if (found != format) {
+  if (found < 1 || found > format ||
+      text_of(connection, "SELECT value FROM store WHERE what = 'format'") != std::to_string(found)) {
     throw sim::UserError(file.string() + ": is a store of format " + std::to_string(found) +
-                         ", but this program reads format " + std::to_string(format) +
+                         ", but this program reads formats 1 to " + std::to_string(format) +
                          "; use the program that wrote it, give another directory, or remove the file");
   }
+  return found;
 }
 
 void check_store_version(SqliteConnection& connection, const std::filesystem::path& file) {
@@ -183,8 +180,10 @@ void check_store_version(SqliteConnection& connection, const std::filesystem::pa
                          std::string(version) + ", whose results could differ; use version " + found +
                          ", give another directory, or remove the file and run the sweep again");
   }
-  // Digits of the sources come last; a program that was changed may give other results.
-  if (text_of(connection, "SELECT value FROM store WHERE what = 'build'") != build_of_program() ||
+  // Older formats are read and not written. Digits of the sources come last; a program that was changed may
+  // give other results.
+  if (connection.integer("PRAGMA user_version") != format ||
+      text_of(connection, "SELECT value FROM store WHERE what = 'build'") != build_of_program() ||
       !has_columns(connection, "results", first_result_counter, sweep_columns()) ||
       !has_columns(connection, "frame_results", first_frame_counter, frame_columns())) {
     throw sim::UserError(file.string() + ": was written by another build of version " + found +
@@ -196,11 +195,11 @@ void create_store(SqliteConnection& connection) {
   connection.execute("PRAGMA application_id = " + std::to_string(application) +
                      "; PRAGMA user_version = " + std::to_string(format));
   connection.execute(fixed_tables);
-  connection.execute("CREATE TABLE results (machine INTEGER PRIMARY KEY" + counters_sql(sweep_columns()) +
-                     ")");
+  connection.execute("CREATE TABLE results (machine INTEGER PRIMARY KEY, checksum INTEGER" +
+                     counters_sql(sweep_columns()) + ")");
   connection.execute(
       "CREATE TABLE frame_results (frame INTEGER PRIMARY KEY, scene TEXT NOT NULL, scene_hash TEXT NOT NULL, "
-      "image_hash TEXT NOT NULL, hit_hash TEXT NOT NULL" +
+      "image_hash TEXT NOT NULL, hit_hash TEXT NOT NULL, checksum INTEGER" +
       counters_sql(frame_columns()) + ")");
   SqliteStatement store(connection, "INSERT INTO store VALUES (?, ?)");
   const std::string format_text = std::to_string(format);

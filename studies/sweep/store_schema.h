@@ -9,8 +9,8 @@
 namespace marti::studies {
 
 /// Where the counters of the tables begin, after the columns that are no counters.
-inline constexpr int first_result_counter = 1;
-inline constexpr int first_frame_counter = 5;
+inline constexpr int first_result_counter = 2;
+inline constexpr int first_frame_counter = 6;
 
 /// Throws UserError when the file is there but is no whole SQLite database, before SQLite has touched it.
 void check_store_file(const std::filesystem::path& file);
@@ -18,10 +18,11 @@ void check_store_file(const std::filesystem::path& file);
 /// Whether nothing was ever written into the database: it is new.
 [[nodiscard]] bool is_empty_database(SqliteConnection& connection);
 
-/// Throws UserError unless the database is a store of a format that this program reads.
-void check_store_format(SqliteConnection& connection, const std::filesystem::path& file);
+/// Its format. Throws UserError unless the database is a store of one that this program reads.
+std::int64_t check_store_format(SqliteConnection& connection, const std::filesystem::path& file);
 
-/// Throws UserError unless this program may add results to the store: it must be of this version.
+/// Throws UserError unless this program may add results to the store: it must be of this version and of the
+/// newest format.
 void check_store_version(SqliteConnection& connection, const std::filesystem::path& file);
 
 /// Makes the tables that stay. Within a transaction.

@@ -1,7 +1,5 @@
 #include "studies/sweep/sweep_reader.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 
 #include "sim/error.h"
@@ -10,6 +8,7 @@
 #include "studies/results/sqlite_connection.h"
 #include "studies/sweep/store_rows.h"
 #include "studies/sweep/store_schema.h"
+#include "studies/sweep/store_sums.h"
 
 namespace marti::studies {
 
@@ -18,18 +17,12 @@ namespace {
 // The columns of table points that are no axes.
 constexpr std::size_t point_columns = 4;
 
-using Access = SqliteConnection::Access;
-
-// A store that nobody is writing can be read where nothing may be written beside it.
-Access access_to(const std::filesystem::path& file) {
+const std::filesystem::path& checked(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) {
     throw sim::UserError(file.string() + ": there is no such file");
   }
   check_store_file(file);
-  std::error_code ignored;
-  const bool has_log = std::filesystem::exists(file.string() + "-wal", ignored);
-  const std::filesystem::path directory = file.has_parent_path() ? file.parent_path() : ".";
-  return has_log || access(directory.c_str(), W_OK) == 0 ? Access::read : Access::read_alone;
+  return file;
 }
 
 std::vector<std::string> columns_of(SqliteConnection& connection, const std::string& table) {
@@ -47,16 +40,21 @@ bool is_begun(const std::filesystem::path& store) {
   if (!std::filesystem::exists(store)) {
     return false;
   }
-  SqliteConnection connection(store, access_to(store));
+  SqliteConnection connection(checked(store), SqliteConnection::Access::read);
   return !is_empty_database(connection);
 }
 
 class SweepReader::Implementation {
  public:
   explicit Implementation(const std::filesystem::path& file)
-      : file_(file), connection_(file, access_to(file)) {
+      : file_(file), connection_(checked(file), SqliteConnection::Access::read) {
     connection_.execute("BEGIN");  // from here on all reads are of one instant
-    check_store_format(connection_, file);
+    if (is_empty_database(connection_)) {
+      throw sim::UserError(file.string() +
+                           ": holds nothing: the sweep was ended before its plan was saved; run it again");
+    }
+    const std::int64_t format = check_store_format(connection_, file);
+    check_whole(connection_, file, format);
     const Cell found = connection_.value("SELECT value FROM store WHERE what = 'version'");
     const auto* text = std::get_if<std::string>(&found);
     version_ = text == nullptr ? "unknown" : *text;
@@ -73,7 +71,7 @@ class SweepReader::Implementation {
     figures_ = columns_of(connection_, "summary");
     summary_figures_ = figures_.size();
     for (const std::string& counter : columns_of(connection_, "results")) {
-      if (std::find(figures_.begin(), figures_.end(), counter) == figures_.end()) {
+      if (counter != "checksum" && std::find(figures_.begin(), figures_.end(), counter) == figures_.end()) {
         figures_.push_back(counter);
       }
     }

@@ -14,6 +14,7 @@
 #include "studies/sweep/store_plan.h"
 #include "studies/sweep/store_rows.h"
 #include "studies/sweep/store_schema.h"
+#include "studies/sweep/store_sums.h"
 
 namespace marti::studies {
 
@@ -40,16 +41,17 @@ class SweepStore::Implementation {
       : lock_(file), connection_(checked(file), SqliteConnection::Access::write) {
     const bool is_new = is_empty_database(connection_);
     if (!is_new) {
-      check_store_format(connection_, file);
+      const std::int64_t format = check_store_format(connection_, file);
       check_store_version(connection_, file);
+      check_whole(connection_, file, format);
     }
-    // What is committed survives the end of the program; only a power cut may take the last commits.
-    connection_.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
+    begin_log();
     SqliteTransaction transaction(connection_);
     if (is_new) {
       create_store(connection_);
     }
     ids_ = enter_plan(connection_, plan);
+    seal_plan(connection_);
     begin_session();
     transaction.commit();
     rows_.emplace(connection_);
@@ -86,15 +88,26 @@ class SweepStore::Implementation {
     const std::string ended = now();
     end.bind(1, std::string_view(ended)).bind(2, session_).run();
     connection_.execute("PRAGMA wal_checkpoint(TRUNCATE)");
-    // A reader may still need the log. Whoever opens the store next does without it again.
+    // Ends the log, without a journal as at its beginning. A reader may still need it: whoever opens the
+    // store next then does without it again.
     try {
-      connection_.execute("PRAGMA busy_timeout = 0; PRAGMA journal_mode = DELETE");
+      connection_.execute("PRAGMA busy_timeout = 0; PRAGMA journal_mode = OFF");
     } catch (const sim::UserError&) {
       return;
     }
   }
 
  private:
+  // What is committed to the log survives the end of the program; only a power cut may take the last commits.
+  // Going to a log and back changes two bytes of the first page, which one write of one sector does. SQLite's
+  // journal for it would stand in the way of readers if the program were killed in between, so there is none.
+  void begin_log() {
+    if (connection_.value("PRAGMA journal_mode") != Cell("wal")) {
+      connection_.execute("PRAGMA journal_mode = OFF; PRAGMA journal_mode = WAL");
+    }
+    connection_.execute("PRAGMA synchronous = NORMAL");
+  }
+
   [[nodiscard]] std::vector<bool> done(const std::string& query, const std::vector<std::int64_t>& ids) {
     std::unordered_set<std::int64_t> there;
     SqliteStatement rows(connection_, query);

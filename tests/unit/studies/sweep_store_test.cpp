@@ -211,7 +211,8 @@ TEST(SweepStore, RefusesOtherFormatsAndVersions) {
     EXPECT_NE(message.find(reason), std::string::npos) << message;
   };
   refused_after("PRAGMA application_id = 7", "not the store of a sweep");
-  refused_after("PRAGMA user_version = 2", "format 2");
+  refused_after("PRAGMA user_version = 3", "format 3");
+  refused_after("PRAGMA user_version = 1", "format 1");
   refused_after("UPDATE store SET value = '0.0.1' WHERE what = 'version'", "version 0.0.1");
   refused_after("UPDATE store SET value = '0.0.1' WHERE what = 'version'", std::string(version));
   refused_after("UPDATE store SET value = 'marti 0.1.0 0' WHERE what = 'build'", "another build");
