@@ -21,6 +21,7 @@
 #include "scenes/gltf_view.h"
 #include "scenes/open.h"
 #include "sim/error.h"
+#include "sim/shown.h"
 
 namespace marti::scenes {
 
@@ -42,7 +43,7 @@ bool is_supported(const std::string& extension) {
 void check_requirements(const Model& model) {
   for (const std::string& extension : model.data().extensionsRequired) {
     if (!is_supported(extension)) {
-      model.fail("it requires the extension '" + extension + "', which is not supported");
+      model.fail("it requires the extension '" + sim::shown(extension) + "', which is not supported");
     }
   }
 }
@@ -52,7 +53,7 @@ void note_extensions(const Model& model, Scene& scene) {
   for (const std::string& extension : model.data().extensionsUsed) {
     if (!is_supported(extension)) {
       names += (names.empty() ? "" : ", ");
-      names += extension;
+      names += sim::shown(extension);
     }
   }
   if (!names.empty()) {
@@ -144,7 +145,7 @@ class GltfPoses : public PoseSource {
         scene = posed(seconds);
       } catch (const sim::UserError& error) {
         throw sim::UserError(std::string(error.what()) + " (at " + seconds_text(seconds) + " of animation '" +
-                             animation_->name() + "')");
+                             sim::shown(animation_->name()) + "')");
       }
     });
     return scene;
@@ -228,7 +229,7 @@ class GltfPoses : public PoseSource {
     }
     note_left_out(model_, left_out, meshes.bad_triangles(), still_);
     if (animation_) {
-      still_.notes.push_back("Animation '" + animation_->name() + "' plays for " +
+      still_.notes.push_back("Animation '" + sim::shown(animation_->name()) + "' plays for " +
                              seconds_text(animation_->duration()) + ".");
     } else {
       if (!model_.data().animations.empty()) {

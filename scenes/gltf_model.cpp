@@ -8,8 +8,10 @@
 #include <sstream>
 #include <utility>
 
+#include "scenes/part_error.h"
 #include "sim/error.h"
 #include "sim/files.h"
+#include "sim/shown.h"
 
 namespace marti::scenes::gltf {
 
@@ -103,11 +105,8 @@ std::string one_line(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) {
     text.pop_back();
   }
-  for (char& c : text) {
-    c = static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  constexpr std::size_t longest = 400;
-  return text.size() > longest ? text.substr(0, longest) + "..." : text;
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return sim::shown(text);
 }
 
 /// tinygltf's complaints without those about what glTF 2.0 allows: skins without inverse bind matrices
@@ -246,7 +245,13 @@ void Model::parse() {
   read_ = std::vector<std::atomic<bool>>(data_.accessors.size());
 }
 
-void Model::fail(const std::string& what) const { throw sim::UserError(path_.string() + ": " + what); }
+void Model::fail(const std::string& what) const {
+  throw sim::UserError(sim::shown(path_.string()) + ": " + what);
+}
+
+void Model::fail_choice(const char* part, const std::string& what) const {
+  throw PartError(part, sim::shown(path_.string()) + ": " + what);
+}
 
 void Model::fail_reference(const char* kind, int index, std::size_t size, const std::string& user) const {
   fail(user + " refers to " + kind + " " + std::to_string(index) + ", but the file has " +

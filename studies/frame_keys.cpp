@@ -1,5 +1,7 @@
 #include "studies/frame_keys.h"
 
+#include "sim/shown.h"
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -133,7 +135,7 @@ FrameConfig read_frame(sim::Config& config) {
     const std::filesystem::path file = frame.open.base_directory / frame.scene;
     if (std::error_code error; !std::filesystem::exists(file, error)) {
       config.fail("scene.source",
-                  "there is no file " + file.string() +
+                  "there is no file " + sim::shown(file.string()) +
                       "; one that a configuration names is looked for beside it, one given with "
                       "--set in the current directory");
     }
