@@ -129,10 +129,10 @@ void Config::fail(std::string_view key, std::string_view message) const {
   const Entry& entry = entries_[index_of(key)];
   const bool assigned = entry.given != nullptr && entry.line() == 0;
   if (assigned && entry.given->place.starts_with("--set ")) {  // which names the key itself
-    throw UserError(shown(entry.given->place) + ": " + std::string(message));
+    throw UserError(shown(entry.given->place) + ": " + shown(message, all_shown));
   }
   // A default cannot be pointed at: the file in which it could be changed can.
-  throw UserError(place_in_file(name_, entry.line(), key) + ": " + std::string(message) +
+  throw UserError(place_in_file(name_, entry.line(), key) + ": " + shown(message, all_shown) +
                   (assigned ? " (in " + shown(entry.given->place) + ")" : ""));
 }
 

@@ -53,7 +53,7 @@ std::string place_in_file(std::string_view file, int line, std::string_view key)
 }
 
 void fail_at(const Config& config, int line, std::string_view key, std::string_view message) {
-  throw UserError(place_in_file(config.name(), line, key) + ": " + std::string(message));
+  throw UserError(place_in_file(config.name(), line, key) + ": " + shown(message, all_shown));
 }
 
 std::string longest_duration(std::span<const EffectiveValue> values) {
@@ -88,14 +88,14 @@ void fail_placed(std::span<const EffectiveValue> values, std::string_view file, 
   const EffectiveValue* const value = find(values, error.key());
   const std::string source = value == nullptr || !value->given ? "" : value->source;
   if (source.starts_with("--set ")) {
-    throw UserError(shown(source) + ": " + error.reason());
+    throw UserError(shown(source) + ": " + shown(error.reason(), all_shown));
   }
   const std::size_t colon = source.rfind(':');
   int line = 0;
   if (colon != std::string::npos) {
     (void)std::from_chars(source.data() + colon + 1, source.data() + source.size(), line);
   }
-  throw UserError(place_in_file(file, line, error.key()) + ": " + error.reason());
+  throw UserError(place_in_file(file, line, error.key()) + ": " + shown(error.reason(), all_shown));
 }
 
 }  // namespace marti::sim

@@ -176,7 +176,7 @@ FaultyLine line_of(std::string_view text, std::size_t line) {
       const std::size_t begin = std::min(found.text.find_first_not_of('['), found.text.size());
       found.section = std::string(found.text.substr(begin, found.text.find(']') - begin)) + ".";
       found.key = {};
-    } else if (equals != std::string_view::npos) {
+    } else if (equals != std::string_view::npos && !found.text.starts_with('[')) {
       found.key = trim(found.text.substr(0, equals));
     }
   }
@@ -234,10 +234,11 @@ class ConfigReader {
 
   void read_text(std::string_view text) {
     if (const std::size_t line = line_too_deep(text); line != 0) {
-      throw UserError(place_of(line_of(text, line), line) + ": " + std::string(name_too_deep));
+      throw UserError(place_of(line_of(text, line), std::to_string(line)) + ": " +
+                      std::string(name_too_deep));
     }
     if (const std::size_t line = line_beyond_ascii(text); line != 0) {
-      throw UserError(place_of(line_of(text, line), line) +
+      throw UserError(place_of(line_of(text, line), std::to_string(line)) +
                       ": a character that is not ASCII, outside of a text in quotes and of a comment");
     }
     try {
@@ -253,16 +254,15 @@ class ConfigReader {
     } catch (const toml::parse_error& error) {
       const toml::source_position at = error.source().begin;
       const FaultyLine line = line_of(text, at.line);
-      throw UserError(place_of(line, at.line) + ": " + shown(error.description()) + " (column " +
-                      std::to_string(at.column) + ")" + missing_quotes(line));
+      throw UserError(place_of(line, std::to_string(at.line) + ":" + std::to_string(at.column)) + ": " +
+                      shown(error.description()) + missing_quotes(line));
     }
   }
 
-  /// "file:line: key"; without a key where the line seems to have none.
-  [[nodiscard]] std::string place_of(const FaultyLine& faulty, std::size_t line) const {
-    return faulty.key.empty() ? shown(config_.name_) + ":" + std::to_string(line)
-                              : place_in_file(config_.name_, static_cast<int>(line),
-                                              faulty.section + std::string(faulty.key));
+  /// "file:place: key"; without a key where the line seems to have none.
+  [[nodiscard]] std::string place_of(const FaultyLine& line, const std::string& place) const {
+    return shown(config_.name_) + ":" + place +
+           (line.key.empty() ? "" : ": " + shown(line.section + std::string(line.key)));
   }
 
   /// Lists the values below `table` under their dotted names. A table without values stands for itself.

@@ -43,6 +43,9 @@ inline Refusal refusal_of(const std::string& message, std::string_view file) {
     const auto [end, error] = std::from_chars(rest.data() + 1, rest.data() + rest.size(), refusal.line);
     promise(error == std::errc{} && refusal.line > 0, "without a line: " + message);
     rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+    if (rest.starts_with(':') && !rest.starts_with(": ")) {  // what is no TOML has a column
+      rest.remove_prefix(std::min(rest.find(": "), rest.size()));
+    }
   }
   promise(rest.starts_with(": "), "without a place: " + message);
   rest.remove_prefix(2);

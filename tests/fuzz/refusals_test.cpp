@@ -78,6 +78,9 @@ std::string read_file(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+// Beside the shipped files, of which some name others.
+const std::string config_name = MARTI_SOURCE "/configs/fuzz.toml";
+
 // Bytes that must not come out as they went in.
 const std::vector<std::string> foreign = {"\x1b[31mred", "bell\x07",     "line\nbreak",
                                           "\xff\xfe",    "\xe2\x80\xae", std::string(3000, 'w'),
@@ -95,7 +98,7 @@ std::string allowed(const Key& key, Random& random) {
     value = print(one_of(key.choices, random));
   } else if (key.type == ValueType::text) {
     value =
-        toml_text(one_of(std::vector<std::string>{"", "0", "none", "teapot:1", "balls:1", "rule"}, random));
+        toml_text(one_of(std::vector<std::string>{"", "0", "none", "teapot:2", "balls:1", "rule"}, random));
   } else if (key.minimum && random() % 2 == 0) {
     value = print(*key.minimum);
   } else if (key.maximum && random() % 2 == 0) {
@@ -170,7 +173,7 @@ class Refusals : public testing::Test {
   // Whether the configuration is refused, as it must be. Any other exception is the test's failure.
   bool refused(const Command& command, const Given& given) {
     try {
-      Config config = Config::from_text(command.schema, given.text, "fuzz.toml", given.assignments);
+      Config config = Config::from_text(command.schema, given.text, config_name, given.assignments);
       command.read(config);
       return false;
     } catch (const sim::UserError& error) {
@@ -180,9 +183,11 @@ class Refusals : public testing::Test {
   }
 
   static void check(const Schema& schema, const Given& given, const std::string& message) {
-    const Refusal refusal = refusal_of(message, "fuzz.toml");
+    const Refusal refusal = refusal_of(message, config_name);
+    // A key that is not declared is the user's own, shortened where it is long.
+    const std::string own = refusal.key.substr(0, refusal.key.find("..."));
     const auto is_among = [&](const std::string& assignment) {
-      return sim::shown(assignment, sim::all_shown).starts_with(refusal.key);
+      return sim::shown(assignment, sim::all_shown).starts_with(own);
     };
     if (refusal.set) {
       promise(std::any_of(given.assignments.begin(), given.assignments.end(), is_among),
@@ -191,10 +196,11 @@ class Refusals : public testing::Test {
     }
     promise(!refusal.key.empty(), "without a key: " + message);
     const bool declared = schema.find(refusal.key) || schema.is_section(refusal.key);
-    // A key that is not declared is the user's own, shortened where it is long.
-    const std::string own = refusal.key.substr(0, refusal.key.find("..."));
-    const bool written =
-        sim::shown(given.text, sim::all_shown).find(own.substr(own.rfind('.') + 1)) != std::string::npos;
+    const std::string last = own.substr(own.rfind('.') + 1);
+    const bool written = sim::shown(given.text, sim::all_shown).find(last) != std::string::npos ||
+                         std::any_of(foreign.begin(), foreign.end(), [&](const std::string& text) {
+                           return sim::shown(text).find(last) != std::string::npos;
+                         });
     promise(declared || written, "an unknown key: " + message);
     const auto line = given.lines.find(refusal.key);
     promise(line == given.lines.end() || refusal.line == line->second, "another line: " + message);
@@ -268,7 +274,7 @@ TEST_F(Refusals, OfValuesThatContradictEachOther) {
       continue;
     }
     const std::string shipped = read_file(fs::path(MARTI_SOURCE) / "configs" / command.file);
-    for (int i = 0; i < 150; ++i) {
+    for (int i = 0; i < 60; ++i) {
       std::vector<std::pair<std::string, std::string>> more;
       Given options{shipped, {}, {}};
       for (std::size_t n = 1 + random() % 6; n > 0; --n) {
@@ -280,7 +286,7 @@ TEST_F(Refusals, OfValuesThatContradictEachOther) {
       ASSERT_NO_THROW(refusals += refused(command, options) ? 1 : 0) << i;
     }
   }
-  EXPECT_GT(refusals, 1000);
+  EXPECT_GT(refusals, 400);
 }
 
 // What comes out only when a frame is rendered and timed. The last value is the one that is refused.
@@ -296,13 +302,13 @@ TEST_F(Refusals, OfWhatIsFoundWhileAMachineRuns) {
       {{"image.width", "2000"}, {"image.height", "2000"}, {"host_machine.memory_limit", "\"1 MiB\""}},
       {{"layout.primitive", "\"64 KiB\""}, {"cache.organisation", "\"none\""}, {"node.clock", "\"1 Hz\""}},
       {{"interconnect.kind", "\"crossbar\""},
-       {"interconnect.latency_cycles", "1000000000"},
+       {"interconnect.latency_cycles", "100000"},
        {"interconnect.clock", "\"1 Hz\""}},
-      {{"host.clock", "\"1 Hz\""}, {"host.latency_cycles", "1000000000"}}};
+      {{"host.clock", "\"100 Hz\""}, {"host.latency_cycles", "1000000000"}}};
   const Schema schema = studies::run_schema();
   for (const auto& values : cases) {
     std::string text = "image.width = 8\nimage.height = 8\nmachine.nodes = 2\n";
-    std::string set = text + "scene.source = \"teapot:1\"\n";
+    std::string set = text + "scene.source = \"teapot:2\"\n";
     std::vector<std::string> assignments;
     std::map<std::string, int> lines;
     int line = 2;
@@ -322,17 +328,17 @@ TEST_F(Refusals, OfWhatIsFoundWhileAMachineRuns) {
     const auto message = [&](const std::string& file,
                              const std::vector<std::string>& options) -> std::string {
       try {
-        Config config = Config::from_text(schema, file, "fuzz.toml", options);
+        Config config = Config::from_text(schema, file, config_name, options);
         (void)studies::run(config);
       } catch (const sim::UserError& error) {
         return error.what();
       }
-      return "fuzz.toml: nothing: is refused";
+      return config_name + ": nothing: is refused";
     };
-    const Refusal in_file = refusal_of(message(text, {}), "fuzz.toml");
+    const Refusal in_file = refusal_of(message(text, {}), config_name);
     EXPECT_EQ(in_file.key, blamed) << message(text, {});
     EXPECT_EQ(in_file.line, lines[blamed]) << message(text, {});
-    const Refusal set_by_option = refusal_of(message(set, assignments), "fuzz.toml");
+    const Refusal set_by_option = refusal_of(message(set, assignments), config_name);
     EXPECT_TRUE(set_by_option.set) << message(set, assignments);
     EXPECT_EQ(set_by_option.key, blamed) << message(set, assignments);
   }
