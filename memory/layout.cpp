@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::memory {
 
@@ -16,6 +16,12 @@ std::uint64_t round_up(std::uint64_t value, std::uint64_t multiple) {
   return (value + multiple - 1) / multiple * multiple;
 }
 
+// What the configuration calls the size of such a record.
+std::string key_of(std::string_view name) {
+  return "layout." +
+         std::string(name == record_kind_names[static_cast<std::size_t>(RecordKind::list)] ? "entry" : name);
+}
+
 }  // namespace
 
 Layout::Layout(const LayoutConfig& config, const RecordCounts& counts, std::uint64_t quadrics) {
@@ -23,7 +29,9 @@ Layout::Layout(const LayoutConfig& config, const RecordCounts& counts, std::uint
                                                          config.primitive_bytes, config.material_bytes,
                                                          config.texel_bytes,     config.pixel_bytes};
   if (!std::has_single_bit(config.record_alignment) || !std::has_single_bit(config.section_alignment)) {
-    throw sim::UserError("layout: an alignment must be a power of two");
+    throw sim::KeyError(
+        std::has_single_bit(config.record_alignment) ? "layout.section_alignment" : "layout.record_alignment",
+        "must be a power of two");
   }
   sim::ensure(quadrics <= counts[static_cast<std::size_t>(RecordKind::primitive)],
               "layout: more quadrics than primitives");
@@ -31,14 +39,14 @@ Layout::Layout(const LayoutConfig& config, const RecordCounts& counts, std::uint
   const auto place = [&](Section& section, std::uint64_t count, std::uint32_t record, std::uint32_t alignment,
                          std::string_view name) {
     if (record == 0) {
-      throw sim::UserError("layout: a " + std::string(name) + " record of 0 bytes");
+      throw sim::KeyError(key_of(name), "a record of 0 bytes");
     }
     section.base = at;
     section.count = count;
     section.bytes = record;
     section.stride = static_cast<std::uint32_t>(round_up(record, alignment));
     if (count > (address_limit - at) / section.stride) {
-      throw sim::UserError("layout: the database does not fit in 2^48 bytes");
+      throw sim::KeyError(key_of(name), "the database does not fit in 2^48 bytes");
     }
     at += count * section.stride;
   };

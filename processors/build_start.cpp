@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::processors {
 
@@ -11,9 +11,9 @@ namespace {
 
 void refuse_without_work(const accel::Topology& topology) {
   if (topology.work.size() != topology.nodes.size()) {
-    throw sim::UserError(
-        "build.sharing: only an octree or a bsp tree is built by splitting nodes; with structure.kind = "
-        "\"grid\" or \"none\" it must be \"given\"");
+    throw sim::KeyError("build.sharing",
+                        "only an octree or a bsp tree is built by splitting nodes; with structure.kind = "
+                        "\"grid\" or \"none\" it must be \"given\"");
   }
 }
 
@@ -33,14 +33,14 @@ std::uint32_t initial_level(const accel::Topology& topology, const BuildConfig& 
       return all;
     case InitialTree::level:
       if (config.level == 0) {
-        throw sim::UserError("build.initial_level: the root is level 1");
+        throw sim::KeyError("build.initial_level", "the root is level 1");
       }
       return std::min(config.level, all);
     case InitialTree::rule:
       break;
   }
   if (!(config.rule_k >= 0.0)) {
-    throw sim::UserError("build.rule_k: must not be negative");
+    throw sim::KeyError("build.rule_k", "must not be negative");
   }
   std::vector<std::uint64_t> leaves(all + 1);
   std::vector<std::uint64_t> others(all + 1);

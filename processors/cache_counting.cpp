@@ -2,8 +2,9 @@
 #include "processors/law.h"
 
 #include <string>
+#include <string_view>
 
-#include "sim/error.h"
+#include "sim/key_error.h"
 #include "sim/units.h"
 
 namespace marti::processors {
@@ -23,22 +24,28 @@ std::vector<std::uint64_t> lines_of_caches(const MachineConfig& config) {
   return lines;
 }
 
+std::string_view key_of(const CountConfig& count) {
+  return count.miss_classes ? "count.miss_classes" : count.sharing ? "count.sharing" : "count.attribution";
+}
+
 }  // namespace
 
 void check_counting(const MachineConfig& config) {
   if (!config.count.any()) {
     return;
   }
+  const std::string key(key_of(config.count));
   if (config.scheme != Scheme::image) {
-    throw sim::UserError("[count] is for machine.scheme = \"image\" only");
+    throw sim::KeyError(key, "[count] is for machine.scheme = \"image\" only");
   }
   if (config.build.sharing != Sharing::given) {
-    throw sim::UserError(
+    throw sim::KeyError(
+        key,
         "[count] is for build.sharing = \"given\" only: nodes that build their tree are not counted in "
         "detail");
   }
   if (config.count.miss_classes && config.cache.organisation == CacheOrganisation::none) {
-    throw sim::UserError("without a cache (cache.organisation) there is nothing to class");
+    throw sim::KeyError(key, "without a cache (cache.organisation) there is nothing to class");
   }
 }
 
@@ -52,9 +59,10 @@ CacheCounting::CacheCounting(const MachineConfig& config, std::uint64_t lines) {
     }
   }
   if (bytes > most_bytes / config.all_nodes()) {
-    throw sim::UserError("[count] would take more than " +
-                         sim::print_size(static_cast<std::int64_t>(most_bytes)) +
-                         " for so many nodes and so large a database; count on a smaller machine");
+    throw sim::KeyError(std::string(key_of(config.count)),
+                        "[count] would take more than " +
+                            sim::print_size(static_cast<std::int64_t>(most_bytes)) +
+                            " for so many nodes and so large a database; count on a smaller machine");
   }
   if (config.count.miss_classes) {
     for (const std::uint64_t cache_lines : caches) {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "processors/machine_config.h"
-#include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::processors {
 
@@ -13,24 +13,25 @@ namespace {
 
 void check_stages(const PipelineConfig& pipeline, std::uint32_t nodes) {
   if (nodes < pipeline_stages) {
-    throw sim::UserError("machine.nodes: a pipeline needs at least 3 nodes, one for each stage, not " +
-                         std::to_string(nodes));
+    throw sim::KeyError("machine.nodes", "a pipeline needs at least 3 nodes, one for each stage, not " +
+                                             std::to_string(nodes));
   }
   const std::uint64_t sum = std::uint64_t{pipeline.search} + pipeline.nearest + pipeline.shade;
   if (pipeline.search == 0 || pipeline.nearest == 0 || pipeline.shade == 0 || sum != nodes) {
-    throw sim::UserError(
-        "pipeline.search, pipeline.nearest, pipeline.shade: each stage needs a node, and together they must "
-        "be machine.nodes = " +
-        std::to_string(nodes) + ", not " + std::to_string(pipeline.search) + " + " +
-        std::to_string(pipeline.nearest) + " + " + std::to_string(pipeline.shade) + " = " +
-        std::to_string(sum));
+    throw sim::KeyError(
+        "pipeline.search",
+        "with pipeline.nearest and pipeline.shade: each stage needs a node, and together they must be "
+        "machine.nodes = " +
+            std::to_string(nodes) + ", not " + std::to_string(pipeline.search) + " + " +
+            std::to_string(pipeline.nearest) + " + " + std::to_string(pipeline.shade) + " = " +
+            std::to_string(sum));
   }
   if (pipeline.queue == 0) {
-    throw sim::UserError("pipeline.queue: a node needs room for at least one ray");
+    throw sim::KeyError("pipeline.queue", "a node needs room for at least one ray");
   }
   if (pipeline.in_flight > most_in_flight(pipeline)) {
-    throw sim::UserError("pipeline.in_flight: more than " + std::to_string(most_in_flight(pipeline)) +
-                         " rays at a time could deadlock these stages and queues");
+    throw sim::KeyError("pipeline.in_flight", "more than " + std::to_string(most_in_flight(pipeline)) +
+                                                  " rays at a time could deadlock these stages and queues");
   }
 }
 
@@ -59,14 +60,16 @@ void check_flow(const MachineConfig& config) {
   }
   const std::string scheme(scheme_names[static_cast<std::size_t>(config.scheme)]);
   if (config.build.sharing != Sharing::given) {
-    throw sim::UserError("build.sharing: with machine.scheme = \"" + scheme +
-                         "\" the tree must be given: only nodes that take packets build it");
+    throw sim::KeyError("build.sharing",
+                        "with machine.scheme = \"" + scheme +
+                            "\" the tree must be given: only nodes that take packets build it");
   }
   if (config.messages.ray_bytes == 0 || config.messages.contribution_bytes == 0) {
-    throw sim::UserError("messages.ray_bytes and messages.contribution_bytes must not be 0");
+    throw sim::KeyError(config.messages.ray_bytes == 0 ? "messages.ray_bytes" : "messages.contribution_bytes",
+                        "must not be 0");
   }
   if (config.network.width == 0) {
-    throw sim::UserError("network.width must be at least one byte");
+    throw sim::KeyError("network.width", "must be at least one byte");
   }
   if (config.scheme == Scheme::pipeline) {
     check_stages(config.pipeline, config.nodes);

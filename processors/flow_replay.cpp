@@ -6,14 +6,14 @@
 #include "processors/bounds.h"
 #include "processors/observer.h"
 #include "processors/replay_parts.h"
-#include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::processors {
 
 MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options,
                           std::uint32_t limit, const MakeFlowNodes& make) {
   if (!options.starts.empty()) {
-    throw sim::UserError("build.sharing: start states of branches need the image scheme");
+    throw sim::KeyError("build.sharing", "start states of branches need the image scheme");
   }
   std::optional<TreePlan> given;
   const memory::Layout layout = layout_of(log, config, given);

@@ -8,7 +8,7 @@
 #include "processors/cache_counting.h"
 #include "processors/memory_system.h"
 #include "processors/second_level.h"
-#include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::processors {
 
@@ -29,14 +29,16 @@ void check_order(const MachineConfig& config) {
     return;
   }
   if (config.placement == Placement::distributed) {
-    throw sim::UserError(
-        "build.sharing: a read may overtake another node's write in the network, so nodes cannot share a "
+    throw sim::KeyError(
+        "build.sharing",
+        "a read may overtake another node's write in the network, so nodes cannot share a "
         "tree "
         "that is built in a distributed memory (database.placement = \"distributed\"); use \"private\" or "
         "\"none\"");
   }
-  throw sim::UserError(
-      "build.sharing: a read may overtake another node's write on a bus that is not granted first come first "
+  throw sim::KeyError(
+      "build.sharing",
+      "a read may overtake another node's write on a bus that is not granted first come first "
       "served, so nodes cannot share a tree that is built; use interconnect.arbitration = \"fifo\", or "
       "\"private\" or \"none\"");
 }
@@ -44,22 +46,25 @@ void check_order(const MachineConfig& config) {
 void check_distribution(const MachineConfig& config) {
   const DistributionConfig& distribution = config.distribution;
   if (config.scheme != Scheme::image) {
-    throw sim::UserError(
-        "database.placement: \"distributed\" is for machine.scheme = \"image\"; where rays move, each node "
-        "holds what it needs");
+    throw sim::KeyError("database.placement",
+                        "\"distributed\" is for machine.scheme = \"image\"; where rays move, each node "
+                        "holds what it needs");
   }
   if (!std::has_single_bit(distribution.interleave)) {
-    throw sim::UserError("database.interleave: must be a power of two");
+    throw sim::KeyError("database.interleave", "must be a power of two");
   }
   const bool cached = config.cache.organisation != CacheOrganisation::none;
   const std::uint32_t unit = config.reference_bytes();
   if (distribution.interleave < unit) {
-    throw sim::UserError("database.interleave: must be at least " +
-                         (cached ? "a cache line" : std::string("what one reference reads without a cache")) +
-                         ", " + std::to_string(unit) + " bytes");
+    throw sim::KeyError(
+        "database.interleave",
+        "must be at least " +
+            (cached ? "a cache line" : std::string("what one reference reads without a cache")) + ", " +
+            std::to_string(unit) + " bytes");
   }
   if (distribution.header_bytes == 0 || config.network.width == 0) {
-    throw sim::UserError("messages and the links of a network must be at least one byte wide");
+    throw sim::KeyError(distribution.header_bytes == 0 ? "database.header" : "network.width",
+                        "must be at least one byte");
   }
 }
 
@@ -118,20 +123,20 @@ std::uint64_t host_bytes(const MachineConfig& config) {
 
 void check(const MachineConfig& config) {
   if (config.clusters == 0 || config.nodes == 0) {
-    throw sim::UserError("a machine needs at least one cluster of one node");
+    throw sim::KeyError("machine.nodes", "a machine needs at least one cluster of one node");
   }
   if (std::uint64_t{config.clusters} * config.nodes > most_nodes) {
-    throw sim::UserError("a machine of more than 2^24 nodes");
+    throw sim::KeyError("machine.nodes", "a machine of more than 2^24 nodes");
   }
   check_contexts(config);
   check_flow(config);
   if (config.write_buffer == 0 || config.word_bytes == 0) {
-    throw sim::UserError("the write buffer and the word must not be empty");
+    throw sim::KeyError(config.write_buffer == 0 ? "node.write_buffer" : "node.word", "must not be 0");
   }
   if (config.placement == Placement::replicated && config.build.sharing == Sharing::shared) {
-    throw sim::UserError(
-        "build.sharing: nodes with a database each (database.placement = \"replicated\") have no tree to "
-        "share; use \"private\" or \"none\"");
+    throw sim::KeyError("build.sharing",
+                        "nodes with a database each (database.placement = \"replicated\") have no tree to "
+                        "share; use \"private\" or \"none\"");
   }
   check_order(config);
   if (config.placement == Placement::distributed) {
@@ -140,20 +145,17 @@ void check(const MachineConfig& config) {
   if ((config.placement != Placement::shared || config.build.sharing == Sharing::private_trees ||
        config.scheme == Scheme::space) &&
       config.local.width == 0) {
-    throw sim::UserError("local memory must be at least one byte wide");
+    throw sim::KeyError("local.width", "local memory must be at least one byte wide");
   }
   if (config.cache.organisation == CacheOrganisation::unified) {
-    (void)memory::shape_of(config.cache.cache);
+    (void)sim::KeyError::laid_at("cache.size", [&] { return memory::shape_of(config.cache.cache); });
   }
   if (config.cache.organisation == CacheOrganisation::split) {
     for (std::size_t i = 0; i < split_caches; ++i) {
       memory::CacheConfig part = config.cache.cache;
       part.size = config.cache.split_sizes[i];
-      try {
-        (void)memory::shape_of(part);
-      } catch (const sim::UserError& error) {
-        throw sim::UserError("the " + std::string(split_cache_names[i]) + " cache: " + error.what());
-      }
+      (void)sim::KeyError::laid_at("cache." + std::string(split_cache_names[i]) + "_size",
+                                   [&] { return memory::shape_of(part); });
     }
   }
   check_second_level(config);

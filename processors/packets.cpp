@@ -4,7 +4,7 @@
 #include <bit>
 #include <string>
 
-#include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::processors {
 
@@ -50,7 +50,7 @@ Cell hilbert_cell(std::uint64_t index, std::uint32_t side) {
 PacketList::PacketList(std::uint32_t image_width, std::uint32_t image_height, const PacketConfig& config)
     : image_width_(image_width), image_height_(image_height), config_(config), columns_(0), count_(0) {
   if (config.width == 0 || config.height == 0) {
-    throw sim::UserError("a packet must be at least 1 x 1 pixels");
+    throw sim::KeyError("packets.width", "a packet must be at least 1 x 1 pixels");
   }
   config_.width = std::min(config.width, std::max(image_width, 1U));
   config_.height = std::min(config.height, std::max(image_height, 1U));
@@ -58,7 +58,8 @@ PacketList::PacketList(std::uint32_t image_width, std::uint32_t image_height, co
   const std::uint32_t rows = (image_height + config_.height - 1) / config_.height;
   count_ = std::uint64_t{columns_} * rows;
   if (count_ > most_packets) {
-    throw sim::UserError("the image has " + std::to_string(count_) + " packets; at most 2^30 are possible");
+    throw sim::KeyError("packets.width",
+                        "the image has " + std::to_string(count_) + " packets; at most 2^30 are possible");
   }
   if (config.order == PacketOrder::scanline || count_ == 0) {
     return;

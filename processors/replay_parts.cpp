@@ -5,7 +5,7 @@
 #include "memory/set_tags.h"
 #include "processors/memory_system.h"
 #include "processors/node_order.h"
-#include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::processors {
 
@@ -22,7 +22,7 @@ memory::Layout layout_of(const WorkLog& log, const MachineConfig& config, std::o
     plan->place_behind(layout, unit);
   }
   if (std::max(layout.end(), plan ? plan->end() : 0) / unit >= memory::no_line) {
-    throw sim::UserError("the database has 2^32 or more lines; use longer cache lines");
+    throw sim::KeyError("cache.line", "the database has 2^32 or more lines; use longer cache lines");
   }
   return layout;
 }

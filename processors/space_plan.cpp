@@ -5,7 +5,7 @@
 #include "processors/region_policy.h"
 #include "processors/region_work.h"
 #include "processors/step_time.h"
-#include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::processors {
 
@@ -62,13 +62,13 @@ void add_regions(const WorkLog& log, const memory::Layout& layout, SpacePlan& pl
 
 SpacePlan plan_space(const WorkLog& log, const MachineConfig& config, const memory::Layout& layout) {
   if (config.space.level == 0) {
-    throw sim::UserError("space.level: the root is level 1");
+    throw sim::KeyError("space.level", "the root is level 1");
   }
   if (config.space.sample_step == 0) {
-    throw sim::UserError("space.sample_step: must be at least 1");
+    throw sim::KeyError("space.sample_step", "must be at least 1");
   }
   if (config.space.queue == 0) {
-    throw sim::UserError("space.queue: a node needs room for at least one ray");
+    throw sim::KeyError("space.queue", "a node needs room for at least one ray");
   }
   SpacePlan plan;
   plan.regions = cut_regions(log.topology, config.space.level);

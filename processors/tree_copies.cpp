@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::processors {
 
@@ -27,10 +27,11 @@ TreeCopies::TreeCopies(const TreePlan& plan, const accel::Topology& topology, co
   }
   const std::uint64_t bytes = std::uint64_t{copies_} * (lazies_ * 13 + lines_ * 5 + 12);
   if (bytes > most_bytes) {
-    throw sim::UserError("build.sharing: keeping track of " + std::to_string(copies_) + " trees with " +
-                         std::to_string(lazies_) + " branches to build would take " +
-                         std::to_string(bytes >> 20U) +
-                         " MiB; simulate fewer processor nodes, or raise build.initial_level");
+    throw sim::KeyError("build.sharing",
+                        "keeping track of " + std::to_string(copies_) + " trees with " +
+                            std::to_string(lazies_) + " branches to build would take " +
+                            std::to_string(bytes >> 20U) +
+                            " MiB; simulate fewer processor nodes, or raise build.initial_level");
   }
   block_.resize(copies_ * lazies_);
   built_.resize(copies_ * lazies_);

@@ -12,7 +12,7 @@
 
 #include "processors/law.h"
 #include "processors/log_walker.h"
-#include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::processors {
 
@@ -134,27 +134,31 @@ void check_working_set(const MachineConfig& config) {
     return;
   }
   if (config.scheme != Scheme::image) {
-    throw sim::UserError("the working set is told for machine.scheme = \"image\" only");
+    throw sim::KeyError("count.working_set", "the working set is told for machine.scheme = \"image\" only");
   }
   if (config.cache.organisation == CacheOrganisation::none) {
-    throw sim::UserError(
+    throw sim::KeyError(
+        "count.working_set",
         "without a cache (cache.organisation) nodes read parts of lines, and there is no working set");
   }
   if (config.build.sharing != Sharing::given) {
-    throw sim::UserError(
+    throw sim::KeyError(
+        "count.working_set",
         "the working set is told for build.sharing = \"given\" only: while the tree is built, other nodes "
         "decide what a node reads");
   }
   if (config.contexts > 1 || config.prefetch.on()) {
-    throw sim::UserError(
+    throw sim::KeyError(
+        "count.working_set",
         "with several contexts or prefetching (node.contexts, [prefetch]) the order in which a node refers "
         "to "
         "lines depends on its cache, so one pass cannot tell the misses of another cache");
   }
   for (const memory::CacheShape& shape : shapes_of(config.cache)) {
     if (shape.sets > 1 && shape.ways > most_counted_ways) {
-      throw sim::UserError("the working set is told for caches of one set, or of sets of at most " +
-                           std::to_string(most_counted_ways) + " ways, not " + std::to_string(shape.ways));
+      throw sim::KeyError("count.working_set",
+                          "the working set is told for caches of one set, or of sets of at most " +
+                              std::to_string(most_counted_ways) + " ways, not " + std::to_string(shape.ways));
     }
   }
 }

@@ -6,7 +6,9 @@
 #include <sstream>
 #include <utility>
 
+#include "scenes/part_error.h"
 #include "sim/error.h"
+#include "sim/shown.h"
 
 namespace marti::scenes {
 
@@ -43,7 +45,7 @@ AnimatedScene::AnimatedScene(Scene only) : source_(std::make_shared<OnePose>(std
 
 Scene AnimatedScene::at(double seconds) const {
   if (!std::isfinite(seconds)) {
-    throw sim::UserError("the time of a pose must be a finite number of seconds");
+    throw PartError("time", "the time of a pose must be a finite number of seconds");
   }
   return source_->at(seconds);
 }
@@ -52,7 +54,7 @@ Scene AnimatedScene::asked_for(double seconds, const std::string& name) const {
   if (seconds != 0.0 && !moves()) {
     std::ostringstream text;
     text << name << ": its pose at " << seconds << " s is asked for, but no animation plays";
-    throw sim::UserError(text.str());
+    throw PartError("time", text.str());
   }
   return at(seconds);
 }
@@ -74,7 +76,7 @@ std::string describe(const MotionFacts& facts) {
   out << "animations: " << facts.animations.size() << "\n";
   for (std::size_t i = 0; i < facts.animations.size(); ++i) {
     const AnimationFacts& animation = facts.animations[i];
-    out << "animation " << i << ": '" << animation.name << "', " << animation.duration << " s, "
+    out << "animation " << i << ": '" << sim::shown(animation.name) << "', " << animation.duration << " s, "
         << animation.channels << " channels" << (static_cast<int>(i) == facts.chosen ? " (plays)" : "")
         << "\n";
   }

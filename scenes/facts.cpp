@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "scenes/open.h"
+#include "sim/shown.h"
 
 namespace marti::scenes {
 
@@ -118,7 +119,7 @@ SceneFacts facts_of(const Scene& scene) {
 std::string describe(const Scene& scene) {
   const SceneFacts facts = facts_of(scene);
   std::ostringstream out;
-  out << "scene: " << facts.name << "\n"
+  out << "scene: " << sim::shown(facts.name) << "\n"
       << "polygons: " << facts.polygons << "\n"
       << "triangles: " << facts.triangles << "\n"
       << "spheres: " << facts.spheres << "\n"

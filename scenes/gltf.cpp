@@ -21,6 +21,7 @@
 #include "scenes/gltf_view.h"
 #include "scenes/open.h"
 #include "sim/error.h"
+#include "sim/shown.h"
 
 namespace marti::scenes {
 
@@ -121,7 +122,7 @@ class GltfPoses : public PoseSource {
         scene = posed(seconds);
       } catch (const sim::UserError& error) {
         throw sim::UserError(std::string(error.what()) + " (at " + seconds_text(seconds) + " of animation '" +
-                             animation_->name() + "')");
+                             sim::shown(animation_->name()) + "')");
       }
     });
     return scene;
@@ -208,7 +209,7 @@ class GltfPoses : public PoseSource {
     }
     note_left_out(model_, left_out, meshes.bad_triangles(), still_);
     if (animation_) {
-      still_.notes.push_back("Animation '" + animation_->name() + "' plays for " +
+      still_.notes.push_back("Animation '" + sim::shown(animation_->name()) + "' plays for " +
                              seconds_text(animation_->duration()) + ".");
     } else {
       if (!model_.data().animations.empty()) {

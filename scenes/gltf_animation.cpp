@@ -1,4 +1,5 @@
 #include "scenes/gltf_animation.h"
+#include "sim/shown.h"
 
 #include <algorithm>
 #include <array>
@@ -24,7 +25,8 @@ Interpolation interpolation_of(const Model& model, const std::string& text, cons
     return Interpolation::linear;
   }
   if (text != "CUBICSPLINE") {
-    model.fail(name + ": its interpolation is '" + text + "'; known are STEP, LINEAR and CUBICSPLINE");
+    model.fail(name + ": its interpolation is '" + sim::shown(text) +
+               "'; known are STEP, LINEAR and CUBICSPLINE");
   }
   return Interpolation::cubic_spline;
 }
@@ -158,7 +160,8 @@ Animation::Path Animation::path_of(const Model& model, const std::string& path, 
   static constexpr std::array<std::string_view, 4> paths = {"translation", "rotation", "scale", "weights"};
   const auto* const found = std::find(paths.begin(), paths.end(), path);
   if (found == paths.end()) {
-    model.fail(name + " changes '" + path + "'; known are translation, rotation, scale and weights");
+    model.fail(name + " changes '" + sim::shown(path) +
+               "'; known are translation, rotation, scale and weights");
   }
   return static_cast<Path>(found - paths.begin());
 }
@@ -258,7 +261,8 @@ int chosen_animation(const Model& model) {
     return -1;
   }
   if (animations.empty()) {
-    model.fail("animation '" + choice + "' is asked for, but the file has no animation");
+    model.fail_choice("animation",
+                      "animation '" + sim::shown(choice) + "' is asked for, but the file has no animation");
   }
   return chosen_index(model, choice, "animation", names);
 }

@@ -19,6 +19,7 @@
 #include "scenes/tessellate.h"
 #include "sim/error.h"
 #include "sim/files.h"
+#include "sim/shown.h"
 
 namespace marti::scenes {
 
@@ -192,7 +193,8 @@ class Exporter {
     }
     for (const Texture& source : scene_.textures) {
       if (!source.srgb) {
-        fail("texture '" + source.name + "' holds linear colours, which glTF has no base colour texture for");
+        fail("texture '" + sim::shown(source.name) +
+             "' holds linear colours, which glTF has no base colour texture for");
       }
       const std::vector<std::byte> file = encode_(source);
       tinygltf::Image image;

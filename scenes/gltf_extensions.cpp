@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <string_view>
 
+#include "sim/shown.h"
+
 namespace marti::scenes::gltf {
 
 namespace {
@@ -45,7 +47,7 @@ std::string ignored_extensions(const tinygltf::Model& file) {
   std::string names;
   for (const std::string& extension : file.extensionsUsed) {
     if (!is_supported(extension)) {
-      names += (names.empty() ? "" : ", ") + extension;
+      names += (names.empty() ? "" : ", ") + sim::shown(extension);
     }
   }
   return names;

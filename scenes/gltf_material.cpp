@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 
 #include "sim/error.h"
+#include "sim/shown.h"
 
 namespace marti::scenes::gltf {
 
@@ -235,10 +236,10 @@ Materials::Image Materials::find_image(int image, const std::string& user) const
     found.bytes = model_.view_bytes(source.bufferView, "image " + std::to_string(image));
   }
   if (found.bytes.empty()) {
-    model_.fail("image '" + found.name + "' is missing, empty or cannot be read");
+    model_.fail("image '" + sim::shown(found.name) + "' is missing, empty or cannot be read");
   }
   if (!decode_) {
-    model_.fail("it needs the texture '" + found.name + "', and no image decoder is at hand");
+    model_.fail("it needs the texture '" + sim::shown(found.name) + "', and no image decoder is at hand");
   }
   return found;
 }
@@ -248,7 +249,7 @@ auto Materials::read_image(const Image& image, const Decode& decode) const {
   try {
     return decode(image.bytes, image.name);
   } catch (const sim::UserError& error) {
-    model_.fail("image '" + image.name + "': " + error.what());
+    model_.fail("image '" + sim::shown(image.name) + "': " + error.what());
   }
 }
 

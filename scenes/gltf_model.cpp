@@ -12,8 +12,11 @@
 #include "scenes/gltf_extensions.h"
 #include "scenes/gltf_files.h"
 #include "scenes/gltf_index_views.h"
+#include "scenes/part_error.h"
 #include "sim/error.h"
 #include "sim/files.h"
+#include "sim/key_error.h"
+#include "sim/shown.h"
 
 namespace marti::scenes::gltf {
 
@@ -90,11 +93,8 @@ std::string one_line(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) {
     text.pop_back();
   }
-  for (char& c : text) {
-    c = static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  constexpr std::size_t longest = 400;
-  return text.size() > longest ? text.substr(0, longest) + "..." : text;
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return sim::shown(text);
 }
 
 /// tinygltf's complaints without those about what glTF 2.0 allows: skins without inverse bind matrices
@@ -251,8 +251,8 @@ void Model::parse() {
 void Model::require_memory(std::uint64_t bytes, const char* what) const {
   try {
     memory_.require(bytes, what, "take a smaller scene");
-  } catch (const sim::UserError& error) {
-    fail(error.what());
+  } catch (const sim::KeyError& error) {
+    throw sim::KeyError(error.key(), sim::shown(path_.string()) + ": " + error.reason());
   }
 }
 
@@ -261,7 +261,13 @@ void Model::take_memory(std::uint64_t bytes, const char* what) const {
   memory_.take(bytes, what, {});
 }
 
-void Model::fail(const std::string& what) const { throw sim::UserError(path_.string() + ": " + what); }
+void Model::fail(const std::string& what) const {
+  throw sim::UserError(sim::shown(path_.string()) + ": " + what);
+}
+
+void Model::fail_choice(const char* part, const std::string& what) const {
+  throw PartError(part, sim::shown(path_.string()) + ": " + what);
+}
 
 void Model::fail_reference(const char* kind, int index, std::size_t size, const std::string& user) const {
   fail(user + " refers to " + kind + " " + std::to_string(index) + ", but the file has " +

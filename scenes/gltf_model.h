@@ -40,6 +40,8 @@ class Model {
 
   /// Throws a UserError that begins with the file's path.
   [[noreturn]] void fail(const std::string& what) const;
+  /// A PartError: the file has not the part (scenes/part_error.h) that the options ask for.
+  [[noreturn]] void fail_choice(const char* part, const std::string& what) const;
 
   /// `list[index]`, or a UserError that says who refers to a missing `kind`.
   template <typename T>

@@ -8,6 +8,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "sim/nearest.h"
+#include "sim/shown.h"
 
 namespace marti::scenes::gltf {
 
@@ -116,7 +117,8 @@ std::vector<int> roots_of_scene(const Model& model, const std::vector<int>& pare
   std::vector<int> roots;
   if (data.scenes.empty()) {
     if (!model.options().scene.empty()) {
-      model.fail("scene '" + model.options().scene + "' is asked for, but the file has no scenes");
+      model.fail_choice("scene", "scene '" + sim::shown(model.options().scene) +
+                                     "' is asked for, but the file has no scenes");
     }
     for (std::size_t i = 0; i < parents.size(); ++i) {
       if (parents[i] < 0) {
@@ -199,8 +201,9 @@ int chosen_index(const Model& model, const std::string& choice, const char* kind
   const char* end = choice.data() + choice.size();
   const auto [stop, error] = std::from_chars(choice.data(), end, index);
   if (error != std::errc{} || stop != end || index < 0 || static_cast<std::size_t>(index) >= names.size()) {
-    model.fail("it has no " + std::string(kind) + " '" + choice + "'" + sim::did_you_mean(choice, names) +
-               "; there are " + std::to_string(names.size()) + ", to be chosen by name or by number from 0");
+    model.fail_choice(kind, "it has no " + std::string(kind) + " '" + sim::shown(choice) + "'" +
+                                sim::did_you_mean(choice, names) + "; there are " +
+                                std::to_string(names.size()) + ", to be chosen by name or by number from 0");
   }
   return index;
 }

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include <glm/geometric.hpp>
 
 #include "scenes/gltf_material.h"
 #include "sim/error.h"
+#include "sim/shown.h"
 
 namespace marti::scenes::gltf {
 
@@ -42,7 +44,7 @@ LightKind kind_of(const Model& model, const std::string& type, const std::string
     return LightKind::directional;
   }
   if (type != "spot") {
-    model.fail(name + " is of type '" + type + "'; known are point, directional and spot");
+    model.fail(name + " is of type '" + sim::shown(type) + "'; known are point, directional and spot");
   }
   return LightKind::spot;
 }
@@ -89,8 +91,14 @@ Camera convert_camera(const Model& model, const PlacedNode& place, int index) {
   const std::string name = "camera " + std::to_string(index);
   const tinygltf::Camera& source = model.data().cameras[static_cast<std::size_t>(index)];
   const double fov = source.perspective.yfov;
-  if (!(fov > 1e-6 && fov < std::numbers::pi - 1e-6)) {
-    model.fail(name + ": its vertical field of view must lie between 0 and pi radians");
+  // glTF 2.0 asks for more than 0 and less than pi; views as narrow or wide as these are taken for mistakes.
+  constexpr double least = 1e-6;
+  if (!(fov > least && fov < std::numbers::pi - least)) {
+    std::ostringstream text;
+    text << name
+         << ": its vertical field of view must be above 1e-6 and below pi - 1e-6 radians (0.000057 to "
+         << "179.99994 degrees), not " << fov;
+    model.fail(text.str());
   }
   Camera camera;
   camera.vertical_fov = fov;
@@ -134,8 +142,9 @@ bool set_camera(const Model& model, const std::vector<PlacedNode>& nodes, Scene&
     }
     wanted = chosen_index(model, model.options().camera, "camera", names);
     if (cameras[static_cast<std::size_t>(wanted)].type != "perspective") {
-      model.fail("camera '" + model.options().camera + "' is " +
-                 cameras[static_cast<std::size_t>(wanted)].type + "; only perspective cameras can be used");
+      model.fail_choice("camera", "camera '" + sim::shown(model.options().camera) + "' is " +
+                                      sim::shown(cameras[static_cast<std::size_t>(wanted)].type) +
+                                      "; only perspective cameras can be used");
     }
   }
   for (const PlacedNode& place : nodes) {
@@ -150,7 +159,8 @@ bool set_camera(const Model& model, const std::vector<PlacedNode>& nodes, Scene&
     }
   }
   if (wanted >= 0) {
-    model.fail("camera '" + model.options().camera + "' is in no node of the scene");
+    model.fail_choice("camera",
+                      "camera '" + sim::shown(model.options().camera) + "' is in no node of the scene");
   }
   return false;
 }

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cctype>
 
+#include "scenes/part_error.h"
 #include "scenes/procedural.h"
-#include "sim/error.h"
+#include "sim/shown.h"
 
 namespace marti::scenes {
 
@@ -24,12 +25,13 @@ std::filesystem::path path_of(std::string_view spec, const OpenOptions& options)
 
 Scene open_procedural(std::string_view spec, const GltfOptions& options) {
   Scene scene = make_procedural(spec);
-  const std::string where = "scene '" + std::string(spec) + "': ";
+  const std::string where = "scene '" + sim::shown(spec) + "': ";
   if (!options.scene.empty() || !options.camera.empty()) {
-    throw sim::UserError(where + "a procedural scene has one camera and no parts to choose from");
+    throw PartError(options.scene.empty() ? "camera" : "scene",
+                    where + "a procedural scene has one camera and no parts to choose from");
   }
   if (!options.animation.empty() && options.animation != "none") {
-    throw sim::UserError(where + "a procedural scene has no animations");
+    throw PartError("animation", where + "a procedural scene has no animations");
   }
   return scene;
 }
@@ -46,7 +48,7 @@ AnimatedScene open_animated(std::string_view spec, const OpenOptions& options, c
 Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode,
                  FileUse* use) {
   const std::string name =
-      names_a_file(spec) ? path_of(spec, options).string() : "scene '" + std::string(spec) + "'";
+      names_a_file(spec) ? sim::shown(path_of(spec, options).string()) : "scene '" + sim::shown(spec) + "'";
   const AnimatedScene scene = open_animated(spec, options, decode);
   if (use != nullptr) {
     *use = scene.file_use();

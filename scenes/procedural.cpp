@@ -9,6 +9,7 @@
 #include "scenes/spd.h"
 #include "sim/error.h"
 #include "sim/nearest.h"
+#include "sim/shown.h"
 
 namespace marti::scenes {
 
@@ -142,7 +143,7 @@ std::uint32_t parse_size(std::string_view text, const ProceduralScene& scene, co
 std::span<const ProceduralScene> procedural_scenes() { return registry; }
 
 Scene make_procedural(std::string_view spec) {
-  const std::string where = "scene '" + std::string(spec) + "': ";
+  const std::string where = "scene '" + sim::shown(spec) + "': ";
   std::string_view rest = spec;
   const ProceduralScene& kind = find_scene(next_part(rest), where);
   const bool has_size = kind.name.size() < spec.size();

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/error.h"
+#include "sim/shown.h"
 
 namespace marti::scenes {
 
@@ -39,7 +40,7 @@ std::uint32_t texel_coordinate(double coordinate, std::uint32_t size, bool repea
 
 Texture texture_from_samples(std::string_view name, std::uint32_t width, std::uint32_t height,
                              std::uint32_t channels, std::span<const std::uint8_t> samples) {
-  const std::string where = "texture '" + std::string(name) + "': ";
+  const std::string where = "texture '" + sim::shown(name) + "': ";
   if (width == 0 || height == 0 || width > max_side || height > max_side) {
     throw sim::UserError(where + "a size of " + std::to_string(width) + " x " + std::to_string(height) +
                          " texels; each side must be 1 to " + std::to_string(max_side));
@@ -68,7 +69,7 @@ void decode_texels(Texture& texture, const ImageDecoder& decode) {
               "a texture without a file cannot be decoded");
   Texture decoded = decode(*texture.file, texture.name);
   if (decoded.width != texture.width || decoded.height != texture.height) {
-    throw sim::UserError("texture '" + texture.name + "': its image says that it has " +
+    throw sim::UserError("texture '" + sim::shown(texture.name) + "': its image says that it has " +
                          std::to_string(texture.width) + " x " + std::to_string(texture.height) +
                          " texels, but it has " + std::to_string(decoded.width) + " x " +
                          std::to_string(decoded.height));

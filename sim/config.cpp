@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "sim/config_errors.h"
 #include "sim/error.h"
 #include "sim/key_value.h"
+#include "sim/shown.h"
 
 namespace marti::sim {
 
@@ -125,12 +127,13 @@ std::string Config::where(const Entry& entry) const {
 
 void Config::fail(std::string_view key, std::string_view message) const {
   const Entry& entry = entries_[index_of(key)];
-  if (entry.given != nullptr && entry.line() == 0) {  // an assignment already names the key
-    throw UserError(where(entry) + ": " + std::string(message));
+  const bool assigned = entry.given != nullptr && entry.line() == 0;
+  if (assigned && entry.given->place.starts_with("--set ")) {  // which names the key itself
+    throw UserError(shown(entry.given->place) + ": " + shown(message, all_shown));
   }
   // A default cannot be pointed at: the file in which it could be changed can.
-  const std::string place = entry.given != nullptr ? where(entry) : name_;
-  throw UserError(place + ": " + std::string(key) + ": " + std::string(message));
+  throw UserError(place_in_file(name_, entry.line(), key) + ": " + shown(message, all_shown) +
+                  (assigned ? " (in " + shown(entry.given->place) + ")" : ""));
 }
 
 void Config::mark_unused_reason(std::string_view key_or_section, std::string_view reason,
@@ -215,9 +218,8 @@ int Config::free_section_line(std::string_view name) const {
 
 std::vector<Value> Config::parse(std::size_t key, const DocumentValue& value, std::string_view label) const {
   const Key& declared = schema_->keys()[key];
-  const std::string place =
-      name_ + ":" + std::to_string(value.line) + ": " + (label.empty() ? declared.name : std::string(label));
-  return read_values(declared, value, place);
+  return read_values(declared, value,
+                     place_in_file(name_, value.line, label.empty() ? declared.name : label));
 }
 
 void Config::set(Setting setting) {

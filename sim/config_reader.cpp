@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
-#include <sstream>
 
 // toml++ 3.3 asserts that a name begins where one must, before it looks ("[#" is a header without a name);
 // and without assertions some compilers are told that it is so. Its own checks, which follow, refuse such
@@ -14,10 +13,12 @@
 #include <toml++/toml.h>
 
 #include "sim/config.h"
+#include "sim/config_errors.h"
 #include "sim/error.h"
 #include "sim/files.h"
 #include "sim/key_value.h"
 #include "sim/nearest.h"
+#include "sim/shown.h"
 #include "sim/toml_text.h"
 
 namespace marti::sim {
@@ -28,6 +29,7 @@ constexpr std::int64_t longest_file = 1 << 20;
 // toml++ follows tables with recursive calls and bounds only the depth of values: a key of 100,000 parts
 // would overflow its stack.
 constexpr std::size_t most_key_parts = 32;
+constexpr std::string_view name_too_deep = "a name has more than 32 parts joined by dots";
 
 struct Origin {
   std::string place;  // how a message begins: "file:line: key" or "--set key=value"
@@ -44,8 +46,8 @@ bool is_key_character(char c) {
          c == '"' || c == '\'';
 }
 
-/// Refuses dotted names of too many parts, before toml++ sees them.
-void check_depth(std::string_view text, std::string_view name) {
+/// The line of a dotted name of too many parts, which toml++ must not see; 0 when there is none.
+std::size_t line_too_deep(std::string_view text) {
   std::size_t line = 1;
   std::size_t parts = 0;
   bool after_dot = true;  // a further dot would not separate two parts of a name
@@ -63,10 +65,10 @@ void check_depth(std::string_view text, std::string_view name) {
       after_dot = true;
     }
     if (parts > most_key_parts) {
-      throw UserError(std::string(name) + ":" + std::to_string(line) + ": a name has more than " +
-                      std::to_string(most_key_parts) + " parts joined by dots");
+      return line;
     }
   }
+  return 0;
 }
 
 DocumentValue document_of(const toml::node& node, int line);
@@ -131,8 +133,7 @@ DocumentValue document_of(const toml::node& node, int line) {
 /// Refuses what no free section may hold.
 void check_free(const DocumentValue& value, const std::string& name, std::string_view file) {
   const auto fail = [&] {
-    throw UserError(std::string(file) + ":" + std::to_string(value.line) + ": " + name + ": must not be " +
-                    describe(value));
+    throw UserError(place_in_file(file, value.line, name) + ": must not be " + describe(value));
   };
   if (std::holds_alternative<std::monostate>(value.content)) {
     fail();
@@ -151,25 +152,45 @@ void check_free(const DocumentValue& value, const std::string& name, std::string
   }
 }
 
+std::string_view trim(std::string_view text, std::string_view blanks = " \t") {
+  const std::size_t begin = text.find_first_not_of(blanks);
+  return begin == std::string_view::npos ? std::string_view()
+                                         : text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
+/// A line of a text that could not be read, with the section that it seems to be in.
+struct FaultyLine {
+  std::string_view text;  // without its comment
+  std::string section;    // "cache."
+  std::string_view key;   // what stands before the last '=' sign that a line begins with; may be empty
+};
+
+FaultyLine line_of(std::string_view text, std::size_t line) {
+  FaultyLine found;
+  for (std::size_t i = 1; i <= line; ++i) {
+    const std::string_view whole = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(text.size(), whole.size() + 1));
+    found.text = trim(whole.substr(0, whole.find('#')), " \t\r");
+    const std::size_t equals = found.text.find('=');
+    if (found.text.starts_with('[') && found.text.ends_with(']') && equals == std::string_view::npos) {
+      const std::size_t begin = std::min(found.text.find_first_not_of('['), found.text.size());
+      found.section = std::string(found.text.substr(begin, found.text.find(']') - begin)) + ".";
+      found.key = {};
+    } else if (equals != std::string_view::npos && !found.text.starts_with('[')) {
+      found.key = trim(found.text.substr(0, equals));
+    }
+  }
+  return found;
+}
+
 /// What to write where a value that is a text lacks its quotation marks, the commonest fault of all; else
 /// nothing.
-std::string missing_quotes(std::string_view text, std::size_t line) {
-  for (std::size_t i = 1; i < line; ++i) {
-    text.remove_prefix(std::min(text.size(), text.find('\n') + 1));
-  }
-  text = text.substr(0, text.find('\n'));
-  text = text.substr(0, text.find('#'));
-  const std::size_t equals = text.find('=');
-  if (equals == std::string_view::npos || text.find_first_of("\"'[]{}") != std::string_view::npos) {
+std::string missing_quotes(const FaultyLine& line) {
+  const std::size_t equals = line.text.find('=');
+  if (equals == std::string_view::npos || line.text.find_first_of("\"'[]{}") != std::string_view::npos) {
     return "";
   }
-  const auto trimmed = [](std::string_view part) {
-    const std::size_t begin = part.find_first_not_of(" \t\r");
-    return begin == std::string_view::npos
-               ? std::string()
-               : std::string(part.substr(begin, part.find_last_not_of(" \t\r") - begin + 1));
-  };
-  const std::string value = trimmed(text.substr(equals + 1));
+  const std::string_view value = trim(line.text.substr(equals + 1));
   if (value.empty()) {
     return "; the value is missing";
   }
@@ -178,8 +199,14 @@ std::string missing_quotes(std::string_view text, std::size_t line) {
       std::any_of(value.begin(), value.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
   return !letters || value == "true" || value == "false"
              ? ""
-             : "; texts and values with a unit stand in quotation marks: " + trimmed(text.substr(0, equals)) +
-                   " = \"" + value + "\"";
+             : "; texts and values with a unit stand in quotation marks: " + shown(line.key) + " = \"" +
+                   shown(value) + "\"";
+}
+
+/// Is it an integer but for its size?
+bool is_long_integer(std::string_view text) {
+  text.remove_prefix(text.starts_with('-') || text.starts_with('+') ? 1 : 0);
+  return text.size() > 18 && text.find_first_not_of("0123456789_") == std::string_view::npos;
 }
 
 }  // namespace
@@ -206,9 +233,12 @@ class ConfigReader {
   };
 
   void read_text(std::string_view text) {
-    check_depth(text, config_.name_);
+    if (const std::size_t line = line_too_deep(text); line != 0) {
+      throw UserError(place_of(line_of(text, line), std::to_string(line)) + ": " +
+                      std::string(name_too_deep));
+    }
     if (const std::size_t line = line_beyond_ascii(text); line != 0) {
-      throw UserError(config_.name_ + ":" + std::to_string(line) +
+      throw UserError(place_of(line_of(text, line), std::to_string(line)) +
                       ": a character that is not ASCII, outside of a text in quotes and of a comment");
     }
     try {
@@ -218,16 +248,21 @@ class ConfigReader {
       std::stable_sort(found.begin(), found.end(),
                        [](const Found& a, const Found& b) { return a.line < b.line; });
       for (const Found& one : found) {
-        const Origin origin{config_.name_ + ":" + std::to_string(one.line) + ": " + one.key, one.line, {}};
+        const Origin origin{place_in_file(config_.name_, one.line, one.key), one.line, {}};
         store(one.key, document_of(*one.node, one.line), origin);
       }
     } catch (const toml::parse_error& error) {
       const toml::source_position at = error.source().begin;
-      std::ostringstream message;
-      message << config_.name_ << ":" << at.line << ":" << at.column << ": " << error.description()
-              << missing_quotes(text, at.line);
-      throw UserError(message.str());
+      const FaultyLine line = line_of(text, at.line);
+      throw UserError(place_of(line, std::to_string(at.line) + ":" + std::to_string(at.column)) + ": " +
+                      shown(error.description()) + missing_quotes(line));
     }
+  }
+
+  /// "file:place: key"; without a key where the line seems to have none.
+  [[nodiscard]] std::string place_of(const FaultyLine& line, const std::string& place) const {
+    return shown(config_.name_) + ":" + place +
+           (line.key.empty() ? "" : ": " + shown(line.section + std::string(line.key)));
   }
 
   /// Lists the values below `table` under their dotted names. A table without values stands for itself.
@@ -273,18 +308,20 @@ class ConfigReader {
   }
 
   void assign(const std::string& assignment) {
-    Origin origin{"--set " + assignment.substr(0, 200), 0, assignment};
+    Origin origin{"--set " + shown(assignment), 0, assignment};
     const std::size_t equals = assignment.find('=');
     if (equals == std::string::npos || equals == 0) {
       fail_at(origin, "must have the form key=value");
     }
-    const std::string key = trim(assignment.substr(0, equals));
-    const std::string text = trim(assignment.substr(equals + 1));
+    const std::string key(trim(std::string_view(assignment).substr(0, equals)));
+    const std::string text(trim(std::string_view(assignment).substr(equals + 1)));
     const Key& declared = find(key, nullptr, origin);
     if (text.empty()) {
       fail_at(origin, "the value is missing; it must be " + expected_of(declared));
     }
-    check_depth(text, origin.place);
+    if (line_too_deep(text) != 0) {
+      fail_at(origin, std::string(name_too_deep));
+    }
     const DocumentValue bare{text, 0};
     // A line break could smuggle in further keys.
     if (text.find_first_of("\r\n") == std::string::npos && line_beyond_ascii(text) == 0) {
@@ -297,15 +334,14 @@ class ConfigReader {
           return;
         }
       } catch (const toml::parse_error&) {
-        // Not TOML: a bare text.
+        // Not TOML: a bare text, or a number that toml++ has no room for.
+        if (is_long_integer(text) &&
+            (declared.type == ValueType::integer || declared.type == ValueType::real)) {
+          fail_at(origin, "must be " + expected_of(declared) + " that fits in 64 bits, not " + shown(text));
+        }
       }
     }
     store(key, bare, origin);
-  }
-
-  static std::string trim(const std::string& text) {
-    const std::size_t begin = text.find_first_not_of(" \t");
-    return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
   }
 
   /// The declaration of `key`, or a UserError that knows the nearest valid name.
@@ -322,6 +358,12 @@ class ConfigReader {
     if (const std::string_view command = schema.elsewhere_of(key); !command.empty()) {
       fail_at(origin,
               "this command does not read it; the configuration is one for `" + std::string(command) + "`");
+    }
+    if (const std::string section = key.substr(0, key.find('.'));
+        schema.is_free_section(section) && origin.line == 0) {
+      const std::string keys = keys_below(section);
+      fail_at(origin, "[" + section + "] can only be given in the file" +
+                          (keys.empty() ? "" : ", but for its keys " + keys));
     }
     const bool is_table = value != nullptr && value->table() != nullptr;
     fail_at(origin, std::string(is_table ? "unknown section" : "unknown key") + suggestion(key) +

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <sstream>
 
+#include "sim/shown.h"
+
 namespace marti::sim {
 
 namespace {
-
-constexpr std::size_t longest_quote = 60;
 
 struct Words {
   std::string operator()(std::monostate /*date*/) const { return "a date or time"; }
@@ -18,9 +18,7 @@ struct Words {
     out << "the real " << value;
     return out.str();
   }
-  std::string operator()(const std::string& value) const {
-    return "the text \"" + value.substr(0, longest_quote) + "\"";
-  }
+  std::string operator()(const std::string& value) const { return "the text \"" + shown(value) + "\""; }
   std::string operator()(const DocumentValue::List& /*list*/) const { return "a list"; }
   std::string operator()(const DocumentValue::Table& /*table*/) const { return "a table"; }
 };

@@ -4,6 +4,7 @@
 
 #include "sim/error.h"
 #include "sim/nearest.h"
+#include "sim/shown.h"
 #include "sim/units.h"
 
 namespace marti::sim {
@@ -131,7 +132,7 @@ Value convert(const Key& key, const DocumentValue& node, std::string_view place)
     if (!key.unit.empty()) {
       message += " (" + key.unit + ")";
     }
-    message += ", not " + print_value(key.type, value);
+    message += ", not " + shown(print_value(key.type, value));
     if (key.type == ValueType::choice) {
       message += did_you_mean(std::get<std::string>(value), key.choices);
     }

@@ -7,10 +7,8 @@
 #include <charconv>
 #include <fstream>
 #include <limits>
-#include <sstream>
-#include <utility>
 
-#include "sim/error.h"
+#include "sim/key_error.h"
 #include "sim/units.h"
 
 namespace marti::sim {
@@ -89,29 +87,31 @@ std::uint64_t host_memory(const std::filesystem::path& root) {
 
 }  // namespace
 
-MemoryBudget::MemoryBudget(std::uint64_t limit, std::string where)
-    : limit_(limit), where_(std::move(where)) {}
+std::string MemoryBudget::needed(std::uint64_t bytes) const {
+  std::string text = " about " + needed_text(bytes);
+  if (taken_ >= mebibyte) {
+    text += " beside " + needed_text(taken_) + " that are taken";
+  }
+  return text;
+}
+
+std::string MemoryBudget::limit_and_source() const {
+  return limit_text(limit_, given_) +
+         (given_ ? "" : " (three quarters of what the host lets this process have)");
+}
 
 std::string MemoryBudget::excess(std::uint64_t bytes) const {
   if (bytes <= left()) {
     return {};
   }
-  std::ostringstream text;
-  text << " about " << needed_text(bytes);
-  if (taken_ >= mebibyte) {
-    text << " beside " << needed_text(taken_) << " that are taken";
-  }
-  text << ", more than host_machine.memory_limit = " << limit_text(limit_, !where_.empty());
-  if (where_.empty()) {
-    text << " (three quarters of what the host lets this process have)";
-  }
-  return text.str();
+  return needed(bytes) + ", more than " + std::string(memory_limit_key) + " = " + limit_and_source();
 }
 
 void MemoryBudget::require(std::uint64_t bytes, std::string_view what, std::string_view remedy) const {
-  if (const std::string excess = this->excess(bytes); !excess.empty()) {
-    throw UserError((where_.empty() ? "" : where_ + ": ") + std::string(what) + excess + ": raise the limit" +
-                    (remedy.empty() ? "" : ", or " + std::string(remedy)));
+  if (bytes > left()) {
+    throw KeyError(std::string(memory_limit_key), std::string(what) + needed(bytes) + ", more than " +
+                                                      limit_and_source() + ": raise the limit" +
+                                                      (remedy.empty() ? "" : ", or " + std::string(remedy)));
   }
 }
 

@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include "sim/key_error.h"
+
 namespace marti::sim {
 
 void fail_time_overflow() {
-  throw UserError(
+  throw TimeOverflow(
       "simulated time does not fit in 63 bits of picoseconds (107 days): "
       "use a faster clock, shorter latencies or a smaller image");
 }

@@ -9,6 +9,8 @@
 #include <span>
 #include <system_error>
 
+#include "sim/shown.h"
+
 namespace marti::sim {
 
 namespace {
@@ -35,12 +37,7 @@ constexpr std::string_view frequency_hint =
 constexpr std::string_view percentage_hint = "a percentage is a number with its sign, such as \"42 %\"";
 
 [[noreturn]] void fail(std::string_view text, std::string_view reason) {
-  constexpr std::size_t longest = 60;
-  std::string shown(text.substr(0, longest));
-  if (text.size() > longest) {
-    shown += "...";
-  }
-  throw UserError("\"" + shown + "\": " + std::string(reason));
+  throw UserError("\"" + shown(text) + "\": " + std::string(reason));
 }
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <string>
 
+#include "sim/shown.h"
 #include "studies/key_parts.h"
 
 namespace marti::studies {
@@ -29,7 +30,8 @@ void read_initial_level(const sim::Config& config, BuildConfig& build) {
   const auto [rest, error] = std::from_chars(text.data(), end, build.level);
   if (error != std::errc{} || rest != end || build.level == 0 || build.level > most_levels) {
     config.fail("build.initial_level", "must be \"full\", \"rule\" or a level from \"1\" to \"" +
-                                           std::to_string(most_levels) + "\", not \"" + text + "\"");
+                                           std::to_string(most_levels) + "\", not \"" + sim::shown(text) +
+                                           "\"");
   }
 }
 

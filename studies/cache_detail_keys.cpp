@@ -5,7 +5,7 @@
 #include "processors/cache_counting.h"
 #include "processors/second_level.h"
 #include "processors/working_set.h"
-#include "sim/error.h"
+#include "sim/config_errors.h"
 #include "studies/key_parts.h"
 
 namespace marti::studies {
@@ -44,16 +44,7 @@ void read_second_level(sim::Config& config, processors::MachineConfig& machine) 
     l2.cache.seed = static_cast<std::uint64_t>(config.integer("l2.seed"));
   }
   config.mark_unused_reason("l2.seed", "only l2.replacement = \"random\" draws numbers", "l2.replacement");
-  try {
-    (void)memory::shape_of(processors::second_level_cache(machine));
-  } catch (const sim::UserError& error) {
-    config.fail("l2.size", error.what());
-  }
-  try {
-    processors::check_second_level(machine);
-  } catch (const sim::UserError& error) {
-    config.fail("l2.sharing", error.what());
-  }
+  sim::placed(config, [&] { processors::check_second_level(machine); });
 }
 
 void declare_count_keys(sim::Schema& schema) {
@@ -73,19 +64,10 @@ void declare_count_keys(sim::Schema& schema) {
 void read_count(sim::Config& config, processors::MachineConfig& machine) {
   machine.count = {config.boolean("count.miss_classes"), config.boolean("count.sharing"),
                    config.boolean("count.attribution"), config.boolean("count.working_set")};
-  try {
+  sim::placed(config, [&] {
     processors::check_counting(machine);
-  } catch (const sim::UserError& error) {
-    config.fail(machine.count.miss_classes ? "count.miss_classes"
-                : machine.count.sharing    ? "count.sharing"
-                                           : "count.attribution",
-                error.what());
-  }
-  try {
     processors::check_working_set(machine);
-  } catch (const sim::UserError& error) {
-    config.fail("count.working_set", error.what());
-  }
+  });
 }
 
 }  // namespace marti::studies

@@ -1,5 +1,7 @@
 #include "studies/frame_keys.h"
 
+#include "sim/shown.h"
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -145,7 +147,7 @@ sim::MemoryBudget read_memory(const sim::Config& config, std::uint64_t processes
         "host_machine.memory_limit",
         sim::print_size(limit) + " is less than 1 MiB; 0 stands for three quarters of the host's memory");
   }
-  return sim::MemoryBudget(static_cast<std::uint64_t>(limit), config.where("host_machine.memory_limit"));
+  return sim::MemoryBudget(static_cast<std::uint64_t>(limit), true);
 }
 
 FrameConfig read_frame(sim::Config& config) {
@@ -158,7 +160,7 @@ FrameConfig read_frame(sim::Config& config) {
     const std::filesystem::path file = frame.open.base_directory / frame.scene;
     if (std::error_code error; !std::filesystem::exists(file, error)) {
       config.fail("scene.source",
-                  "there is no file " + file.string() +
+                  "there is no file " + sim::shown(file.string()) +
                       "; one that a configuration names is looked for beside it, one given with "
                       "--set in the current directory");
     }

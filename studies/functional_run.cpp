@@ -8,7 +8,10 @@
 #include "accel/precision.h"
 #include "accel/structure.h"
 #include "sim/error.h"
+#include "sim/key_error.h"
+#include "sim/shown.h"
 #include "studies/image_file.h"
+#include "studies/open_frame.h"
 #include "studies/plan/make_plan.h"
 
 namespace marti::studies {
@@ -140,6 +143,9 @@ FunctionalRun render_and_record(const FrameConfig& config, scenes::SceneFacts sc
   run.frame = processors::render(scene, *triangles, *structure, options);
   run.totals = processors::totals_of(*run.frame.log);
   run.image_hash = image_hash(run.frame.image);
+  if (std::string note = note_of_infinities(run.frame.image); !note.empty()) {
+    run.notes.push_back(std::move(note));
+  }
   if (facts != nullptr) {
     count_saved(run.plan, facts->needs, scene, run.frame);
   }
@@ -166,7 +172,9 @@ FunctionalRun run_functional(const FrameConfig& config) {
   }
   open.gltf.read_unused = config.keep.has(PlanItem::unreachable);
   scenes::FileUse file;
-  scenes::Scene scene = scenes::open_scene(config.scene, open, decode_image, &file);
+  FrameConfig planned = config;
+  planned.open = std::move(open);
+  scenes::Scene scene = open_frame(planned, &file);
   return run_planned(config, std::move(scene), std::move(file));
 }
 
@@ -180,16 +188,16 @@ FunctionalRun run_planned(const FrameConfig& config, scenes::Scene scene, scenes
   scenes::SceneFacts scene_facts = scenes::facts_of(scene);
   require_textures(config, scene,
                    is_left_out(run.plan, PlanItem::textures) ? facts.texels_needed : facts.texels);
-  try {
-    drop_parts(run.plan, facts.needs, decode_image, scene);
-  } catch (const sim::UserError& error) {
-    throw sim::UserError(config.scene + ": " + error.what());
-  }
-  return render_and_record(config, std::move(scene_facts), scene, &facts, std::move(run));
+  sim::KeyError::laid_at(
+      "scene.source", [&] { drop_parts(run.plan, facts.needs, decode_image, scene); },
+      sim::shown(config.scene) + ": ");
+  return with_scene_keys(
+      [&] { return render_and_record(config, std::move(scene_facts), scene, &facts, std::move(run)); });
 }
 
 FunctionalRun run_functional(const FrameConfig& config, const scenes::Scene& scene) {
-  return render_and_record(config, scenes::facts_of(scene), scene, nullptr, {});
+  return with_scene_keys(
+      [&] { return render_and_record(config, scenes::facts_of(scene), scene, nullptr, {}); });
 }
 
 }  // namespace marti::studies

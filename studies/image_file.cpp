@@ -47,6 +47,16 @@ std::uint8_t srgb_byte(float linear) {
 
 }  // namespace
 
+std::string note_of_infinities(const processors::Image& image) {
+  const auto count = std::count_if(image.pixels.begin(), image.pixels.end(), [](const glm::vec3& pixel) {
+    return !std::isfinite(pixel.x) || !std::isfinite(pixel.y) || !std::isfinite(pixel.z);
+  });
+  return count == 0 ? ""
+                    : std::to_string(count) + " of " + std::to_string(image.pixels.size()) +
+                          " pixels are infinite or no number: light or a material of the scene is brighter "
+                          "than 32-bit floats can hold; image.png has them white or black.";
+}
+
 void write_exr(const processors::Image& image, const std::filesystem::path& file) {
   OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 3,
                        OIIO::TypeDesc::FLOAT);

@@ -19,6 +19,10 @@ namespace marti::studies {
 /// files. Throws UserError when the file cannot be written.
 void write_exr(const processors::Image& image, const std::filesystem::path& file);
 
+/// "3 of 256 pixels ...": how many have a channel that is infinite or no number, which an EXR file holds as
+/// it is and a PNG file as its brightest or darkest value; empty when none has.
+[[nodiscard]] std::string note_of_infinities(const processors::Image& image);
+
 /// Writes an OpenEXR of 32-bit float channels, each with a name and width * height figures.
 void write_channels(std::uint32_t width, std::uint32_t height, std::span<const std::string> names,
                     std::span<const std::vector<float>> channels, const std::filesystem::path& file);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/config_errors.h"
 #include "sim/error.h"
 #include "studies/build_keys.h"
 #include "studies/cache_detail_keys.h"
@@ -406,17 +407,7 @@ processors::MachineConfig read_machine(sim::Config& config) {
 }
 
 void check_machine(const sim::Config& config, const processors::MachineConfig& machine) {
-  try {
-    processors::check(machine);
-  } catch (const sim::UserError& error) {
-    const std::string message = error.what();
-    const std::size_t colon = message.find(": ");
-    const std::string key = message.substr(0, colon);
-    if (colon != std::string::npos && config.schema().find(key)) {
-      config.fail(key, message.substr(colon + 2));
-    }
-    throw sim::UserError(config.name() + ": " + message);
-  }
+  sim::placed(config, [&] { processors::check(machine); });
 }
 
 }  // namespace marti::studies

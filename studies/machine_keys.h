@@ -13,8 +13,8 @@ void declare_machine_keys(sim::Schema& schema);
 /// Throws UserError naming file, line and key.
 [[nodiscard]] processors::MachineConfig read_machine(sim::Config& config);
 
-/// Throws the UserError of processors::check with file, line and key: its message begins with the key that it
-/// is about, if it is about one.
+/// Throws what processors::check refuses, a sim::KeyError, as a UserError with file (or --set option), line
+/// and key.
 void check_machine(const sim::Config& config, const processors::MachineConfig& machine);
 
 }  // namespace marti::studies

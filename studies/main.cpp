@@ -18,9 +18,11 @@
 #include "scenes/open.h"
 #include "scenes/procedural.h"
 #include "scenes/tessellate.h"
+#include "sim/config_errors.h"
 #include "sim/error.h"
 #include "sim/files.h"
 #include "sim/memory_budget.h"
+#include "sim/shown.h"
 #include "sim/units.h"
 #include "studies/command_error.h"
 #include "studies/compare/compare.h"
@@ -148,10 +150,15 @@ void run_study(const StudyArguments& arguments, const sim::Schema& schema, const
   if (!arguments.directory.empty()) {
     studies::prepare_output(arguments.directory);
   }
-  const studies::StudyOutput output = study(config);
+  const studies::StudyOutput output = sim::placed(config, [&] { return study(config); });
   std::string text = output.report;
   if (!output.host_report.empty()) {
     text += "\n" + output.host_report;
+  }
+  for (const studies::StudyImage& image : output.images) {
+    if (const std::string note = studies::note_of_infinities(image.image); !note.empty()) {
+      text += "note: " + image.name + ": " + note + "\n";
+    }
   }
   if (!arguments.directory.empty()) {
     text += "\n";
@@ -267,7 +274,8 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
     sim::Config config =
         sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
     studies::prepare_output(arguments.directory);
-    print(studies::write_traces(config, arguments.options, arguments.directory));
+    print(sim::placed(config,
+                      [&] { return studies::write_traces(config, arguments.options, arguments.directory); }));
   });
 }
 
@@ -471,7 +479,8 @@ int main(int argc, char** argv) {
     marti::studies::take_only_threads_there_are();
     return parse_and_run(argc, argv);
   } catch (const marti::sim::UserError& error) {
-    std::fprintf(stderr, "marti: %s\n", error.what());
+    // Whatever a message quotes, it must not steer the terminal.
+    std::fprintf(stderr, "marti: %s\n", marti::sim::shown(error.what(), marti::sim::all_shown).c_str());
     return end(wrong_input);
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "marti: not enough memory for this scene or machine\n");

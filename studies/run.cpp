@@ -1,6 +1,7 @@
 #include <string>
 #include <utility>
 
+#include "sim/config_errors.h"
 #include "studies/key_parts.h"
 #include "studies/machine_keys.h"
 #include "studies/plan/machine_plan.h"
@@ -125,8 +126,10 @@ RunResult run(sim::Config& config, const std::filesystem::path& directory, const
   refuse_beyond_memory(config, result.frame_config, result.machine);
   refuse_maps_beyond_memory(config, record, result.frame_config);
   result.values = config.effective_values();
-  result.functional = functional ? std::move(*functional) : run_functional(result.frame_config);
-  time_frame(record, directory, result);
+  sim::placed(config, [&] {
+    result.functional = functional ? std::move(*functional) : run_functional(result.frame_config);
+    time_frame(record, directory, result);
+  });
   return result;
 }
 

@@ -8,6 +8,7 @@
 
 #include "accel/octree.h"
 #include "processors/packets.h"
+#include "sim/config_errors.h"
 #include "sim/error.h"
 #include "sim/units.h"
 #include "studies/error/measured_errors.h"
@@ -101,8 +102,8 @@ std::optional<std::string> outside_measured(const FrameConfig& frame) {
 std::optional<std::string> outside_measured(const processors::MachineConfig& machine, std::uint64_t packets) {
   try {
     check_analytic(machine);
-  } catch (const sim::UserError& error) {
-    return error.what();
+  } catch (const sim::KeyError& error) {
+    return error.reason();
   }
   if (machine.interconnect.kind != memory::InterconnectKind::bus ||
       machine.interconnect.mode != memory::BusMode::split) {
@@ -187,7 +188,7 @@ std::string run_within(sim::Config& config, double tolerance, bool json) {
   result.values = config.effective_values();
   result.frame_config = frame;
   result.machine = machine;
-  result.functional = run_functional(frame);
+  result.functional = sim::placed(config, [&] { return run_functional(frame); });
   const std::optional<EstimatedRun> estimated =
       estimate_within(*result.functional.frame.log, machine, tolerance);
   if (!estimated) {

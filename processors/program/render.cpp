@@ -9,7 +9,7 @@
 
 #include "processors/program/render_rows.h"
 #include "processors/program/voxel_average.h"
-#include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::processors {
 
@@ -105,13 +105,14 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
   if (options.voxel_cut > 0.0) {
     const auto* octree = dynamic_cast<const accel::StructureOf<accel::Octree>*>(&structure);
     if (octree == nullptr) {
-      throw sim::UserError("the voxel cut needs an octree, not \"" + std::string(structure.kind()) + "\"");
+      throw sim::KeyError("image.voxel_cut",
+                          "the voxel cut needs an octree, not \"" + std::string(structure.kind()) + "\"");
     }
     // Whatever the threshold, so that a smaller one does not seem to work.
     if (!scene.quadrics.empty()) {
-      throw sim::UserError("image.voxel_cut averages triangles only, and scene.source has " +
-                           std::to_string(scene.quadrics.size()) +
-                           " spheres, cylinders and cones; set image.voxel_cut = 0");
+      throw sim::KeyError("image.voxel_cut", "averages triangles only, and scene.source has " +
+                                                 std::to_string(scene.quadrics.size()) +
+                                                 " spheres, cylinders and cones; set image.voxel_cut = 0");
     }
     voxels = make_voxels(scene, octree->concrete(), options, threads);
   }

@@ -6,6 +6,7 @@
 
 #include "memory/cache_config.h"
 #include "scenes/open.h"
+#include "sim/key_error.h"
 #include "sim/units.h"
 #include "studies/error/simulator_methods.h"
 #include "studies/image_file.h"
@@ -36,17 +37,17 @@ void check_machines(const sim::Config& config, const ErrorConfig& error) {
     const processors::MachineConfig machine = machine_with(error.machine, error.nodes.back(), cache);
     try {
       processors::check(machine);
-    } catch (const sim::UserError& problem) {
-      config.fail("error.cache_sizes",
-                  sim::print_size(static_cast<std::int64_t>(cache)) + ": " + problem.what());
+    } catch (const sim::KeyError& problem) {
+      const bool size = problem.key() == "cache.size";
+      config.fail(size ? "error.cache_sizes" : problem.key(),
+                  (size ? sim::print_size(static_cast<std::int64_t>(cache)) + ": " : "") + problem.reason());
     }
     refuse_beyond_memory(config, error.frame, machine);
     for (const Method& method : simulator_methods()) {
       try {
         check_method(method, machine);
-      } catch (const sim::UserError& problem) {
-        throw sim::UserError(config.name() + ": the study measures every method on the machine, and " +
-                             problem.what());
+      } catch (const sim::KeyError& problem) {
+        config.fail(problem.key(), "the study measures every method on the machine, and " + problem.reason());
       }
     }
   }

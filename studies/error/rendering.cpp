@@ -15,6 +15,7 @@
 #include "studies/cpu_time.h"
 #include "studies/functional_run.h"
 #include "studies/image_file.h"
+#include "studies/open_frame.h"
 
 namespace marti::studies {
 
@@ -29,7 +30,7 @@ class Measurement {
   Measurement(const FrameConfig& frame, const RenderingErrorOptions& options)
       : frame_(frame),
         options_(options),
-        scene_(scenes::open_scene(frame.scene, frame.open, decode_image)),
+        scene_(open_frame(frame)),
         triangles_(std::make_shared<const accel::TriangleSet>(scene_)) {
     study_.scene = frame.scene;
     study_.plan = plan_rendering(frame, options, scene_);

@@ -11,7 +11,7 @@
 #include "processors/one_pass.h"
 #include "processors/replay.h"
 #include "processors/step_time.h"
-#include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::studies {
 
@@ -169,23 +169,25 @@ std::vector<std::vector<std::uint64_t>> packets_to_walk(std::uint64_t packets, s
 
 void check_analytic(const MachineConfig& machine) {
   processors::check_sampled(machine);
-  const auto refuse = [](const std::string& reason) {
-    throw sim::UserError("the analytic model is for " + reason + " only");
+  const auto refuse = [](const char* key, const std::string& reason) {
+    throw sim::KeyError(key, "the analytic model is for " + reason + " only");
   };
   if (machine.clusters > 1) {
-    refuse("one cluster");
+    refuse("machine.clusters", "one cluster");
   }
   if (machine.placement != processors::Placement::shared) {
-    refuse("database.placement = \"shared\"");
+    refuse("database.placement", "database.placement = \"shared\"");
   }
   if (machine.cache.organisation != processors::CacheOrganisation::unified ||
       machine.cache.cache.replacement != memory::Replacement::lru) {
-    refuse("unified LRU caches");
+    refuse(machine.cache.organisation != processors::CacheOrganisation::unified ? "cache.organisation"
+                                                                                : "cache.replacement",
+           "unified LRU caches");
   }
   if (machine.interconnect.kind == memory::InterconnectKind::crossbar ||
       (machine.interconnect.kind == memory::InterconnectKind::bus &&
        machine.interconnect.arbitration != memory::Arbitration::fifo)) {
-    refuse("an ideal interconnect or a bus that serves first come, first served");
+    refuse("interconnect.kind", "an ideal interconnect or a bus that serves first come, first served");
   }
 }
 

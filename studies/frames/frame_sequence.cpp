@@ -4,21 +4,28 @@
 
 #include "scenes/open.h"
 #include "studies/image_file.h"
+#include "studies/open_frame.h"
 
 namespace marti::studies {
 
 FrameSequence::FrameSequence(const FrameConfig& config)
-    : FrameSequence(scenes::open_animated(config.scene, config.open, decode_image), config.frames) {}
+    : FrameSequence(
+          with_scene_keys([&] { return scenes::open_animated(config.scene, config.open, decode_image); }),
+          config.frames) {}
 
 FrameSequence::FrameSequence(scenes::AnimatedScene scene, const FrameRange& range)
     : scene_(std::move(scene)), range_(range) {
   for (std::uint32_t i = 0; i < range_.count; ++i) {
-    const scenes::Bounds frame = scenes::bounds_of(scene_.at(range_.time(i)));
+    const scenes::Bounds frame = scenes::bounds_of(pose(i));
     if (!frame.empty()) {
       bounds_.include(frame.lo);
       bounds_.include(frame.hi);
     }
   }
+}
+
+scenes::Scene FrameSequence::pose(std::uint32_t i) const {
+  return with_scene_keys([&] { return scene_.at(range_.time(i)); });
 }
 
 void FrameSequence::visit(const std::function<void(const PosedFrame&)>& visitor) const {
@@ -27,7 +34,7 @@ void FrameSequence::visit(const std::function<void(const PosedFrame&)>& visitor)
     PosedFrame frame;
     frame.number = range_.first + i;
     frame.seconds = range_.time(i);
-    frame.scene = scene_.at(frame.seconds);
+    frame.scene = pose(i);
     if (i > 0) {
       frame.moved = scenes::moved_primitives(before.scene, frame.scene);
     }

@@ -37,6 +37,8 @@ class FrameSequence {
   void visit(const std::function<void(const PosedFrame&)>& visitor) const;
 
  private:
+  [[nodiscard]] scenes::Scene pose(std::uint32_t i) const;
+
   scenes::AnimatedScene scene_;
   FrameRange range_;
   scenes::Bounds bounds_;

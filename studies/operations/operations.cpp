@@ -9,6 +9,7 @@
 #include "studies/frame_keys.h"
 #include "studies/image_file.h"
 #include "studies/machine_keys.h"
+#include "studies/open_frame.h"
 #include "studies/results/provenance.h"
 
 namespace marti::studies {
@@ -44,7 +45,7 @@ OperationsStudy count_operations(sim::Config& config) {
   const FrameConfig frame = read_frame(config);
   static_cast<void>(read_machine(config));
   config.refuse_unused();
-  const scenes::Scene scene = scenes::open_scene(frame.scene, frame.open, decode_image);
+  const scenes::Scene scene = open_frame(frame);
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
 
   OperationsStudy study;

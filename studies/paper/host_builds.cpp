@@ -10,6 +10,7 @@
 #include "accel/structure.h"
 #include "sim/error.h"
 #include "studies/image_file.h"
+#include "studies/open_frame.h"
 
 namespace marti::studies {
 
@@ -48,7 +49,7 @@ void measure_once(const scenes::Scene& scene, const std::shared_ptr<const accel:
 
 std::vector<HostOutcome> measure_host(const PaperConfig& config, const TracedRun& run) {
   const FrameConfig frame = config.frame_of(run.run);
-  const scenes::Scene scene = scenes::open_scene(frame.scene, frame.open, decode_image);
+  const scenes::Scene scene = open_frame(frame);
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
   std::vector<HostOutcome> outcomes;
   for (InitialLevel& initial : initial_levels(config, run.levels)) {

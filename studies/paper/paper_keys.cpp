@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "processors/memory_system.h"
+#include "sim/shown.h"
 #include "studies/machine_keys.h"
 #include "studies/run_result.h"
 
@@ -41,7 +42,7 @@ std::vector<PaperRun> read_runs(const sim::Config& config) {
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     PaperRun run{scenes[i], static_cast<std::uint32_t>(depths[i])};
     if (std::find(runs.begin(), runs.end(), run) != runs.end()) {
-      config.fail("paper.run_scenes", "names " + name_of(run) + " twice");
+      config.fail("paper.run_scenes", "names " + sim::shown(name_of(run)) + " twice");
     }
     runs.push_back(std::move(run));
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/config_errors.h"
+#include "sim/shown.h"
 #include "sim/units.h"
 #include "studies/key_parts.h"
 #include "studies/machine_keys.h"
@@ -37,6 +39,12 @@ NamedMachine read_with(const std::filesystem::path& file, const std::vector<std:
   NamedMachine machine{std::move(name), read_machine(config)};
   config.refuse_unused();
   return machine;
+}
+
+// Calls `work`, which reads a file that the key names: what is wrong with the file is told with the key.
+template <class Work>
+decltype(auto) named_by(const sim::Config& config, std::string_view key, const Work& work) {
+  return sim::placed(config, [&]() -> decltype(auto) { return sim::KeyError::laid_at(key, work); });
 }
 
 }  // namespace
@@ -105,23 +113,28 @@ SchemesConfig read_schemes(sim::Config& config) {
   }
   for (const std::string& name : config.texts("schemes.machines")) {
     const std::filesystem::path& file = schemes.machines.emplace_back(beside(config, name));
-    const NamedMachine machine = read_machine_file(file);
+    const NamedMachine machine =
+        named_by(config, "schemes.machines", [&] { return read_machine_file(file); });
     const std::uint32_t most = std::max(schemes.nodes.back(), fewest_nodes(machine.config));
     const std::string excess = schemes.frame.memory.excess(
-        processors::host_bytes(read_machine_file(file, most, machine.config.pipeline).config));
+        processors::host_bytes(named_by(config, "schemes.nodes", [&] {
+                                 return read_machine_file(file, most, machine.config.pipeline);
+                               }).config));
     if (!excess.empty()) {
-      config.fail("schemes.nodes", "simulating that many nodes of " + name + " takes" + excess);
+      config.fail("schemes.nodes", "simulating that many nodes of " + sim::shown(name) + " takes" + excess);
     }
   }
   if (schemes.machines.empty()) {
     config.fail("schemes.machines", "must name a machine");
   }
   schemes.cell_machine = beside(config, config.text("schemes.cell_machine"));
-  (void)read_machine_file(schemes.cell_machine);
+  (void)named_by(config, "schemes.cell_machine", [&] { return read_machine_file(schemes.cell_machine); });
   const std::string& stages = config.text("schemes.stage_machine");
   if (!stages.empty()) {
     schemes.stage_machine = beside(config, stages);
-    if (read_machine_file(schemes.stage_machine).config.scheme != processors::Scheme::pipeline) {
+    const NamedMachine machine =
+        named_by(config, "schemes.stage_machine", [&] { return read_machine_file(schemes.stage_machine); });
+    if (machine.config.scheme != processors::Scheme::pipeline) {
       config.fail("schemes.stage_machine", "names a machine that is no pipeline");
     }
   }

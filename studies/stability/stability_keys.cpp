@@ -4,6 +4,7 @@
 #include <string>
 
 #include "sim/nearest.h"
+#include "sim/shown.h"
 #include "studies/key_parts.h"
 
 namespace marti::studies {
@@ -39,7 +40,8 @@ StabilityConfig read_stability(sim::Config& config, std::span<const StabilityCas
   }
   for (const std::string& name : only) {
     if (std::find(names.begin(), names.end(), name) == names.end()) {
-      config.fail("stability.only", "there is no case \"" + name + "\"" + sim::did_you_mean(name, names));
+      config.fail("stability.only",
+                  "there is no case \"" + sim::shown(name) + "\"" + sim::did_you_mean(name, names));
     }
   }
   return stability;

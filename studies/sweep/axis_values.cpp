@@ -9,8 +9,9 @@
 #include <unordered_set>
 #include <utility>
 
-#include "sim/error.h"
+#include "sim/config_errors.h"
 #include "sim/nearest.h"
+#include "sim/shown.h"
 #include "studies/sweep/sweep_table.h"
 
 namespace marti::studies {
@@ -37,7 +38,7 @@ class RangeReader {
     for (const DocumentEntry& entry : *value_.table()) {
       const std::vector<std::string> parts = {"from", "to", "steps", "scale"};
       if (std::find(parts.begin(), parts.end(), entry.name) == parts.end()) {
-        fail(entry.line, "a range has from, to, steps and scale, not \"" + entry.name + "\"" +
+        fail(entry.line, "a range has from, to, steps and scale, not \"" + sim::shown(entry.name) + "\"" +
                              sim::did_you_mean(entry.name, parts));
       }
     }
@@ -61,7 +62,7 @@ class RangeReader {
 
  private:
   [[noreturn]] void fail(int line, const std::string& message) const {
-    throw sim::UserError(config_.name() + ":" + std::to_string(line) + ": " + key_.name + ": " + message);
+    sim::fail_at(config_, line, key_.name, message);
   }
   [[nodiscard]] bool whole() const {
     return key_.type == sim::ValueType::integer || key_.type == sim::ValueType::size ||
@@ -174,8 +175,7 @@ std::vector<sim::Setting> range_values(const sim::Config& config, std::size_t in
                                        const DocumentValue& value, std::vector<std::string>& notes) {
   const sim::Key& key = config.schema().keys()[index];
   if (key.is_list) {
-    throw sim::UserError(config.name() + ":" + std::to_string(value.line) + ": " + key.name +
-                         ": each value is a list itself; only numbers have ranges");
+    sim::fail_at(config, value.line, key.name, "each value is a list itself; only numbers have ranges");
   }
   const Range range = RangeReader(config, index, value).read();
   bool rounded = false;
@@ -186,7 +186,7 @@ std::vector<sim::Setting> range_values(const sim::Config& config, std::size_t in
       settings.push_back({index, {std::move(step)}, range.line, {}});
     }
   }
-  const std::string place = config.name() + ":" + std::to_string(range.line) + ": " + key.name + ": ";
+  const std::string place = sim::place_in_file(config.name(), range.line, key.name) + ": ";
   if (rounded) {
     notes.push_back(place + "the steps of the range are rounded to whole numbers");
   }
@@ -206,7 +206,7 @@ std::vector<sim::Setting> axis_values(const sim::Config& config, std::size_t key
   }
   const sim::Key& declared = config.schema().keys()[key];
   const auto fail = [&](int line, const std::string& message) {
-    throw sim::UserError(config.name() + ":" + std::to_string(line) + ": " + declared.name + ": " + message);
+    sim::fail_at(config, line, declared.name, message);
   };
   const DocumentValue::List* list = value.list();
   if (list == nullptr) {
@@ -227,7 +227,7 @@ std::vector<sim::Setting> axis_values(const sim::Config& config, std::size_t key
     sim::Setting setting{key, config.parse(key, element), element.line, {}};
     const std::string printed = print_values(declared, setting.values);
     if (!repeats && !seen.insert(printed).second) {
-      fail(element.line, "lists " + printed + " twice");
+      fail(element.line, "lists " + sim::shown(printed) + " twice");
     }
     settings.push_back(std::move(setting));
   }

@@ -7,6 +7,7 @@
 
 #include "sim/error.h"
 #include "sim/nearest.h"
+#include "sim/shown.h"
 #include "sim/units.h"
 
 namespace marti::studies {
@@ -92,7 +93,9 @@ class Translator {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw sim::UserError(place_ + ": " + message); }
+  [[noreturn]] void fail(const std::string& message) const {
+    throw sim::UserError(place_ + ": " + sim::shown(message, sim::all_shown));
+  }
 
   void step() {
     const char c = text_[at_];
@@ -198,7 +201,7 @@ class Translator {
       result_.sql += *value + " ";
       return;
     }
-    fail("\"" + digits_found + " " + std::string(unit) +
+    fail("\"" + sim::shown(digits_found) + " " + sim::shown(unit) +
          "\": unknown unit; there are B, KiB, MiB, GiB, TiB, Hz, kHz, MHz, GHz, THz, ps, ns, us, ms and s");
   }
 
@@ -225,7 +228,7 @@ class Translator {
     } else if (is_filter_function(lower(found))) {
       skip_blanks();
       if (at_ >= text_.size() || text_[at_] != '(') {
-        fail("\"" + std::string(found) + "\" is a function: its arguments follow in parentheses");
+        fail("\"" + sim::shown(found) + "\" is a function: its arguments follow in parentheses");
       }
       compared_.reset();
       function_depth_ = function_depth_ == 0 ? depth_ + 1 : function_depth_;
@@ -237,10 +240,10 @@ class Translator {
 
   [[noreturn]] void unknown(const std::string& found) const {
     if (schema_.is_section(found)) {
-      fail("\"" + found + "\" is a section, not a key");
+      fail("\"" + sim::shown(found) + "\" is a section, not a key");
     }
     const std::string near = sim::did_you_mean(found, schema_.names());
-    fail("unknown name \"" + found + "\"" + near +
+    fail("unknown name \"" + sim::shown(found) + "\"" + near +
          (near.empty() && found.find('.') == std::string::npos
               ? "; texts are written in single quotation marks, as 'lru'"
               : "; `marti config` lists all keys"));
@@ -293,12 +296,12 @@ class Translator {
       return;
     }
     if (!is_text(*key)) {
-      fail(key->name + " is no text and cannot be compared with '" + content + "'");
+      fail(key->name + " is no text and cannot be compared with '" + sim::shown(content) + "'");
     }
     if (key->type == sim::ValueType::choice &&
         std::find(key->choices.begin(), key->choices.end(), content) == key->choices.end()) {
-      fail(key->name + " is never '" + content + "'" + sim::did_you_mean(content, key->choices) + "; it is " +
-           sim::print_range(*key));
+      fail(key->name + " is never '" + sim::shown(content) + "'" + sim::did_you_mean(content, key->choices) +
+           "; it is " + sim::print_range(*key));
     }
   }
   void refuse_number(const std::string& number, std::optional<sim::ValueType> dimension) const {

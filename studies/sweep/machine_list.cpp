@@ -5,26 +5,15 @@
 #include <utility>
 
 #include "scenes/open.h"
+#include "sim/config_errors.h"
 #include "sim/error.h"
 #include "studies/image_file.h"
+#include "studies/open_frame.h"
 #include "studies/program_build.h"
 #include "studies/scene_hash.h"
 #include "studies/sweep/digest.h"
 
 namespace marti::studies {
-
-namespace {
-
-// A scene that cannot be opened is laid at the door of whatever named it.
-scenes::Scene open(const ReadPoint& read) {
-  try {
-    return scenes::open_scene(read.frame.scene, read.frame.open, decode_image);
-  } catch (const sim::UserError& error) {
-    read.config.fail("scene.source", error.what());
-  }
-}
-
-}  // namespace
 
 std::size_t MachineList::enter(ReadPoint& read) {
   const std::size_t frame = enter_frame(read);
@@ -89,7 +78,7 @@ std::size_t MachineList::enter_frame(const ReadPoint& read) {
   digest.add(std::string(build_of_program()) + "\n" + read.frame_digest);
   std::optional<std::uint64_t> hash;
   if (file) {
-    const scenes::Scene scene = open(read);
+    const scenes::Scene scene = sim::placed(read.config, [&] { return open_frame(read.frame); });
     hash = scene_hash(scene);
     digest.add("\n" + std::to_string(*hash) + " " + std::to_string(scenes::facts_of(scene).polygons));
     // What a frame's row says of the scene is part of it.

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/error.h"
+#include "sim/config_errors.h"
 #include "sim/nearest.h"
 #include "studies/record_keys.h"
 #include "studies/run_result.h"
@@ -71,9 +71,8 @@ Prices read_prices(const sim::Config& config) {
       names.emplace_back(key.name);
     }
     const std::string name = "prices." + unknown.front().name;
-    throw sim::UserError(config.name() + ":" + std::to_string(unknown.front().line) + ": " + name +
-                         ": unknown key" + sim::did_you_mean(name, names) +
-                         "; `marti config` lists all keys");
+    sim::fail_at(config, unknown.front().line, name,
+                 "unknown key" + sim::did_you_mean(name, names) + "; `marti config` lists all keys");
   }
   Prices prices;
   for (const PriceKey& key : price_keys) {

@@ -7,7 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "sim/error.h"
+#include "sim/config_errors.h"
+#include "sim/shown.h"
 #include "studies/sweep/machine_list.h"
 #include "studies/sweep/read_point.h"
 #include "studies/sweep/sweep_filter.h"
@@ -60,6 +61,7 @@ class Planner {
   }
 
   SweepPlan plan() {
+    plan_.file = config_.name();
     plan_.notes = table_.notes;
     name_axes();
     const std::vector<std::uint64_t> passing = filter();
@@ -75,8 +77,8 @@ class Planner {
       add(std::span(passing).subspan(begin, std::min(points_at_once, passing.size() - begin)));
     }
     if (plan_.points.empty()) {
-      throw sim::UserError(config_.name() + ": no point of the sweep can be built; the first: " +
-                           plan_.skipped.front().reason);
+      sim::fail_at(config_, config_.free_section_line("sweep"), "sweep",
+                   "no point of the sweep can be built; the first: " + plan_.skipped.front().reason);
     }
     add_compare();
     refuse_unused();
@@ -124,7 +126,7 @@ class Planner {
     }
     const std::string where = config_.where("sweep.filter");
     SweepFilter filter(config_.schema(), filter_, points_.named(),
-                       where.starts_with("--set") ? where : where + ": sweep.filter");
+                       sim::shown(where) + (where.starts_with("--set ") ? "" : ": sweep.filter"));
     std::vector<sim::Value> values(filter.columns().size());
     for (std::uint64_t point = 0; point < points_.size(); ++point) {
       for (std::size_t i = 0; i < values.size(); ++i) {
@@ -209,7 +211,7 @@ class Planner {
 
   void skip(std::uint64_t point, const std::string& error) {
     if (!skip_invalid_) {
-      throw sim::UserError(error + " (the point " + points_.text(point) +
+      throw sim::UserError(error + " (the point " + sim::shown(points_.text(point)) +
                            "; sweep.skip_invalid = true leaves out such points)");
     }
     plan_.skipped.push_back({points_.text(point), error});
@@ -217,7 +219,7 @@ class Planner {
 
   void enter_base(std::uint64_t group, std::uint64_t point, Outcome base) {
     if (!base.read) {
-      throw sim::UserError(base.error + " (the machine that the point " + points_.text(point) +
+      throw sim::UserError(base.error + " (the machine that the point " + sim::shown(points_.text(point)) +
                            " is measured against)");
     }
     note_use(base.read->config);
@@ -269,8 +271,8 @@ class Planner {
       if (!read.used_at(setting.key)) {
         const std::string& key = config_.schema().names()[setting.key];
         const std::string reason(read.why_unused(key));
-        throw sim::UserError(config_.name() + ":" + std::to_string(setting.line) + ": " + key +
-                             ": is not used by " + who + (reason.empty() ? "" : ": " + reason));
+        sim::fail_at(config_, setting.line, key,
+                     "is not used by " + who + (reason.empty() ? "" : ": " + reason));
       }
     }
   }

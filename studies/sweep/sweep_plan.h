@@ -54,6 +54,7 @@ struct SkippedPoint {
 };
 
 struct SweepPlan {
+  std::string file;  ///< the configuration's name, as it stands in messages
   /// Keys that differ between points, "point" first where there are named points. The value of a key that is
   /// a list is a text.
   std::vector<std::string> axes;

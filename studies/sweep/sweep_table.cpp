@@ -6,8 +6,9 @@
 #include <unordered_map>
 #include <utility>
 
-#include "sim/error.h"
+#include "sim/config_errors.h"
 #include "sim/nearest.h"
+#include "sim/shown.h"
 #include "studies/sweep/axis_values.h"
 
 namespace marti::studies {
@@ -45,8 +46,7 @@ class TableReader {
   using Visit = std::function<void(std::size_t key, const DocumentEntry& entry)>;
 
   [[noreturn]] void fail(int line, std::string_view key, const std::string& message) const {
-    throw sim::UserError(config_.name() + ":" + std::to_string(line) + ": " + std::string(key) + ": " +
-                         message);
+    sim::fail_at(config_, line, key, message);
   }
 
   void read_part(const DocumentEntry& entry) {
@@ -128,7 +128,8 @@ class TableReader {
       fail(line, name, "is swept over twice; the first time in line " + std::to_string(place->second));
     }
     if (config_.given_at(key) && config_.where(name).starts_with("--set")) {
-      fail(line, name, "is swept over, so that \"" + config_.where(name) + "\" would have no effect");
+      fail(line, name,
+           "is swept over, so that \"" + sim::shown(config_.where(name)) + "\" would have no effect");
     }
   }
 

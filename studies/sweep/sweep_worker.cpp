@@ -10,10 +10,13 @@
 
 #include "processors/replay.h"
 #include "scenes/open.h"
+#include "sim/config_errors.h"
 #include "sim/error.h"
+#include "sim/shown.h"
 #include "studies/cpu_time.h"
 #include "studies/functional_run.h"
 #include "studies/image_file.h"
+#include "studies/open_frame.h"
 #include "studies/scene_hash.h"
 
 namespace marti::studies {
@@ -22,10 +25,12 @@ namespace {
 
 FrameLog trace(const SweepFrame& frame) {
   const FrameConfig& config = frame.config;
-  const scenes::Scene scene = scenes::open_scene(config.scene, config.open, decode_image);
+  const scenes::Scene scene = open_frame(config);
   const std::uint64_t hash = scene_hash(scene);
   if (frame.scene_hash && *frame.scene_hash != hash) {
-    throw sim::UserError(config.scene + ": the scene has changed since the sweep was begun; begin it again");
+    throw sim::KeyError(
+        "scene.source",
+        sim::shown(config.scene) + ": the scene has changed since the sweep was begun; begin it again");
   }
   const FunctionalRun run = run_functional(config, scene);
   return {run.frame.log, frame_row(run, hash)};
@@ -35,7 +40,7 @@ FrameLog trace(const SweepFrame& frame) {
 void do_trace(const SweepSite& site, TaskSource& source, const SweepTask& task) {
   const auto begin = std::chrono::steady_clock::now();
   const SweepFrame& frame = site.plan.frames[task.frame];
-  FrameLog log = trace(frame);
+  FrameLog log = sim::placed(frame.settings, site.plan.file, [&] { return trace(frame); });
   const FrameRow row = log.row;
   site.logs.put(task.frame, std::move(log));
   const auto end = std::chrono::steady_clock::now();
@@ -69,9 +74,12 @@ void do_time(const SweepSite& site, TaskSource& source, const SweepTask& task) {
       options.stripped = stripped.get();
       // The events that a row holds must not depend on whether there was room for a stripped log.
       options.keep_read_events = true;
-      row = sweep_row(machine.config, processors::replay(*log->log, machine.config, options));
+      row = sim::placed(machine.settings, site.plan.file, [&] {
+        return sweep_row(machine.config, processors::replay(*log->log, machine.config, options));
+      });
     } catch (const sim::UserError& error) {
-      throw sim::UserError("the machine with " + name_of(machine) + ": " + error.what());
+      throw sim::UserError(std::string(error.what()) + " (the machine with " + sim::shown(name_of(machine)) +
+                           ")");
     }
     source.timed(number, row, thread_cpu_nanoseconds() - begin);
   }

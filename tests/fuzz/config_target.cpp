@@ -2,6 +2,7 @@
 #include <string_view>
 #include <vector>
 
+#include "refusal.h"
 #include "sim/error.h"
 #include "studies/error/error_keys.h"
 #include "studies/frame_keys.h"
@@ -49,8 +50,7 @@ bool accepted(const Read& read) {
     read();
     return true;
   } catch (const sim::UserError& error) {
-    promise(std::string_view(error.what()).starts_with("fuzz.toml"),
-            "a message without a place: " + std::string(error.what()));
+    (void)refusal_of(error.what(), "fuzz.toml");
     return false;
   }
 }

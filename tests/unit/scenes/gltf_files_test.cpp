@@ -88,7 +88,7 @@ TEST_F(GltfFolder, FilesBeyondTheMemoryAreNotRead) {
   const std::string message = refusal(file.write_gltf(folder(), "scene.gltf"), options);
   EXPECT_TRUE(says(message, "sparse.bin")) << message;
   EXPECT_TRUE(says(message, "4 GiB")) << message;
-  EXPECT_TRUE(says(message, "host_machine.memory_limit = 1 MiB")) << message;
+  EXPECT_TRUE(says(message, "more than 1 MiB")) << message;
 }
 
 TEST(GltfCompressed, IsRefusedByTheNameOfItsExtension) {
@@ -201,7 +201,7 @@ TEST(GltfImages, TexelsAreCountedBeforeTheyAreDecoded) {
   options.memory = sim::MemoryBudget(std::uint64_t{1} << 30U);
   const std::string message = refusal(pictures(3).write_glb(directory.path(), "a.glb"), options, never);
   EXPECT_TRUE(says(message, "textures take about 2 GiB")) << message;
-  EXPECT_TRUE(says(message, "host_machine.memory_limit = 1 GiB")) << message;
+  EXPECT_TRUE(says(message, "more than 1 GiB")) << message;
 }
 
 // One mesh of many triangles in many nodes: refused by its count, at every limit below what it takes, and

@@ -155,7 +155,7 @@ TEST(Config, WrongAssignmentsAreNamed) {
             "--set cache=3: is a section and has no value of its own; its keys are cache.size, "
             "cache.replacement, cache.ways, cache.split"},
            {"nodes=1\ncache.ways=2",
-            "--set nodes=1\ncache.ways=2: must be an integer, not the text \"1\ncache.ways=2\""}}) {
+            "--set nodes=1\\ncache.ways=2: must be an integer, not the text \"1\\ncache.ways=2\""}}) {
     EXPECT_EQ(error_of("", {wrong.text}), wrong.message) << wrong.text;
   }
 }

@@ -111,7 +111,8 @@ TEST(Variant, HasTheValuesOfItsSettingsAndNamesTheirLines) {
   EXPECT_EQ(changed.size("cache.size"), 16384);
   EXPECT_FALSE(changed.given("cache.size"));
   changed.set({ways, {std::int64_t{2}}, 0, "elsewhere"});
-  EXPECT_EQ(user_error_of([&] { changed.fail("cache.ways", "is even"); }), "elsewhere: is even");
+  EXPECT_EQ(user_error_of([&] { changed.fail("cache.ways", "is even"); }),
+            "a.toml: cache.ways: is even (in elsewhere)");
 }
 
 // A variant is what a file with these values would be.

@@ -25,13 +25,13 @@ TEST(MemoryBudget, GrantsWhatIsLeftAndNoByteMore) {
   EXPECT_NO_THROW(MemoryBudget().require(~std::uint64_t{0}, "all", ""));
 }
 
-TEST(MemoryBudget, RefusesWithPlaceKeyAndBothFigures) {
-  MemoryBudget budget(10 * mebibyte, "a.toml:3");
+TEST(MemoryBudget, RefusesWithKeyAndBothFigures) {
+  MemoryBudget budget(10 * mebibyte, true);
   budget.take(4 * mebibyte, "the scene takes", "");
   EXPECT_EQ(
       test::user_error_of([&] { budget.take(7 * mebibyte - 1, "the tree takes", "lower structure.x"); }),
-      "a.toml:3: the tree takes about 7 MiB beside 4 MiB that are taken, more than "
-      "host_machine.memory_limit = 10 MiB: raise the limit, or lower structure.x");
+      "host_machine.memory_limit: the tree takes about 7 MiB beside 4 MiB that are taken, more than 10 MiB: "
+      "raise the limit, or lower structure.x");
   EXPECT_NE(MemoryBudget(mebibyte).excess(2 * mebibyte).find("three quarters of what the host"),
             std::string::npos);
   EXPECT_TRUE(budget.excess(6 * mebibyte).empty());
