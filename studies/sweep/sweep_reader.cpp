@@ -18,8 +18,13 @@ namespace {
 constexpr std::size_t point_columns = 4;
 
 const std::filesystem::path& checked(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (status.type() == std::filesystem::file_type::not_found) {
     throw sim::UserError(file.string() + ": there is no such file");
+  }
+  if (error) {
+    throw sim::UserError(file.string() + ": cannot be read: " + error.message());
   }
   check_store_file(file);
   return file;
@@ -37,7 +42,8 @@ std::vector<std::string> columns_of(SqliteConnection& connection, const std::str
 }  // namespace
 
 bool is_begun(const std::filesystem::path& store) {
-  if (!std::filesystem::exists(store)) {
+  std::error_code error;
+  if (std::filesystem::status(store, error).type() == std::filesystem::file_type::not_found) {
     return false;
   }
   SqliteConnection connection(checked(store), SqliteConnection::Access::read);

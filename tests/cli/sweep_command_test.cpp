@@ -279,6 +279,8 @@ TEST_F(SweepCommand, AStoreOfAnotherVersionOrKindIsRefusedAndNotTouched) {
     studies::SqliteConnection connection(store, studies::SqliteConnection::Access::write);
     connection.execute("PRAGMA journal_mode = DELETE");
     connection.execute("UPDATE store SET value = '0.0.0' WHERE what = 'version'");
+    // Older versions wrote format 1, without checksums.
+    connection.execute("UPDATE store SET value = '1' WHERE what = 'format'; PRAGMA user_version = 1");
   }
   const std::string before = read(store);
   const Outcome other = sweep(config, out);

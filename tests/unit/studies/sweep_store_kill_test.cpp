@@ -256,7 +256,7 @@ class HotJournal : public KilledStore {
       // A cache of few pages: the file is changed before the end of the transaction.
       connection.execute(
           "PRAGMA cache_size = 1; BEGIN; UPDATE results SET hits = 1; DELETE FROM wait_buckets;"
-          "UPDATE buckets SET highest = 7; UPDATE settings SET value = 'x';");
+          "UPDATE buckets SET highest = 7; UPDATE settings SET value = value || 'x';");
       kill(getpid(), SIGKILL);
     });
     EXPECT_TRUE(child.killed);
@@ -282,10 +282,9 @@ TEST_F(HotJournal, IsTakenInByTheNextSweep) {
 
 // Where nothing may be written, the message says what to do.
 TEST_F(HotJournal, CannotBeTakenInByOneWhoMayNotWrite) {
-  fs::permissions(file_, fs::perms::owner_read | fs::perms::others_read);
-  fs::permissions(file_.string() + "-journal", fs::perms::owner_read | fs::perms::others_read);
-  const fs::perms reading = fs::perms::owner_read | fs::perms::owner_exec;
-  fs::permissions(directory_.path(), reading | fs::perms::others_read | fs::perms::others_exec);
+  fs::permissions(file_, fs::perms{0444});
+  fs::permissions(file_.string() + "-journal", fs::perms{0444});
+  fs::permissions(directory_.path(), fs::perms{0555});
   const pid_t process = fork();
   if (process == 0) {
     constexpr uid_t nobody = 65534;
