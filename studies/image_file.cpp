@@ -28,6 +28,9 @@ std::string codec_name(std::span<const std::byte> file) {
 
 void write(const std::filesystem::path& file, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
            const void* pixels) {
+  // OpenEXR compresses in this thread: a pool of its own would be more threads than the system may give.
+  static const bool no_pool = OIIO::attribute("exr_threads", -1);
+  static_cast<void>(no_pool);
   const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(file.string());
   if (!out) {
     throw sim::UserError(file.string() + ": " + OIIO::geterror());
