@@ -239,6 +239,8 @@ Given as_file(const Command& command, const std::string& shipped,
 std::string as_option(const std::string& key, const std::string& value) { return key + "=" + value; }
 
 TEST_F(Refusals, OfValuesOfTheWrongKind) {
+  const std::vector<std::string> machines = {"contexts.toml", "pipeline.toml", "space.toml",
+                                             "distributed.toml"};
   Random random(11);
   int refusals = 0;
   for (const Command& command : commands()) {
@@ -253,6 +255,10 @@ TEST_F(Refusals, OfValuesOfTheWrongKind) {
                                         {shipped, {as_option(key.name, raw)}, {}},
                                         {shipped, {as_option(bad, value)}, {}}};
       for (std::size_t i = 0; i < all.size(); ++i) {
+        // One file of `marti run` is enough here.
+        if (std::find(machines.begin(), machines.end(), command.file) != machines.end()) {
+          continue;
+        }
         // A sweep takes long to read where nothing is wrong with it.
         if (command.file.starts_with("sweep") && i != 2 && i != 4) {
           continue;
@@ -262,7 +268,7 @@ TEST_F(Refusals, OfValuesOfTheWrongKind) {
       }
     }
   }
-  EXPECT_GT(refusals, 3000);
+  EXPECT_GT(refusals, 1500);
 }
 
 // Each value is allowed; together they contradict each other.

@@ -299,6 +299,7 @@ const std::vector<Fault>& faults() {
          f.json["nodes"][0]["scale"] = {1, 1, 0};
        }},
       {"camera without an angle", "field of view", [](GltfFile& f) { give_camera(f, 0.0); }},
+      {"camera of one point", "above 1e-6 and below pi - 1e-6", [](GltfFile& f) { give_camera(f, 1e-6); }},
       {"camera that sees behind", "field of view", [](GltfFile& f) { give_camera(f, 4.0); }},
       {"missing camera", "camera 3", [](GltfFile& f) { f.json["nodes"][0]["camera"] = 3; }},
       {"compressed geometry", "KHR_draco_mesh_compression",

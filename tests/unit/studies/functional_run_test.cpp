@@ -3,6 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "scenes/procedural.h"
+
 namespace marti::studies {
 namespace {
 
@@ -28,6 +35,30 @@ TEST(FunctionalRun, SaysThatATreeWasCut) {
     EXPECT_LT(cut.frame.log->topology.nodes.size(), whole.frame.log->topology.nodes.size());
     EXPECT_EQ(cut.image_hash, whole.image_hash);
   }
+}
+
+// A light that no float holds makes pixels infinite; the image says how many.
+TEST(FunctionalRun, CountsPixelsThatAreNotFinite) {
+  const FrameConfig config = teapot("octree", std::uint64_t{1} << 25);
+  scenes::Scene scene = scenes::make_procedural(config.scene);
+  const auto notes_of = [&] {
+    const FunctionalRun run = run_functional(config, scene);
+    const auto infinite = std::count_if(
+        run.frame.image.pixels.begin(), run.frame.image.pixels.end(), [](const glm::vec3& pixel) {
+          return !(std::abs(pixel.x) < std::numeric_limits<float>::infinity() &&
+                   std::abs(pixel.y) < std::numeric_limits<float>::infinity() &&
+                   std::abs(pixel.z) < std::numeric_limits<float>::infinity());
+        });
+    EXPECT_EQ(run.notes.size() == 1 && run.notes[0].starts_with(std::to_string(infinite) + " of 64 pixels"),
+              infinite > 0);
+    return infinite;
+  };
+  EXPECT_EQ(notes_of(), 0);
+  ASSERT_FALSE(scene.lights.empty());
+  for (scenes::Light& light : scene.lights) {
+    light.color = glm::dvec3(1e200);
+  }
+  EXPECT_GT(notes_of(), 0);
 }
 
 }  // namespace

@@ -403,8 +403,8 @@ TEST(SweepPlan, PointsThatCannotBeBuiltMayBeLeftOut) {
   EXPECT_EQ(
       user_error_of(
           [] { (void)plan_of("[sweep]\nskip_invalid = true\n[sweep.axes]\ncache.line = [\"33 B\"]\n"); }),
-      "s.toml: no point of the sweep can be built; the first: s.toml:4: cache.line: must be a power of two, "
-      "not 33 bytes");
+      "s.toml:1: sweep: no point of the sweep can be built; the first: s.toml:4: cache.line: must be a power "
+      "of two, not 33 bytes");
 }
 
 // Parts of a file in any combination make a plan or one message that names the file.
