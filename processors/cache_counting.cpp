@@ -30,25 +30,6 @@ std::string_view key_of(const CountConfig& count) {
 
 }  // namespace
 
-void check_counting(const MachineConfig& config) {
-  if (!config.count.any()) {
-    return;
-  }
-  const std::string key(key_of(config.count));
-  if (config.scheme != Scheme::image) {
-    throw sim::KeyError(key, "[count] is for machine.scheme = \"image\" only");
-  }
-  if (config.build.sharing != Sharing::given) {
-    throw sim::KeyError(
-        key,
-        "[count] is for build.sharing = \"given\" only: nodes that build their tree are not counted in "
-        "detail");
-  }
-  if (config.count.miss_classes && config.cache.organisation == CacheOrganisation::none) {
-    throw sim::KeyError(key, "without a cache (cache.organisation) there is nothing to class");
-  }
-}
-
 CacheCounting::CacheCounting(const MachineConfig& config, std::uint64_t lines) {
   const std::vector<std::uint64_t> caches = lines_of_caches(config);
   // A bit for each line and node and what it is kept for, and a hashed line of a fully associative cache.

@@ -22,9 +22,6 @@ struct CacheCountResult {
   std::optional<std::vector<AttributionRow>> attribution{};
 };
 
-/// Throws UserError when the machine cannot count what it is asked to.
-void check_counting(const MachineConfig& config);
-
 class CacheCounting {
  public:
   /// `lines` is one past the last line of memory. Throws UserError when the host's memory that the counting

@@ -9,24 +9,12 @@
 #include <string_view>
 
 #include "accel/traversal.h"
+#include "processors/operation_cycles.h"
 #include "processors/program/work_log.h"
 
 namespace marti::processors {
 
 struct OperationMix;
-
-/// Cycles of one primitive operation. `load` and `store` are the issue of one word; waiting for memory is
-/// simulated, not priced here.
-struct OperationCycles {
-  std::int64_t add = 1;
-  std::int64_t multiply = 1;
-  std::int64_t divide = 1;
-  std::int64_t square_root = 1;
-  std::int64_t compare = 1;
-  std::int64_t integer = 1;
-  std::int64_t load = 1;
-  std::int64_t store = 1;
-};
 
 /// Words moved by one record of each kind, from the database layout: record bytes / word bytes, rounded up.
 struct RecordWords {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "processors/flow_replay.h"
+#include "processors/flow_parts.h"
 #include "processors/log_walker.h"
 #include "processors/observer.h"
 #include "sim/large_pages.h"

@@ -5,6 +5,7 @@
 
 #include "processors/bounds.h"
 #include "processors/observer.h"
+#include "processors/record_places.h"
 #include "processors/replay_parts.h"
 #include "sim/key_error.h"
 

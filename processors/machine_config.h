@@ -13,10 +13,10 @@
 #include "memory/network.h"
 #include "processors/build_config.h"
 #include "processors/context_config.h"
-#include "processors/cost_model.h"
 #include "processors/count_config.h"
 #include "processors/flow_config.h"
-#include "processors/host.h"
+#include "processors/host_config.h"
+#include "processors/operation_cycles.h"
 #include "processors/packets.h"
 #include "processors/second_level_config.h"
 #include "sim/time.h"
@@ -108,14 +108,24 @@ struct MachineConfig {
 /// The most nodes a machine may have; event keys and node tables are sized by it.
 inline constexpr std::uint32_t most_nodes = 1U << 24U;
 
-/// Host bytes that a replay of the machine takes for its nodes and their tags, roughly.
-[[nodiscard]] std::uint64_t host_bytes(const MachineConfig& config);
-
 /// The part of check() for contexts and prefetching.
 void check_contexts(const MachineConfig& config);
 
 /// check() for what only schemes other than image have; nothing with the image scheme.
 void check_flow(const MachineConfig& config);
+
+/// The second-level cache of `config` with the line that it has on this machine.
+[[nodiscard]] memory::CacheConfig second_level_cache(const MachineConfig& config);
+
+/// Throws UserError when the machine cannot have the second level that it asks for.
+void check_second_level(const MachineConfig& config);
+
+/// Throws UserError when the machine cannot count what it is asked to.
+void check_counting(const MachineConfig& config);
+
+/// Whether the memory system may say later than during the write when a write is done. It then does not
+/// serve its transactions in the order in which they are made.
+[[nodiscard]] bool writes_done_later(const MachineConfig& config);
 
 /// Throws UserError with the reason when the machine cannot be built.
 void check(const MachineConfig& config);

@@ -32,10 +32,4 @@ bool has_links(const MachineConfig& config) {
              : config.interconnect.kind != memory::InterconnectKind::ideal;
 }
 
-bool writes_done_later(const MachineConfig& config) {
-  return config.placement == Placement::distributed ||
-         (config.interconnect.kind == memory::InterconnectKind::bus &&
-          config.interconnect.arbitration != memory::Arbitration::fifo);
-}
-
 }  // namespace marti::processors

@@ -15,10 +15,6 @@ namespace marti::processors {
 [[nodiscard]] std::unique_ptr<memory::Interconnect> make_memory_system(const MachineConfig& config,
                                                                        const memory::InterconnectSite& site);
 
-/// Whether that memory system may say later than during the write when a write is done. It then does not
-/// serve its transactions in the order in which they are made.
-[[nodiscard]] bool writes_done_later(const MachineConfig& config);
-
 /// What make_memory_system gives to a distributed memory.
 [[nodiscard]] memory::DistributedConfig distributed_config(const MachineConfig& config);
 

@@ -8,6 +8,7 @@
 #include "memory/stack_distance.h"
 #include "processors/handed_out.h"
 #include "processors/log_walker.h"
+#include "processors/record_places.h"
 #include "processors/replay_parts.h"
 #include "sim/error.h"
 

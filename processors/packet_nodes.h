@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "processors/memory_system.h"
+#include "processors/machine_config.h"
 #include "processors/node_array.h"
 #include "processors/observer.h"
 #include "sim/large_pages.h"

@@ -10,6 +10,7 @@
 #include "processors/observer.h"
 #include "processors/packets.h"
 #include "processors/pipeline.h"
+#include "processors/record_places.h"
 #include "processors/replay_parts.h"
 #include "processors/space.h"
 #include "processors/stripped_log.h"

@@ -3,25 +3,15 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "memory/interconnect.h"
 #include "memory/layout.h"
 #include "processors/node_array.h"
 #include "processors/replay.h"
-#include "processors/tree_plan.h"
 #include "sim/engine.h"
 
 namespace marti::processors {
-
-/// Where the database's records lie; places what is built during the frame behind them. Throws UserError for
-/// a database too large for line numbers.
-[[nodiscard]] memory::Layout layout_of(const WorkLog& log, const MachineConfig& config,
-                                       std::optional<TreePlan>& plan);
-
-/// The record number of each tree node; empty when that is its own number.
-[[nodiscard]] std::vector<std::uint32_t> node_ranks(const WorkLog& log, const MachineConfig& config);
 
 /// Each cluster's shared memory.
 using Interconnects = std::vector<std::unique_ptr<memory::Interconnect>>;

@@ -15,12 +15,6 @@
 
 namespace marti::processors {
 
-/// The second-level cache of `config` with the line that it has on this machine.
-[[nodiscard]] memory::CacheConfig second_level_cache(const MachineConfig& config);
-
-/// Throws UserError when the machine cannot have the second level that it asks for.
-void check_second_level(const MachineConfig& config);
-
 /// The banks of a cluster, with the shared cache before them if the machine has one.
 [[nodiscard]] memory::BankConfig banks_of(const MachineConfig& config);
 

@@ -13,7 +13,7 @@
 #include "processors/log_walker.h"
 #include "processors/node_caches.h"
 #include "processors/packets.h"
-#include "processors/replay_parts.h"
+#include "processors/record_places.h"
 #include "sim/error.h"
 
 namespace marti::processors {

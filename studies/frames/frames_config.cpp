@@ -3,6 +3,7 @@
 #include <glm/vec3.hpp>
 #include <string>
 
+#include "processors/host_bytes.h"
 #include "processors/replay.h"
 #include "studies/build_keys.h"
 #include "studies/frames/frame_ways.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "processors/host_bytes.h"
 #include "sim/config_errors.h"
 #include "sim/shown.h"
 #include "sim/units.h"

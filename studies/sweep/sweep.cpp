@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "processors/host_bytes.h"
 #include "sim/error.h"
 #include "sim/files.h"
 #include "studies/output.h"

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "processors/host_bytes.h"
 #include "processors/replay.h"
 #include "processors/stripped_log.h"
 #include "studies/functional_run.h"

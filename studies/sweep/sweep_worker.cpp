@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "processors/host_bytes.h"
 #include "processors/replay.h"
 #include "scenes/open.h"
 #include "sim/config_errors.h"

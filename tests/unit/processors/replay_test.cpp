@@ -1,4 +1,5 @@
 // The timing world against closed forms, conservation laws and a second way of running it.
+#include "processors/host_bytes.h"
 #include "processors/replay.h"
 
 #include <gtest/gtest.h>

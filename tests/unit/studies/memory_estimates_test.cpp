@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "processors/host_bytes.h"
 #include "processors/machine_config.h"
 #include "processors/replay.h"
 #include "studies/run_result.h"
