@@ -23,10 +23,10 @@
 #include "memory/all_ways.h"
 #include "memory/stack_distance.h"
 #include "memory/tags.h"
+#include "processors/passes/reference_trace.h"
+#include "processors/passes/working_set.h"
 #include "processors/program/render.h"
-#include "processors/reference_trace.h"
-#include "processors/replay.h"
-#include "processors/working_set.h"
+#include "processors/replay/replay.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
 

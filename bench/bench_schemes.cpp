@@ -17,7 +17,7 @@
 #include "accel/structure.h"
 #include "bench/report.h"
 #include "processors/program/render.h"
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
 

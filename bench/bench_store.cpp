@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bench/report.h"
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "sim/config.h"
 #include "sim/error.h"
 #include "sim/files.h"

@@ -1,7 +1,7 @@
 // The configuration keys of how the tree is built.
 #pragma once
 
-#include "processors/build_config.h"
+#include "processors/machine/build_config.h"
 #include "sim/config.h"
 #include "sim/schema.h"
 

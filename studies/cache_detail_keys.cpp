@@ -2,9 +2,9 @@
 
 #include <limits>
 
-#include "processors/cache_counting.h"
-#include "processors/second_level.h"
-#include "processors/working_set.h"
+#include "processors/passes/working_set.h"
+#include "processors/walk/cache_counting.h"
+#include "processors/walk/second_level.h"
 #include "sim/config_errors.h"
 #include "studies/key_parts.h"
 

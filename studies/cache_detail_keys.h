@@ -1,7 +1,7 @@
 // The configuration keys of the second-level cache, and of what is counted about caches when asked.
 #pragma once
 
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "sim/config.h"
 #include "sim/schema.h"
 

@@ -4,8 +4,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "processors/machine_config.h"
-#include "processors/replay.h"
+#include "processors/machine/machine_config.h"
+#include "processors/replay/replay.h"
 
 namespace marti::studies {
 

@@ -5,8 +5,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "processors/machine_config.h"
-#include "processors/replay.h"
+#include "processors/machine/machine_config.h"
+#include "processors/replay/replay.h"
 #include "studies/results/table.h"
 
 namespace marti::studies {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "processors/stages.h"
+#include "processors/flow/pipeline/stages.h"
 
 namespace marti::studies {
 

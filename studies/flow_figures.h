@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 
 namespace marti::studies {
 

@@ -1,7 +1,7 @@
 // The configuration keys of the schemes in which rays move from node to node: messages and the pipeline.
 #pragma once
 
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "sim/config.h"
 #include "sim/schema.h"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "processors/bounds.h"
+#include "processors/replay/bounds.h"
 #include "sim/error.h"
 
 namespace marti::studies {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 
 namespace marti::studies {
 

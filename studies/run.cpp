@@ -1,7 +1,7 @@
 #include <string>
 #include <utility>
 
-#include "processors/host_bytes.h"
+#include "processors/replay/host_bytes.h"
 #include "sim/config_errors.h"
 #include "studies/key_parts.h"
 #include "studies/machine_keys.h"

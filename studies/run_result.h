@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "processors/bounds.h"
-#include "processors/machine_config.h"
-#include "processors/replay.h"
-#include "processors/working_set.h"
+#include "processors/machine/machine_config.h"
+#include "processors/passes/working_set.h"
+#include "processors/replay/bounds.h"
+#include "processors/replay/replay.h"
 #include "sim/config.h"
 #include "studies/functional_run.h"
 #include "studies/loss.h"

@@ -6,7 +6,7 @@
 #include <array>
 #include <numeric>
 
-#include "processors/memory_system.h"
+#include "processors/node/memory_system.h"
 #include "studies/flow_figures.h"
 
 namespace marti::studies {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 
 namespace marti::studies {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "accel/octree.h"
-#include "processors/packets.h"
+#include "processors/machine/packets.h"
 #include "sim/config_errors.h"
 #include "sim/error.h"
 #include "sim/units.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
 #include "sim/config.h"
 #include "studies/error/simulator_figures.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "processors/working_set.h"
+#include "processors/passes/working_set.h"
 #include "studies/results/table.h"
 
 namespace marti::studies {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "processors/host.h"
+#include "processors/node/host.h"
 #include "sim/time.h"
 
 namespace marti::studies {

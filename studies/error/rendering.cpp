@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "scenes/open.h"
 #include "sim/error.h"
 #include "studies/cpu_time.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "accel/structure.h"
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "processors/program/render.h"
 #include "scenes/scene.h"
 #include "studies/error/rendering_keys.h"

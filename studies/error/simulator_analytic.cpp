@@ -8,9 +8,9 @@
 #include <random>
 
 #include "memory/link.h"
-#include "processors/one_pass.h"
-#include "processors/replay.h"
-#include "processors/step_time.h"
+#include "processors/cost/step_time.h"
+#include "processors/passes/one_pass.h"
+#include "processors/replay/replay.h"
 #include "sim/key_error.h"
 
 namespace marti::studies {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "memory/cache_config.h"
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
 #include "studies/error/simulator_figures.h"
 

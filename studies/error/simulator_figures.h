@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "processors/machine_config.h"
-#include "processors/replay.h"
+#include "processors/machine/machine_config.h"
+#include "processors/replay/replay.h"
 
 namespace marti::studies {
 

@@ -3,8 +3,8 @@
 #include <limits>
 #include <memory>
 
-#include "processors/memory_system.h"
-#include "processors/replay.h"
+#include "processors/node/memory_system.h"
+#include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "studies/error/simulator_analytic.h"
 #include "studies/error/simulator_sample.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
 #include "studies/error/simulator_figures.h"
 #include "studies/error/simulator_interpolation.h"

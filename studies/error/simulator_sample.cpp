@@ -5,8 +5,8 @@
 #include <limits>
 #include <random>
 
-#include "processors/one_pass.h"
-#include "processors/replay.h"
+#include "processors/passes/one_pass.h"
+#include "processors/replay/replay.h"
 #include "studies/error/error_metrics.h"
 #include "studies/error/packet_schedule.h"
 

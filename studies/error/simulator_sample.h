@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
 #include "studies/error/simulator_figures.h"
 
@@ -47,7 +47,7 @@ inline constexpr std::uint64_t least_sampled_a_node = 2;
 
 struct SampleOptions {
   std::uint64_t one_in = 8;   ///< packets for each that is replayed, at least 1
-  std::uint64_t warm_up = 0;  ///< packets that warm the caches before each (processors/packet_sample.h)
+  std::uint64_t warm_up = 0;  ///< packets that warm the caches before each (processors/walk/packet_sample.h)
   std::uint64_t seed = 1;
 };
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "accel/octree_update.h"
-#include "processors/build_start.h"
+#include "processors/walk/build_start.h"
 
 namespace marti::studies {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "accel/octree_update.h"
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 
 namespace marti::studies {
 

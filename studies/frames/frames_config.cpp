@@ -3,8 +3,8 @@
 #include <glm/vec3.hpp>
 #include <string>
 
-#include "processors/host_bytes.h"
-#include "processors/replay.h"
+#include "processors/replay/host_bytes.h"
+#include "processors/replay/replay.h"
 #include "studies/build_keys.h"
 #include "studies/frames/frame_ways.h"
 #include "studies/machine_keys.h"

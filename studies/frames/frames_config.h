@@ -1,7 +1,7 @@
 // The configuration of `marti study frames`: the keys of a run.
 #pragma once
 
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "sim/config.h"
 #include "studies/frame_keys.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "processors/operation_mix.h"
+#include "processors/cost/operation_mix.h"
 #include "sim/config.h"
 #include "studies/operations/unit_length.h"
 #include "studies/results/study_files.h"

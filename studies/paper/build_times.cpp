@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 
 namespace marti::studies {
 

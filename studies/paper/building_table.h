@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "processors/accounting.h"
+#include "processors/cost/accounting.h"
 #include "sim/time.h"
 #include "studies/paper/level_counts.h"
 #include "studies/paper/paper_keys.h"

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <optional>
 
-#include "processors/operation_mix.h"
+#include "processors/cost/operation_mix.h"
 #include "sim/error.h"
 
 namespace marti::studies {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "memory/layout.h"
-#include "processors/accounting.h"
+#include "processors/cost/accounting.h"
 #include "studies/paper/traced_run.h"
 #include "studies/results/table.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "processors/memory_system.h"
+#include "processors/node/memory_system.h"
 #include "sim/shown.h"
 #include "studies/machine_keys.h"
 #include "studies/run_result.h"

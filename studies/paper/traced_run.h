@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "processors/program/work_log.h"
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "studies/paper/level_counts.h"
 #include "studies/paper/paper_keys.h"
 

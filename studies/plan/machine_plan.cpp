@@ -5,8 +5,9 @@
 
 #include "memory/layout.h"
 #include "memory/line_set.h"
-#include "processors/left_out.h"
-#include "processors/replay_parts.h"
+#include "processors/replay/replay_parts.h"
+#include "processors/walk/left_out.h"
+#include "processors/walk/record_places.h"
 #include "sim/units.h"
 #include "studies/text_units.h"
 

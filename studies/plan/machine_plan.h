@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "studies/plan/plan.h"
 
 namespace marti::studies {

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "processors/observer.h"
 #include "processors/program/image.h"
+#include "processors/walk/observer.h"
 
 namespace marti::studies {
 

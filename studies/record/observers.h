@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "processors/observer.h"
+#include "processors/walk/observer.h"
 
 namespace marti::studies {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "processors/observer.h"
+#include "processors/walk/observer.h"
 #include "studies/record/text_stream.h"
 
 namespace marti::studies {

@@ -1,6 +1,6 @@
 #include "studies/report/cycle_groups.h"
 
-#include "processors/accounting.h"
+#include "processors/cost/accounting.h"
 
 namespace marti::studies {
 

@@ -20,8 +20,8 @@ inline constexpr std::array<std::string_view, cycle_groups> cycle_group_names = 
                                                                                  "other_waits",
                                                                                  "idle"};
 
-/// `of_activity` gives the time of an activity by its name (processors/accounting.h). The parts' sum is the
-/// sum of all activities.
+/// `of_activity` gives the time of an activity by its name (processors/cost/accounting.h). The parts' sum is
+/// the sum of all activities.
 [[nodiscard]] std::array<double, cycle_groups> group_cycles(
     const std::function<double(std::string_view)>& of_activity);
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "processors/closed_network.h"
+#include "processors/theory/closed_network.h"
 #include "sim/error.h"
 #include "studies/report/rounded.h"
 

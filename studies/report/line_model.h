@@ -27,9 +27,9 @@ struct PointCounters {
   double bank_busy = 0.0;  ///< of all banks
 };
 
-/// The frame of such a machine by mean value analysis (processors/closed_network.h), ps: `customers` nodes of
-/// a cluster go round between computing, links and banks. Without reads there is no queue. Needs work above
-/// 0.
+/// The frame of such a machine by mean value analysis (processors/theory/closed_network.h), ps: `customers`
+/// nodes of a cluster go round between computing, links and banks. Without reads there is no queue. Needs
+/// work above 0.
 [[nodiscard]] double closed_network_end(const PointCounters& counters);
 
 /// No frame is shorter: the work shared by all nodes, the busiest link, the busiest bank.

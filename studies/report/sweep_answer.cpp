@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "processors/accounting.h"
+#include "processors/cost/accounting.h"
 #include "studies/report/answer_text.h"
 #include "studies/scaling.h"
 #include "studies/sweep/sweep_best.h"

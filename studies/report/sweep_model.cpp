@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "processors/accounting.h"
+#include "processors/cost/accounting.h"
 #include "sim/schema.h"
 #include "studies/report/rounded.h"
 #include "studies/sweep/sweep_keys.h"

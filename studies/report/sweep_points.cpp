@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "processors/accounting.h"
+#include "processors/cost/accounting.h"
 #include "sim/error.h"
 #include "sim/schema.h"
 #include "studies/report/axis_order.h"

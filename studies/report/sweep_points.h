@@ -12,8 +12,8 @@
 
 #include "memory/interconnect.h"
 #include "memory/network.h"
-#include "processors/build_config.h"
-#include "processors/machine_config.h"
+#include "processors/machine/build_config.h"
+#include "processors/machine/machine_config.h"
 #include "studies/results/table.h"
 
 namespace marti::studies {

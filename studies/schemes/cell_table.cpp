@@ -1,6 +1,6 @@
 #include "studies/schemes/cell_table.h"
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "sim/statistics.h"
 #include "studies/functional_run.h"
 

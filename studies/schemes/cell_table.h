@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "processors/accounting.h"
+#include "processors/cost/accounting.h"
 #include "studies/results/table.h"
 #include "studies/schemes/schemes_keys.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "processors/program/work_log.h"
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "studies/results/table.h"
 #include "studies/scaling.h"
 #include "studies/schemes/schemes_keys.h"

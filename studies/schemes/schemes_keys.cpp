@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "processors/host_bytes.h"
+#include "processors/replay/host_bytes.h"
 #include "sim/config_errors.h"
 #include "sim/shown.h"
 #include "sim/units.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "sim/config.h"
 #include "sim/schema.h"
 #include "studies/frame_keys.h"

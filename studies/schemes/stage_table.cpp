@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "studies/flow_figures.h"
 
 namespace marti::studies {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "processors/flow/pipeline/stages.h"
 #include "processors/program/work_log.h"
-#include "processors/stages.h"
 #include "studies/results/table.h"
 #include "studies/schemes/schemes_keys.h"
 

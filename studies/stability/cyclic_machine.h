@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "processors/machine_config.h"
+#include "processors/cost/step_time.h"
+#include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
-#include "processors/step_time.h"
 #include "sim/time.h"
 
 namespace marti::studies {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "processors/machine_config.h"
-#include "processors/replay.h"
+#include "processors/machine/machine_config.h"
+#include "processors/replay/replay.h"
 #include "studies/stability/stability_case.h"
 
 namespace marti::studies {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "processors/bounds.h"
+#include "processors/replay/bounds.h"
 #include "sim/error.h"
 #include "studies/stability/machines.h"
 

@@ -9,8 +9,8 @@
 
 #include "memory/bank.h"
 #include "memory/network.h"
-#include "processors/bounds.h"
-#include "processors/closed_network.h"
+#include "processors/replay/bounds.h"
+#include "processors/theory/closed_network.h"
 #include "studies/stability/cyclic_machine.h"
 #include "studies/stability/hostile.h"
 #include "studies/stability/machines.h"

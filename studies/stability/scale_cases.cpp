@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "processors/bounds.h"
-#include "processors/step_time.h"
+#include "processors/cost/step_time.h"
+#include "processors/replay/bounds.h"
 #include "studies/output.h"
 #include "studies/run_result.h"
 #include "studies/stability/machines.h"

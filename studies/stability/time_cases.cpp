@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "processors/bounds.h"
-#include "processors/step_time.h"
+#include "processors/cost/step_time.h"
+#include "processors/replay/bounds.h"
 #include "studies/stability/machines.h"
 
 namespace marti::studies {

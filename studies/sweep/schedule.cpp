@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "processors/stripped_log.h"
+#include "processors/walk/stripped_log.h"
 #include "sim/error.h"
 
 namespace marti::studies {

@@ -22,7 +22,7 @@ struct SweepTask {
   Kind kind = Kind::end;
   std::size_t frame = 0;
   std::vector<std::size_t> machines;  ///< indices into SweepPlan::machines
-  /// How many machines share these machines' stripped log (processors/stripped_log.h) in this sweep.
+  /// How many machines share these machines' stripped log (processors/walk/stripped_log.h) in this sweep.
   std::size_t sharing = 0;
 };
 

@@ -1,6 +1,6 @@
 #include "studies/sweep/store_columns.h"
 
-#include "processors/accounting.h"
+#include "processors/cost/accounting.h"
 #include "studies/results/sqlite_connection.h"
 #include "studies/sweep/sweep_row.h"
 

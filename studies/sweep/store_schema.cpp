@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "processors/accounting.h"
+#include "processors/cost/accounting.h"
 #include "sim/error.h"
 #include "sim/statistics.h"
 #include "studies/program_build.h"

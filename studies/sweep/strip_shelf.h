@@ -8,7 +8,7 @@
 #include <mutex>
 #include <string>
 
-#include "processors/stripped_log.h"
+#include "processors/walk/stripped_log.h"
 
 namespace marti::studies {
 

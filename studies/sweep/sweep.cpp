@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "processors/host_bytes.h"
+#include "processors/replay/host_bytes.h"
 #include "sim/error.h"
 #include "sim/files.h"
 #include "studies/output.h"

@@ -1,7 +1,7 @@
 // What a machine costs.
 #pragma once
 
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 
 namespace marti::studies {
 

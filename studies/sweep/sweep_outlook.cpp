@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
-#include "processors/host_bytes.h"
-#include "processors/replay.h"
-#include "processors/stripped_log.h"
+#include "processors/replay/host_bytes.h"
+#include "processors/replay/replay.h"
+#include "processors/walk/stripped_log.h"
 #include "studies/functional_run.h"
 #include "studies/sweep/strip_shelf.h"
 

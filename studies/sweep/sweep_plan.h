@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "sim/config.h"
 #include "studies/frame_keys.h"
 #include "studies/sweep/shared_settings.h"

@@ -4,8 +4,8 @@
 #include <array>
 
 #include "memory/wait_statistics.h"
-#include "processors/accounting.h"
-#include "processors/attribution.h"
+#include "processors/cost/accounting.h"
+#include "processors/walk/attribution.h"
 #include "studies/sweep/row_parts.h"
 
 namespace marti::studies {

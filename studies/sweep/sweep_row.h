@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "processors/machine_config.h"
-#include "processors/replay.h"
+#include "processors/machine/machine_config.h"
+#include "processors/replay/replay.h"
 #include "studies/functional_run.h"
 #include "studies/results/table.h"
 

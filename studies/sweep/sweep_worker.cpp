@@ -8,8 +8,8 @@
 #include <thread>
 #include <vector>
 
-#include "processors/host_bytes.h"
-#include "processors/replay.h"
+#include "processors/replay/host_bytes.h"
+#include "processors/replay/replay.h"
 #include "scenes/open.h"
 #include "sim/config_errors.h"
 #include "sim/error.h"

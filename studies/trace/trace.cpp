@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "processors/reference_trace.h"
-#include "processors/replay.h"
+#include "processors/passes/reference_trace.h"
+#include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "sim/units.h"
 #include "studies/functional_run.h"

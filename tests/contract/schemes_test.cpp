@@ -6,7 +6,7 @@
 #include <ostream>
 
 #include "processors/program/ray_tree.h"
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "tests/support/equal_results.h"
 #include "tests/support/logged_samples.h"

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "sim/statistics.h"
 
 namespace marti::test {

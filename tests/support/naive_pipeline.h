@@ -12,12 +12,12 @@
 
 #include "memory/layout.h"
 #include "memory/network.h"
-#include "processors/flow_result.h"
-#include "processors/node_order.h"
-#include "processors/packets.h"
+#include "processors/cost/step_time.h"
+#include "processors/flow/flow_result.h"
+#include "processors/flow/pipeline/stages.h"
+#include "processors/machine/packets.h"
 #include "processors/program/ray_tree.h"
-#include "processors/stages.h"
-#include "processors/step_time.h"
+#include "processors/walk/node_order.h"
 #include "tests/support/logged_samples.h"
 
 namespace marti::test {

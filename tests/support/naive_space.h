@@ -15,13 +15,13 @@
 
 #include "memory/cache.h"
 #include "memory/network.h"
-#include "processors/node_caches.h"
-#include "processors/node_order.h"
+#include "processors/cost/step_time.h"
+#include "processors/flow/space/space_plan.h"
 #include "processors/program/ray_tree.h"
-#include "processors/replay.h"
-#include "processors/space.h"
-#include "processors/space_plan.h"
-#include "processors/step_time.h"
+#include "processors/replay/replay.h"
+#include "processors/replay/space.h"
+#include "processors/walk/node_caches.h"
+#include "processors/walk/node_order.h"
 #include "tests/support/logged_samples.h"
 
 namespace marti::test {

@@ -9,9 +9,9 @@
 #include <set>
 #include <vector>
 
-#include "processors/build_start.h"
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
+#include "processors/walk/build_start.h"
 
 namespace marti::test {
 

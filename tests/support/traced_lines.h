@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "memory/layout.h"
-#include "processors/machine_config.h"
-#include "processors/node_order.h"
-#include "processors/packets.h"
+#include "processors/machine/machine_config.h"
+#include "processors/machine/packets.h"
 #include "processors/program/work_log.h"
+#include "processors/walk/node_order.h"
 
 namespace marti::test {
 

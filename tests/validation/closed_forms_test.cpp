@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "memory/bus.h"
-#include "processors/bounds.h"
-#include "processors/closed_network.h"
-#include "processors/replay.h"
+#include "processors/replay/bounds.h"
+#include "processors/replay/replay.h"
+#include "processors/theory/closed_network.h"
 #include "sim/engine.h"
 #include "studies/stability/cyclic_machine.h"
 

@@ -5,7 +5,7 @@
 #include <deque>
 #include <string>
 
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
 
 namespace marti::oracle {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "tests/validation/systemc/difference.h"
 #include "tests/validation/systemc/simulate.h"

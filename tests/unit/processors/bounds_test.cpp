@@ -1,5 +1,5 @@
 // Closed networks against a second way to solve them; bounds of timed frames.
-#include "processors/bounds.h"
+#include "processors/replay/bounds.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,5 +1,5 @@
 // What splitting a node costs, against a new measurement; and real frames on machines that build their tree.
-#include "processors/build_mix.h"
+#include "processors/cost/build_mix.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <set>
 
 #include "accel/octree.h"
-#include "processors/branch_lists.h"
-#include "processors/replay.h"
+#include "processors/node/branch_lists.h"
+#include "processors/replay/replay.h"
 #include "program_scenes.h"
 #include "scenes/procedural.h"
 

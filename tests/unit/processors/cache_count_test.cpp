@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "memory/cache.h"
-#include "processors/node_caches.h"
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
+#include "processors/walk/node_caches.h"
 #include "sim/error.h"
 #include "tests/support/random_machine.h"
 #include "tests/support/traced_lines.h"

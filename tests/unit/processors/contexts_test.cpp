@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "processors/observer.h"
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
+#include "processors/walk/observer.h"
 #include "sim/error.h"
 #include "tests/support/random_machine.h"
 #include "tests/unit/processors/naive_contexts.h"

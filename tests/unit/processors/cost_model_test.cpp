@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "processors/cost_model.h"
-#include "processors/operation_mix.h"
+#include "processors/cost/cost_model.h"
+#include "processors/cost/operation_mix.h"
 #include "program_scenes.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"

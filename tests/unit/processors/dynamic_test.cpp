@@ -6,10 +6,10 @@
 #include <array>
 #include <set>
 
-#include "processors/build_mix.h"
-#include "processors/memory_system.h"
-#include "processors/replay.h"
-#include "processors/step_time.h"
+#include "processors/cost/build_mix.h"
+#include "processors/cost/step_time.h"
+#include "processors/node/memory_system.h"
+#include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "tests/support/equal_results.h"
 #include "tests/support/random_machine.h"

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "tests/support/equal_results.h"
 #include "tests/support/random_machine.h"

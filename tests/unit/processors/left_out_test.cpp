@@ -1,5 +1,5 @@
 // What a replay leaves out changes nothing: against the same replay with everything kept.
-#include "processors/left_out.h"
+#include "processors/walk/left_out.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -8,7 +8,7 @@
 
 #include "memory/line_set.h"
 #include "memory/tags.h"
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "tests/support/equal_results.h"
 #include "tests/support/random_machine.h"
 

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "processors/memory_system.h"
-#include "processors/replay.h"
+#include "processors/node/memory_system.h"
+#include "processors/replay/replay.h"
 #include "tests/unit/processors/naive_program.h"
 
 namespace marti::test {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "memory/layout.h"
-#include "processors/machine_config.h"
+#include "processors/cost/step_time.h"
+#include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
-#include "processors/step_time.h"
 
 namespace marti::test {
 

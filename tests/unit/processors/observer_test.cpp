@@ -1,12 +1,12 @@
 // Watching a replay: everything is told once, and nothing changes.
-#include "processors/observer.h"
+#include "processors/walk/observer.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <map>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "tests/support/random_flow.h"
 #include "tests/support/random_machine.h"
 

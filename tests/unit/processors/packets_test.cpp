@@ -1,12 +1,12 @@
-#include "processors/packets.h"
+#include "processors/machine/packets.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <vector>
 
-#include "processors/host.h"
-#include "processors/node_order.h"
+#include "processors/node/host.h"
+#include "processors/walk/node_order.h"
 #include "sim/error.h"
 #include "tests/support/random_machine.h"
 

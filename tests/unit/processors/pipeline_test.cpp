@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "processors/load_order.h"
-#include "processors/replay.h"
-#include "processors/stages.h"
+#include "processors/flow/load_order.h"
+#include "processors/flow/pipeline/stages.h"
+#include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "tests/support/naive_pipeline.h"
 #include "tests/support/random_flow.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "processors/program/sample_points.h"
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
 #include "tests/support/logged_samples.h"

@@ -1,5 +1,5 @@
 // A second cache simulator, fed with a node's references, finds the same hits and misses.
-#include "processors/reference_trace.h"
+#include "processors/passes/reference_trace.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -7,7 +7,7 @@
 #include <list>
 #include <map>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {

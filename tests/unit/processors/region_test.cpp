@@ -7,9 +7,9 @@
 #include <set>
 
 #include "memory/layout.h"
-#include "processors/region_policy.h"
-#include "processors/region_work.h"
-#include "processors/space_plan.h"
+#include "processors/flow/space/region_policy.h"
+#include "processors/flow/space/region_work.h"
+#include "processors/flow/space/space_plan.h"
 #include "sim/error.h"
 #include "tests/support/random_machine.h"
 

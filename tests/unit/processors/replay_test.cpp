@@ -1,6 +1,6 @@
 // The timing world against closed forms, conservation laws and a second way of running it.
-#include "processors/host_bytes.h"
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
+#include "processors/replay/host_bytes.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -11,8 +11,8 @@
 #include <set>
 
 #include "memory/layout.h"
-#include "processors/step_time.h"
-#include "processors/stripped_log.h"
+#include "processors/cost/step_time.h"
+#include "processors/walk/stripped_log.h"
 #include "sim/error.h"
 #include "tests/support/equal_results.h"
 #include "tests/support/random_machine.h"

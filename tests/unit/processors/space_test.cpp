@@ -1,12 +1,12 @@
 // The space scheme against a second model, by hand, and against laws.
-#include "processors/space.h"
+#include "processors/replay/space.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
 
-#include "processors/step_time.h"
+#include "processors/cost/step_time.h"
 #include "sim/error.h"
 #include "tests/support/logged_samples.h"
 #include "tests/support/naive_space.h"

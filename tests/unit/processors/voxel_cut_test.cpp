@@ -12,7 +12,7 @@
 #include "processors/program/recorder.h"
 #include "processors/program/tracer.h"
 #include "processors/program/voxel_average.h"
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "program_scenes.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"

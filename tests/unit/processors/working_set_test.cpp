@@ -1,5 +1,5 @@
 // One pass over the references of a replay against machines with other caches.
-#include "processors/working_set.h"
+#include "processors/passes/working_set.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "memory/cache.h"
-#include "processors/node_caches.h"
-#include "processors/reference_trace.h"
-#include "processors/replay.h"
+#include "processors/passes/reference_trace.h"
+#include "processors/replay/replay.h"
+#include "processors/walk/node_caches.h"
 #include "sim/error.h"
 #include "tests/support/random_machine.h"
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "processors/build_start.h"
 #include "processors/program/render.h"
+#include "processors/walk/build_start.h"
 #include "scenes/animated.h"
 #include "scenes/procedural.h"
 #include "studies/frames/frame_sequence.h"

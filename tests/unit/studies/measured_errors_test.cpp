@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "studies/error/simulator_errors.h"
 #include "studies/error/simulator_methods.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "processors/host_bytes.h"
-#include "processors/machine_config.h"
-#include "processors/replay.h"
+#include "processors/machine/machine_config.h"
+#include "processors/replay/host_bytes.h"
+#include "processors/replay/replay.h"
 #include "studies/run_result.h"
 #include "studies/sweep/sweep_keys.h"
 #include "studies/sweep/sweep_plan.h"

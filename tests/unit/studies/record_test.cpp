@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "studies/record/colour_scale.h"
 #include "studies/record/heat_files.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "processors/closed_network.h"
+#include "processors/theory/closed_network.h"
 #include "studies/report/line_model.h"
 #include "studies/report/sweep_model.h"
 

@@ -9,8 +9,8 @@
 #include <numeric>
 #include <random>
 
-#include "processors/one_pass.h"
-#include "processors/replay.h"
+#include "processors/passes/one_pass.h"
+#include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "studies/error/error_metrics.h"
 #include "studies/error/packet_schedule.h"

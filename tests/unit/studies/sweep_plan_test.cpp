@@ -11,7 +11,7 @@
 #include <map>
 #include <set>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "scenes/gltf_export.h"
 #include "scenes/procedural.h"
 #include "scenes/tessellate.h"

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "tests/support/random_flow.h"
 #include "tests/support/random_machine.h"

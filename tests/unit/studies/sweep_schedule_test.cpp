@@ -12,7 +12,7 @@
 #include <set>
 #include <vector>
 
-#include "processors/stripped_log.h"
+#include "processors/walk/stripped_log.h"
 #include "sim/error.h"
 
 namespace marti::studies {

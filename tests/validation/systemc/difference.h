@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "processors/replay.h"
+#include "processors/replay/replay.h"
 #include "tests/validation/systemc/machine.h"
 
 namespace marti::oracle {

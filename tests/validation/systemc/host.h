@@ -7,7 +7,7 @@
 #include <systemc>
 #include <vector>
 
-#include "processors/host.h"
+#include "processors/node/host.h"
 #include "tests/validation/systemc/instant.h"
 
 namespace marti::oracle {

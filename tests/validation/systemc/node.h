@@ -10,8 +10,8 @@
 
 #include <tlm_utils/simple_initiator_socket.h>
 
-#include "processors/accounting.h"
-#include "processors/machine_config.h"
+#include "processors/cost/accounting.h"
+#include "processors/machine/machine_config.h"
 #include "tests/validation/systemc/cache.h"
 #include "tests/validation/systemc/host.h"
 #include "tests/validation/systemc/instant.h"

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "memory/record_kind.h"
-#include "processors/accounting.h"
+#include "processors/cost/accounting.h"
+#include "processors/cost/step_time.h"
 #include "processors/program/work_log.h"
-#include "processors/step_time.h"
 #include "tests/validation/systemc/database.h"
 #include "tests/validation/systemc/host.h"
 #include "tests/validation/systemc/instant.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "processors/machine_config.h"
+#include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
 #include "tests/validation/systemc/machine.h"
 

@@ -1,0 +1,68 @@
+// How many arithmetic operations it takes to split a node of the tree, and what they cost. As for the steps
+// of the log (operation_mix.h) the table is not guessed: it is what the octree's sorting of triangles into
+// children (accel/octree_sort.h) executes when it is run with a scalar that counts, and a test counts again.
+#pragma once
+
+#include <cstdint>
+
+#include "processors/cost/cost_model.h"
+#include "processors/cost/operation_mix.h"
+#include "processors/machine/machine_config.h"
+#include "sim/time.h"
+
+namespace marti::accel {
+class Octree;
+}  // namespace marti::accel
+
+namespace marti::processors {
+
+/// Means in thousandths of an operation:
+///   listed   one listed primitive against the middle planes: its bounding box, and which children it can
+///   meet overlap  one triangle against box test child    the planes and boxes of one child
+struct BuildMixes {
+  OperationMix listed;
+  OperationMix overlap;
+  OperationMix child;
+};
+
+/// The table that build_cycles prices. Measured on teapot:12 in an octree (max_objects 9, max_level 12). A
+/// bsp tree's node is priced by it too: it tests the same triangles against boxes made in the same way.
+[[nodiscard]] const BuildMixes& build_mixes();
+
+/// What a measurement saw: the means, and how many they are means of.
+struct MeasuredBuild {
+  BuildMixes mixes;
+  std::uint64_t listed = 0;
+  std::uint64_t overlaps = 0;
+  std::uint64_t children = 0;
+};
+
+/// Splits every branch of the tree once more, with the counting scalar. The operations of `listed` are those
+/// of the primitives that need no overlap test; what the others take beyond that is divided among their
+/// tests, so that the means multiply to the operations counted.
+[[nodiscard]] MeasuredBuild measure_build_mixes(const accel::Octree& octree);
+
+/// Compute cycles of the parts of a split. Fetching a record's words and storing them is in them, waiting for
+/// memory is not.
+struct BuildCycles {
+  std::int64_t lock = 0;     ///< an integer operation, a load and a store
+  std::int64_t listed = 0;   ///< one entry of the node's list: fetch its id and primitive, classify it
+  std::int64_t overlap = 0;  ///< one overlap test
+  std::int64_t child = 0;    ///< make a child and store its record
+  std::int64_t entry = 0;    ///< store one entry of a child's list
+  std::int64_t publish = 0;  ///< store the node's own record
+};
+[[nodiscard]] BuildCycles build_cycles(const OperationCycles& cycles, const RecordWords& words);
+
+/// The same in ticks of one machine.
+struct BuildTicks {
+  sim::Ticks lock = 0;
+  sim::Ticks listed = 0;
+  sim::Ticks overlap = 0;
+  sim::Ticks child = 0;
+  sim::Ticks entry = 0;
+  sim::Ticks publish = 0;
+};
+[[nodiscard]] BuildTicks build_ticks(const MachineConfig& config);
+
+}  // namespace marti::processors

@@ -1,0 +1,129 @@
+#include "processors/cost/cost_model.h"
+
+#include <limits>
+
+#include "processors/cost/operation_mix.h"
+#include "sim/error.h"
+#include "sim/time.h"
+
+namespace marti::processors {
+
+namespace {
+
+struct Preset {
+  std::string_view name;
+  OperationCycles cycles;
+};
+
+constexpr std::array<std::string_view, 3> names{"unit", "mc68882", "modern"};
+
+constexpr std::array<Preset, 3> presets{{
+    // Every operation one cycle: for arguments about counts, and for tests.
+    {"unit",
+     {.add = 1,
+      .multiply = 1,
+      .divide = 1,
+      .square_root = 1,
+      .compare = 1,
+      .integer = 1,
+      .load = 1,
+      .store = 1}},
+    // A workstation node of 1990: MC68030 with MC68882 on one clock (33 MHz class). Floating point: the
+    // register-to-register totals as commonly quoted from section 8 of Motorola's MC68881/MC68882
+    // Floating-Point Coprocessor User's Manual (2nd ed., 1989): FADD 56, FMUL 76, FDIV 108, FSQRT 110,
+    // FCMP 38. By that section's assumptions they include the coprocessor dialogue of a processor on the same
+    // clock, without wait states and with the coprocessor idle before: no overlap of one instruction's end
+    // with the next one's start, which the MC68882 has (its manual gives heads and tails for it). The
+    // tables themselves were not at hand; other models quote the same totals, but for FCMP, which one
+    // of them has with FADD at 56. The other three are conventions, not figures: 4 cycles for an integer
+    // instruction, 6 to issue the load of a long word and 4 for a store.
+    {"mc68882",
+     {.add = 56,
+      .multiply = 76,
+      .divide = 108,
+      .square_root = 110,
+      .compare = 38,
+      .integer = 4,
+      .load = 6,
+      .store = 4}},
+    // An in-order scalar core with a pipelined double-precision unit whose every operation waits for the
+    // one before: the latencies of the ARM11's VFP11 (ARM1176JZF-S Technical Reference Manual, ARM DDI
+    // 0301H, table 21-16: FADD 8, FMUL 9, FDIV and FSQRT 33, FCMP 4). Integer operations, loads and stores
+    // are issued one a cycle.
+    {"modern",
+     {.add = 8,
+      .multiply = 9,
+      .divide = 33,
+      .square_root = 33,
+      .compare = 4,
+      .integer = 1,
+      .load = 1,
+      .store = 1}},
+}};
+
+/// Reading one record: an integer operation for its address, then its words.
+std::int64_t read_record(const OperationCycles& cycles, std::int64_t words) {
+  return sim::add_ticks(cycles.integer, sim::multiply_ticks(cycles.load, words));
+}
+
+}  // namespace
+
+std::int64_t price(const OperationMix& mix, const OperationCycles& cycles, std::int64_t fixed) {
+  // Prices may be anything that fits 64 bits; six of them times their counts then fit 128.
+  __extension__ using Wide = __int128;
+  const auto times = [](std::int64_t count, std::int64_t price) { return static_cast<Wide>(count) * price; };
+  const Wide thousandths = times(mix.add, cycles.add) + times(mix.multiply, cycles.multiply) +
+                           times(mix.divide, cycles.divide) + times(mix.square_root, cycles.square_root) +
+                           times(mix.compare, cycles.compare) + times(mix.integer, cycles.integer);
+  const Wide whole = (thousandths + 500) / 1000;
+  if (whole > std::numeric_limits<std::int64_t>::max()) {
+    sim::fail_time_overflow();
+  }
+  return sim::add_ticks(static_cast<std::int64_t>(whole), fixed);
+}
+
+std::span<const std::string_view> cost_presets() { return names; }
+
+OperationCycles cost_preset(std::string_view name) {
+  std::string known;
+  for (const Preset& preset : presets) {
+    if (preset.name == name) {
+      return preset.cycles;
+    }
+    known += (known.empty() ? "" : ", ") + std::string(preset.name);
+  }
+  throw sim::UserError("there is no cost preset \"" + std::string(name) + "\"; there are: " + known);
+}
+
+StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words, accel::Traversal traversal,
+                       bool mailboxes) {
+  const OperationMixes& mixes = operation_mixes(traversal);
+  StepCycles steps;
+  for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
+    steps.ray[kind] = price(mixes.ray[kind], cycles, 0);
+  }
+  steps.branch = price(mixes.branch, cycles, read_record(cycles, words.node));
+  steps.leaf = price(mixes.leaf, cycles, read_record(cycles, words.node));
+  const std::int64_t entry = read_record(cycles, words.entry);
+  const std::int64_t primitive = read_record(cycles, words.primitive);
+  const std::int64_t quadric = read_record(cycles, words.quadric);
+  // With mailboxes the entry is fetched to look its mailbox up, and a test leaves the ray's number there.
+  if (mailboxes) {
+    steps.lookup = price(mixes.lookup, cycles, sim::add_ticks(entry, read_record(cycles, 1)));
+  }
+  const std::int64_t beside = mailboxes ? cycles.store : entry;
+  steps.test = price(mixes.test, cycles, sim::add_ticks(beside, primitive));
+  steps.sphere_test = price(mixes.sphere_test, cycles, sim::add_ticks(beside, quadric));
+  steps.cone_test = price(mixes.cone_test, cycles, sim::add_ticks(beside, quadric));
+  // The nearest primitive and the lights are in the node's registers or local store.
+  steps.shade = price(mixes.shade, cycles, read_record(cycles, words.material));
+  steps.light = price(mixes.light, cycles, 0);
+  steps.texel = price(mixes.texel, cycles, read_record(cycles, words.texel));
+  steps.cut = price(mixes.cut, cycles, read_record(cycles, words.node));
+  steps.pass = price(mixes.cut, cycles, read_record(cycles, words.material));
+  steps.pixel = price(mixes.pixel, cycles,
+                      sim::add_ticks(cycles.integer, sim::multiply_ticks(cycles.store, words.pixel)));
+  return steps;
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,64 @@
+// From operations to cycles: what each kind of step costs a processor node in compute time. References
+// to memory are not part of it; the node adds them from the database layout.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "accel/traversal.h"
+#include "processors/machine/operation_cycles.h"
+#include "processors/program/work_log.h"
+
+namespace marti::processors {
+
+struct OperationMix;
+
+/// Words moved by one record of each kind, from the database layout: record bytes / word bytes, rounded up.
+struct RecordWords {
+  std::int64_t node = 2;
+  std::int64_t entry = 1;
+  std::int64_t primitive = 12;
+  std::int64_t quadric = 10;
+  std::int64_t material = 16;
+  std::int64_t texel = 1;
+  std::int64_t pixel = 1;
+};
+
+/// Whole compute cycles of each kind of step.
+struct StepCycles {
+  std::array<std::int64_t, ray_kinds> ray{};  ///< setting up a ray of each RayKind and its traversal
+  std::int64_t branch = 0;                    ///< reading a branch and ordering its children
+  std::int64_t leaf = 0;                      ///< reading a leaf, without its tests
+  std::int64_t lookup = 0;  ///< with mailboxes, one entry of a leaf's list: fetch its id, look at its mailbox
+  std::int64_t test = 0;    ///< one test: fetch the entry's id, unless it was looked up, and the triangle,
+                            ///< test it, and with mailboxes leave the ray's number
+  std::int64_t sphere_test = 0;  ///< the same of a sphere
+  std::int64_t cone_test = 0;    ///< the same of a cylinder or cone
+  std::int64_t shade = 0;
+  std::int64_t light = 0;
+  std::int64_t texel = 0;
+  std::int64_t cut = 0;    ///< reading a node and finding that it is small and enough of it covered
+  std::int64_t pass = 0;   ///< reading an averaged material and finding that too little is covered
+  std::int64_t pixel = 0;  ///< converting and storing one finished pixel
+};
+
+/// Names of the presets, for the configuration reference.
+[[nodiscard]] std::span<const std::string_view> cost_presets();
+
+/// The costs of a named preset. Throws UserError for an unknown name. Each preset's source is in
+/// cost_model.cpp.
+[[nodiscard]] OperationCycles cost_preset(std::string_view name);
+
+/// The cycles of a mix, rounded to the nearest, halves up, and `fixed` whole ones; UserError beyond 64 bits.
+[[nodiscard]] std::int64_t price(const OperationMix& mix, const OperationCycles& cycles, std::int64_t fixed);
+
+/// Prices the measured operation mixes of a traversal (operation_mix.h). Rounds each step to whole cycles,
+/// halves up. Mailboxes are words of the node's own memory, one for each primitive.
+[[nodiscard]] StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words,
+                                     accel::Traversal traversal = accel::Traversal::octree,
+                                     bool mailboxes = false);
+
+}  // namespace marti::processors

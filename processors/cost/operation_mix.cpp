@@ -1,0 +1,355 @@
+#include "processors/cost/operation_mix.h"
+
+#include <optional>
+
+#include "accel/intersect.h"
+#include "accel/mailbox.h"
+#include "accel/structure.h"
+#include "accel/watertight.h"
+#include "processors/program/recorder.h"
+#include "processors/program/tracer.h"
+#include "sim/error.h"
+
+namespace marti::processors {
+
+namespace {
+
+using accel::Counted;
+using accel::OperationCounts;
+
+struct Buckets {
+  std::array<OperationCounts, ray_kinds> ray{};
+  OperationCounts branch;
+  OperationCounts leaf;
+  OperationCounts lookup;
+  std::array<OperationCounts, 3> test{};  ///< by accel::PrimitiveKind
+  OperationCounts shade;
+  OperationCounts light;
+  OperationCounts texel;
+  OperationCounts pixel;
+};
+
+/// Takes its own arithmetic out of the thread's counters again.
+class Uncounted {
+ public:
+  Uncounted() : saved_(accel::operation_counts()) {}
+  Uncounted(const Uncounted&) = delete;
+  Uncounted& operator=(const Uncounted&) = delete;
+  ~Uncounted() { accel::operation_counts() = saved_; }
+
+ private:
+  OperationCounts saved_;
+};
+
+/// Divides the operations of a counting render among the kinds of step.
+class CountingRecorder {
+ public:
+  CountingRecorder(const accel::Structure& structure, bool mailboxes)
+      : triangles_(structure.triangles()),
+        topology_(structure.topology()),
+        after_leaf_(after_leaf(accel::traversal_of(structure))),
+        mailboxes_(mailboxes),
+        mark_(accel::operation_counts()) {}
+
+  void begin_pixel() {}
+
+  void phase(Phase phase, RayKind kind) {
+    close();
+    if (phase == Phase::shade && nearest_wanted_ && best_->found()) {
+      // The last thing closest() does after a hit is to divide three edge functions by their sum.
+      current_->divide -= 3;
+      buckets_.shade.divide += 3;
+    }
+    nearest_wanted_ = false;
+    current_ = &bucket(phase, kind);
+  }
+
+  void ray(RayKind kind, std::uint32_t /*bounce*/, const accel::Ray& ray) {
+    close();
+    ++steps_.rays[static_cast<std::size_t>(kind)];
+    current_ = &buckets_.ray[static_cast<std::size_t>(kind)];
+    nearest_wanted_ = kind != RayKind::shadow;
+    const Uncounted uncounted;
+    setup_.emplace(ray);
+    best_.emplace(*setup_);
+  }
+
+  void branch(std::uint32_t /*node*/) {
+    close();
+    ++steps_.branches;
+    current_ = &buckets_.branch;
+  }
+
+  void leaf(std::uint32_t node, std::uint32_t tests, std::uint32_t entries) {
+    mailed_leaf(node, tests, entries, nullptr);
+  }
+
+  /// The tests were done since the last event, with the walk to this leaf. They are done once more here to
+  /// tell the two apart.
+  void mailed_leaf(std::uint32_t node, std::uint32_t read, std::uint32_t /*entries*/,
+                   const std::uint32_t* tested) {
+    ++steps_.leaves;
+    OperationCounts others;
+    {
+      const Uncounted uncounted;
+      const std::uint32_t first = topology_.nodes[node].first;
+      for (std::uint32_t i = 0; i < read; ++i) {
+        if (tested != nullptr && ((tested[i / 32] >> (i % 32)) & 1U) == 0) {
+          continue;
+        }
+        const std::uint32_t id = topology_.entries[first + i];
+        const OperationCounts before = accel::operation_counts();
+        accel::intersect_primitive(*setup_, triangles_, id, *best_);
+        const OperationCounts spent = accel::operation_counts() - before;
+        const auto kind = static_cast<std::size_t>(triangles_.kind(id));
+        ++tests_[kind];
+        ++steps_.tests;
+        buckets_.test[kind] += spent;
+        others += spent;
+      }
+    }
+    if (mailboxes_) {
+      steps_.lookups += read;
+      buckets_.lookup.integer += read;
+      others.integer += read;
+    }
+    *current_ += (accel::operation_counts() - mark_) - others;
+    mark_ = accel::operation_counts();
+    if (after_leaf_ != nullptr) {
+      current_ = &(buckets_.*after_leaf_);
+    }
+  }
+
+  void shade(std::uint32_t /*material*/) { ++steps_.shades; }
+  void light(std::uint32_t /*light*/) { ++steps_.lights; }
+  void texel(std::uint32_t /*texture*/, std::uint32_t /*texel*/) { ++steps_.texels; }
+
+  /// Operations that follow count for nothing.
+  void end() { close(); }
+
+  [[nodiscard]] const Buckets& buckets() const { return buckets_; }
+  [[nodiscard]] const LogTotals& steps() const { return steps_; }
+  [[nodiscard]] const std::array<std::uint64_t, 3>& tests() const { return tests_; }
+
+ private:
+  using Bucket = OperationCounts Buckets::*;
+
+  /// What the walk does after a leaf; null: nothing.
+  static Bucket after_leaf(accel::Traversal traversal) {
+    switch (traversal) {
+      case accel::Traversal::octree:
+      case accel::Traversal::bsp_recursive:
+        return &Buckets::branch;  // its parent goes on
+      case accel::Traversal::bsp_push_point:
+      case accel::Traversal::grid:
+        return &Buckets::leaf;
+      case accel::Traversal::none:
+        return nullptr;
+    }
+    throw sim::InternalError("operation mix: an unknown traversal");
+  }
+
+  OperationCounts& bucket(Phase phase, RayKind kind) {
+    switch (phase) {
+      case Phase::ray:
+        return buckets_.ray[static_cast<std::size_t>(kind)];
+      case Phase::shade:
+        return buckets_.shade;
+      case Phase::texel:
+        return buckets_.texel;
+      case Phase::light:
+        return buckets_.light;
+      case Phase::pixel:
+        return buckets_.pixel;
+    }
+    throw sim::InternalError("operation mix: an unknown phase");
+  }
+
+  void close() {
+    *current_ += accel::operation_counts() - mark_;
+    mark_ = accel::operation_counts();
+  }
+
+  const accel::TriangleSet& triangles_;
+  const accel::Topology& topology_;
+  Bucket after_leaf_;
+  bool mailboxes_;
+  Buckets buckets_;
+  LogTotals steps_;
+  std::array<std::uint64_t, 3> tests_{};
+  OperationCounts mark_;
+  OperationCounts* current_ = &buckets_.pixel;
+  bool nearest_wanted_ = false;
+  std::optional<accel::RaySetup<Counted>> setup_;
+  std::optional<accel::Best<Counted>> best_;
+};
+
+/// What the sampling of a texel does beside the interpolation of its coordinates, counted by hand because
+/// scenes::sample_nearest is compiled for doubles only: per coordinate the fraction (an addition), its
+/// scaling (a multiplication), rounding, a wrap and a clamp (integers); the texel's number (two integers);
+/// three table look-ups of its channels (integers).
+constexpr OperationMix texel_sampling{2000, 2000, 0, 0, 0, 11000};
+
+/// A finished pixel, by hand: three channels are scaled, clamped at both ends and rounded, and packed
+/// into one word.
+constexpr OperationMix pixel_conversion{0, 3000, 0, 0, 6000, 5000};
+
+/// A small node, by hand from accel/octree_cut.h: its size (an addition, two products, three comparisons),
+/// the nearest triangle's t compared, the covered share (the form's six products and five sums, the area, a
+/// comparison, a root, over the projection, compared), and the voxel's number looked up.
+constexpr OperationMix voxel_cut{6000, 10000, 0, 1000, 6000, 2000};
+
+OperationMix sum(const OperationMix& a, const OperationMix& b) {
+  return {a.add + b.add,         a.multiply + b.multiply, a.divide + b.divide, a.square_root + b.square_root,
+          a.compare + b.compare, a.integer + b.integer};
+}
+
+OperationMix mean(const OperationCounts& counts, std::uint64_t steps) {
+  const auto each = [steps](std::uint64_t count) {
+    return steps == 0 ? 0 : static_cast<std::int64_t>((count * 1000 + steps / 2) / steps);
+  };
+  return {each(counts.add),         each(counts.multiply), each(counts.divide),
+          each(counts.square_root), each(counts.compare),  each(counts.integer)};
+}
+
+}  // namespace
+
+MeasuredMixes measure_operation_mixes(const scenes::Scene& scene, const accel::TriangleSet& triangles,
+                                      const accel::Structure& structure, const RenderOptions& options) {
+  const scenes::ImagePlane plane = scene.camera.image_plane(options.width, options.height);
+  accel::Mailboxed<CountingRecorder> recorder(structure, options.mailboxes);
+  const auto trace = [&]<class Recorder>(Recorder& visitor) {
+    accel::visit_structure(structure, [&](const auto& concrete) {
+      using Concrete = std::remove_cvref_t<decltype(concrete)>;
+      Tracer<Counted, Concrete, Recorder> tracer(scene, concrete, plane, options, visitor);
+      for (std::uint32_t y = 0; y < options.height; ++y) {
+        for (std::uint32_t x = 0; x < options.width; ++x) {
+          static_cast<void>(tracer.trace(x, y));
+        }
+      }
+    });
+  };
+  if (options.mailboxes) {
+    recorder.prepare(triangles.size());
+    trace(recorder);
+  } else {
+    trace(static_cast<CountingRecorder&>(recorder));
+  }
+  recorder.end();
+
+  const Buckets& buckets = recorder.buckets();
+  MeasuredMixes measured;
+  measured.steps = recorder.steps();
+  const LogTotals& steps = measured.steps;
+  for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
+    measured.mixes.ray[kind] = mean(buckets.ray[kind], steps.rays[kind]);
+  }
+  measured.mixes.branch = mean(buckets.branch, steps.branches);
+  measured.mixes.leaf = mean(buckets.leaf, steps.leaves);
+  measured.mixes.lookup = mean(buckets.lookup, steps.lookups);
+  measured.tests = recorder.tests();
+  const auto test = [&](accel::PrimitiveKind kind) {
+    const auto k = static_cast<std::size_t>(kind);
+    return mean(buckets.test[k], measured.tests[k]);
+  };
+  measured.mixes.test = test(accel::PrimitiveKind::triangle);
+  measured.mixes.sphere_test = test(accel::PrimitiveKind::sphere);
+  measured.mixes.cone_test = test(accel::PrimitiveKind::cone);
+  measured.mixes.shade = mean(buckets.shade, steps.shades);
+  measured.mixes.light = mean(buckets.light, steps.lights);
+  if (steps.texels > 0) {
+    measured.mixes.texel = sum(mean(buckets.texel, steps.texels), texel_sampling);
+  }
+  measured.mixes.pixel =
+      sum(mean(buckets.pixel, std::uint64_t{options.width} * options.height), pixel_conversion);
+  return measured;
+}
+
+MeasuredWalks measure_walks(const accel::Structure& structure, std::span<const accel::Ray> rays) {
+  CountingRecorder recorder(structure, false);
+  accel::visit_structure(structure, [&](const auto& concrete) {
+    for (const accel::Ray& ray : rays) {
+      recorder.ray(RayKind::camera, 0, ray);
+      static_cast<void>(concrete.template closest<Counted>(ray, recorder));
+    }
+  });
+  recorder.end();
+  const Buckets& buckets = recorder.buckets();
+  OperationCounts tests;
+  for (const OperationCounts& kind : buckets.test) {
+    tests += kind;
+  }
+  return {buckets.ray[0], buckets.branch, buckets.leaf, tests, recorder.steps()};
+}
+
+namespace {
+
+/// What the traversals differ in.
+struct WalkMixes {
+  std::array<OperationMix, ray_kinds> ray;
+  OperationMix branch;
+  OperationMix leaf;
+  OperationMix test;
+};
+
+OperationMixes with_shading(const WalkMixes& walk) {
+  return {.ray = walk.ray,
+          .branch = walk.branch,
+          .leaf = walk.leaf,
+          .lookup = {0, 0, 0, 0, 0, 1000},
+          .test = walk.test,
+          .sphere_test = {19209, 11645, 1273, 273, 5479, 0},
+          .cone_test = {34500, 32061, 1843, 204, 6942, 0},
+          .shade = {73624, 93477, 7000, 4000, 33812, 0},
+          .light = {41000, 68957, 2000, 1000, 6000, 0},
+          .texel = {6000, 11000, 0, 0, 0, 11000},
+          .pixel = pixel_conversion,
+          .cut = voxel_cut};
+}
+
+}  // namespace
+
+const OperationMixes& operation_mixes(accel::Traversal traversal) {
+  // Columns: add, multiply, divide, square root, compare, integer. Rows: camera, shadow, reflected,
+  // refracted ray; branch; leaf; test.
+  static const std::array<OperationMixes, accel::traversals> table = {
+      with_shading({.ray = {{{20154, 20154, 7000, 1000, 34000, 3000},
+                             {22000, 16000, 6000, 0, 38000, 473},
+                             {30182, 37183, 7000, 1000, 44000, 1792},
+                             {31000, 41000, 7000, 2000, 44000, 1003}}},
+                    .branch = {3916, 3004, 0, 0, 8618, 6051},
+                    .leaf = {},
+                    .test = {18996, 12774, 111, 0, 5186, 0}}),
+      with_shading({.ray = {{{20154, 20154, 7000, 1000, 34000, 10749},
+                             {22000, 16000, 6000, 0, 38000, 9473},
+                             {30182, 37183, 7000, 1000, 44000, 10792},
+                             {31000, 41000, 7000, 2000, 44000, 10003}}},
+                    .branch = {1235, 1001, 0, 0, 1841, 1255},
+                    .leaf = {},
+                    .test = {18787, 12612, 87, 0, 4799, 0}}),
+      with_shading({.ray = {{{25320, 22737, 9583, 1000, 36583, 3000},
+                             {28000, 19000, 9000, 0, 41000, 473},
+                             {36182, 40183, 10000, 1000, 47000, 1792},
+                             {37000, 44000, 10000, 2000, 47000, 1003}}},
+                    .branch = {0, 0, 0, 0, 1000, 558},
+                    .leaf = {8564, 1708, 5969, 0, 7713, 995},
+                    .test = {18787, 12612, 87, 0, 4799, 0}}),
+      with_shading({.ray = {{{32092, 32092, 9583, 1000, 43356, 27853},
+                             {36317, 30317, 9000, 0, 49317, 27263},
+                             {44455, 51456, 10000, 1000, 55273, 29856},
+                             {45229, 55229, 10000, 2000, 55229, 28236}}},
+                    .branch = {},
+                    .leaf = {972, 963, 0, 0, 2974, 3920},
+                    .test = {18998, 12776, 111, 0, 5208, 0}}),
+      with_shading({.ray = {{{9163, 13163, 4000, 1000, 9000, 0},
+                             {11000, 9062, 3000, 0, 13000, 0},
+                             {19209, 30222, 4000, 1000, 19000, 0},
+                             {20000, 34000, 4000, 2000, 19000, 0}}},
+                    .branch = {},
+                    .leaf = {},
+                    .test = {18014, 12011, 0, 0, 3328, 0}}),
+  };
+  return table[static_cast<std::size_t>(traversal)];
+}
+
+}  // namespace marti::processors

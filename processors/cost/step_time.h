@@ -1,0 +1,50 @@
+// A machine's step costs in ticks, and the division of a node's computing time that follows from counts.
+#pragma once
+
+#include "processors/cost/accounting.h"
+#include "processors/machine/machine_config.h"
+#include "processors/program/work_log.h"
+
+namespace marti::processors {
+
+struct StepTicks {
+  std::array<sim::Ticks, ray_kinds> ray{};
+  sim::Ticks branch = 0;
+  sim::Ticks leaf = 0;
+  sim::Ticks lookup = 0;  ///< one entry's mailbox; 0 without mailboxes
+  sim::Ticks test = 0;
+  sim::Ticks sphere_test = 0;
+  sim::Ticks cone_test = 0;
+  sim::Ticks shade = 0;
+  sim::Ticks light = 0;
+  sim::Ticks texel = 0;
+  sim::Ticks cut = 0;
+  sim::Ticks pass = 0;
+  sim::Ticks pixel = 0;
+  sim::Ticks hit = 0;
+};
+
+/// For the walk that made `log`.
+[[nodiscard]] StepTicks step_ticks(const MachineConfig& config, const WorkLog& log);
+
+/// Adds traversal, intersection, shading and cache access of `counts` to `time`.
+void add_counted_time(const StepTicks& ticks, const StepCounts& steps, std::int64_t hits, TimeDivision& time);
+
+/// Counts one test of a primitive; returns its time.
+[[nodiscard]] inline sim::Ticks count_test(const StepTicks& ticks, accel::PrimitiveKind kind,
+                                           StepCounts& steps) {
+  ++steps.tests;
+  switch (kind) {
+    case accel::PrimitiveKind::triangle:
+      break;
+    case accel::PrimitiveKind::sphere:
+      ++steps.sphere_tests;
+      return ticks.sphere_test;
+    case accel::PrimitiveKind::cone:
+      ++steps.cone_tests;
+      return ticks.cone_test;
+  }
+  return ticks.test;
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,152 @@
+// What the nodes of all schemes in which rays move have in common: counters, messages, and the way to the
+// cluster's memory.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "processors/flow/flow_parts.h"
+#include "processors/walk/log_walker.h"
+#include "processors/walk/observer.h"
+#include "sim/large_pages.h"
+
+namespace marti::processors {
+
+/// `Derived` has read_done(node, service): a read that the node waits for has been served.
+template <class Derived>
+class FlowNodesBase : public FlowNodes {
+ public:
+  void connect(std::vector<memory::Interconnect*> interconnects) override {
+    interconnects_ = std::move(interconnects);
+  }
+  memory::InterconnectClient& client(std::uint32_t cluster) override { return clients_[cluster]; }
+  sim::Ticks end() const override { return std::max(end_, host_.last_arrival()); }
+  std::vector<NodeStatistics> statistics() const override { return {statistics_.begin(), statistics_.end()}; }
+  void report(FlowResult& result) const override { result.nodes.assign(counts_.begin(), counts_.end()); }
+
+ protected:
+  explicit FlowNodesBase(const FlowParts& parts)
+      : input_(parts.input),
+        engine_(parts.engine),
+        host_(parts.host),
+        networks_(parts.networks),
+        statistics_(parts.input.config.all_nodes()),
+        counts_(parts.input.config.all_nodes()),
+        watched_(parts.input.observer == nullptr ? 0 : parts.input.config.all_nodes()) {
+    clients_.reserve(input_.config.clusters);
+    for (std::uint32_t cluster = 0; cluster < input_.config.clusters; ++cluster) {
+      clients_.emplace_back(static_cast<Derived&>(*this), cluster * input_.config.nodes);
+    }
+  }
+
+  // All clusters, in an order drawn from `seed` (0: ascending).
+  [[nodiscard]] std::vector<std::uint32_t> first_order(std::uint64_t seed) const {
+    return order_drawn_from(seed, input_.config.clusters);
+  }
+
+  std::uint32_t cluster_of(std::uint32_t node) const {
+    return networks_.size() == 1 ? 0 : node / input_.config.nodes;
+  }
+  std::uint32_t port_of(std::uint32_t node) const { return node - cluster_of(node) * input_.config.nodes; }
+  memory::Interconnect& interconnect_of(std::uint32_t node) { return *interconnects_[cluster_of(node)]; }
+  void post(FlowEvent event, sim::Ticks time, std::uint32_t component) {
+    engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(event), component));
+  }
+  void spend(std::uint32_t node, Activity activity, sim::Ticks time) {
+    statistics_[node].time[static_cast<std::size_t>(activity)] += time;
+  }
+  void spend(std::uint32_t node, const memory::Service& service) {
+    add_service(statistics_[node].time, service);
+  }
+
+  // Tells who watches, if anybody does, that the node was in `state` from where it was told last to `to`.
+  void watch(std::uint32_t node, NodeState state, sim::Ticks to, PixelPlace place = {}) {
+    if (input_.observer != nullptr && watched_[node].until != to) {
+      input_.observer->spent(node, state, watched_[node].until, to, place);
+      watched_[node].until = to;
+    }
+  }
+  // The same of a read that the node has waited for since then.
+  void watch_read(std::uint32_t node, const memory::Service& service, PixelPlace place) {
+    if (input_.observer != nullptr) {
+      spent_reading(*input_.observer, node, service, watched_[node].until, place);
+      watched_[node].until = service.done;
+    }
+  }
+  // The same of work for a ray, with the misses on the way.
+  void watch_work(std::uint32_t node, sim::Ticks to, PixelPlace place) {
+    watch(node, NodeState::working, to, place);
+    if (input_.observer != nullptr) {
+      const std::int64_t all = statistics_[node].references.all_misses();
+      if (const std::int64_t more = all - std::exchange(watched_[node].misses, all); more != 0) {
+        input_.observer->missed(node, more, place);
+      }
+    }
+  }
+
+  // Sends a ray to another node; when it arrives.
+  sim::Ticks send_ray(std::uint32_t from, std::uint32_t to, sim::Ticks now) {
+    const std::uint32_t bytes = input_.config.messages.ray_bytes;
+    ++counts_[from].passed_on;
+    counts_[from].bytes_sent += bytes;
+    return networks_[cluster_of(from)]->send(now, port_of(from), port_of(to), bytes).arrival;
+  }
+  // Sends the host what a ray adds to its pixel.
+  void send_contribution(std::uint32_t from, sim::Ticks now) {
+    const std::uint32_t bytes = input_.config.messages.contribution_bytes;
+    ++counts_[from].contributions;
+    counts_[from].bytes_sent += bytes;
+    host_.collect(networks_[cluster_of(from)]->send(now, port_of(from), input_.config.nodes, bytes).arrival);
+  }
+  // Sends a camera ray to a node; when it arrives.
+  sim::Ticks send_camera_ray(std::uint32_t to, sim::Ticks now) {
+    return networks_[cluster_of(to)]
+        ->send(now, input_.config.nodes, port_of(to), input_.config.messages.ray_bytes)
+        .arrival;
+  }
+
+  // The node's time up to its `finish` is in its statistics but for what follows from counts.
+  void finish_node(std::uint32_t node, const StepTicks& ticks) {
+    NodeStatistics& statistics = statistics_[node];
+    add_counted_time(ticks, statistics.steps, statistics.references.all_hits(), statistics.time);
+    statistics.time[static_cast<std::size_t>(Activity::idle)] = end() - statistics.finish;
+    watch(node, NodeState::idle, end());
+  }
+
+  ReplayInput input_;
+  sim::Engine& engine_;
+  FlowHost& host_;
+  std::vector<memory::Network*> networks_;
+  sim::LargeVector<NodeStatistics> statistics_;
+  sim::LargeVector<FlowCounts> counts_;
+  sim::Ticks end_ = 0;  // of the nodes' work so far
+
+ private:
+  // One cluster's ports, with port numbers turned into node numbers. Nothing is written to the memory: the
+  // host has the pixels.
+  class Client final : public memory::InterconnectClient {
+   public:
+    Client(Derived& nodes, std::uint32_t first) : nodes_(nodes), first_(first) {}
+    void read_done(std::uint32_t port, const memory::Service& service) override {
+      nodes_.read_done(first_ + port, service);
+    }
+    void write_done(std::uint32_t /*port*/, sim::Ticks /*done*/) override {}
+
+   private:
+    Derived& nodes_;
+    std::uint32_t first_;
+  };
+
+  // What an observer has been told of a node.
+  struct Watched {
+    sim::Ticks until = 0;
+    std::int64_t misses = 0;
+  };
+
+  std::vector<Watched> watched_;  // empty without an observer
+  std::vector<Client> clients_;
+  std::vector<memory::Interconnect*> interconnects_;
+};
+
+}  // namespace marti::processors

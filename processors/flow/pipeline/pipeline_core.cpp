@@ -1,0 +1,395 @@
+#include "processors/flow/pipeline/pipeline_core.h"
+
+#include <algorithm>
+
+#include "sim/error.h"
+
+namespace marti::processors {
+
+PipelineCore::PipelineCore(const FlowParts& parts)
+    : FlowNodesBase<PipelineCore>(parts),
+      nodes_(parts.input.config.all_nodes()),
+      clusters_(parts.input.config.clusters),
+      set_aside_(std::size_t{parts.input.config.clusters} * parts.input.config.pipeline.shade),
+      queue_slots_(parts.input.config.pipeline.queue),
+      send_(parts.input.config.clock.cycles(parts.input.config.messages.send_cycles)),
+      receive_(parts.input.config.clock.cycles(parts.input.config.messages.receive_cycles)) {
+  const PipelineConfig& pipeline = input_.config.pipeline;
+  const std::array<std::uint32_t, pipeline_stages> sizes = {pipeline.search, pipeline.nearest,
+                                                            pipeline.shade};
+  std::uint32_t node = 0;
+  for (std::uint32_t cluster = 0; cluster < input_.config.clusters; ++cluster) {
+    for (std::uint32_t stage = 0; stage < pipeline_stages; ++stage) {
+      stages_.push_back({node, LoadOrder(sizes[stage])});
+      for (const std::uint32_t end = node + sizes[stage]; node != end; ++node) {
+        nodes_[node].stage = static_cast<Stage>(stage);
+        nodes_[node].state = static_cast<std::uint32_t>(stages_.size() - 1);
+        nodes_[node].place = node - stages_.back().first;
+      }
+    }
+  }
+}
+
+void PipelineCore::start(std::uint64_t seed) {
+  for (const std::uint32_t cluster : first_order(seed)) {
+    post(FlowEvent::admit, host_.ready_at(cluster), cluster);
+  }
+}
+
+void PipelineCore::handle(const sim::Event& event) {
+  const std::uint32_t component = event.component();
+  switch (static_cast<FlowEvent>(event.event_class())) {
+    case FlowEvent::step:
+      work(component);
+      break;
+    case FlowEvent::reply:
+      interconnect_of(component).reply(port_of(component));
+      break;
+    case FlowEvent::read:
+      read(component);
+      break;
+    case FlowEvent::done:
+      done(component, event.time);
+      break;
+    case FlowEvent::wake:
+      wake(component, event.time);
+      break;
+    case FlowEvent::admit:
+      admit(component, event.time);
+      break;
+    case FlowEvent::memory:
+      interconnect_of(component).proceed(port_of(component), event.sequence());
+      break;
+  }
+}
+
+// ---- The ray in service.
+
+void PipelineCore::worked(std::uint32_t node, FlowRay& ray, sim::Ticks time) {
+  Node& at = nodes_[node];
+  if (ray.word != ray.end) {
+    const bool objects = ray.record_read;
+    compose(node, objects ? Stage::nearest : stage_of(ray.word), time);
+    return;
+  }
+  const bool shadow = ray.kind == RayKind::shadow;
+  const bool ends_anywhere = shadow && trees_.ray(ray.tree, ray.number).first_child == LoggedRay::none;
+  if (at.stage != Stage::shade && !ends_anywhere) {
+    compose(node, Stage::shade, time);
+    return;
+  }
+  at.phase = Phase::ending;
+  if (!shadow || ray.lit) {
+    at.phase = Phase::contributing;
+    spend(node, Activity::messaging, send_);
+    time = sim::add_ticks(time, send_);
+  }
+  post(FlowEvent::done, time, node);
+}
+
+// From `now` on the node composes the message that takes its ray to stage `next`.
+void PipelineCore::compose(std::uint32_t node, Stage next, sim::Ticks now) {
+  Node& at = nodes_[node];
+  at.phase = Phase::sending;
+  at.next = next;
+  spend(node, Activity::messaging, send_);
+  post(FlowEvent::done, sim::add_ticks(now, send_), node);
+}
+
+void PipelineCore::done(std::uint32_t node, sim::Ticks now) {
+  Node& at = nodes_[node];
+  if (at.phase == Phase::granted) {
+    watch(node, NodeState::queue_full_wait, now, place_of(node));
+  } else {
+    watch_work(node, now, place_of(node));
+  }
+  switch (at.phase) {
+    case Phase::contributing:
+      send_contribution(node, now);
+      end_ray(node, now);
+      return;
+    case Phase::ending:
+      end_ray(node, now);
+      return;
+    case Phase::sending: {
+      const std::uint32_t cluster = cluster_of(node);
+      at.target = slot_of(cluster, at.next);
+      if (at.target == LoadOrder::none) {
+        at.phase = Phase::blocked;
+        at.since = now;
+        wait_for_slot(cluster, at.next, node);
+        return;
+      }
+      reserve(at.target);
+      dispatch(node, now);
+      return;
+    }
+    case Phase::granted:
+      spend(node, Activity::queue_full_wait, now - at.since);
+      dispatch(node, now);
+      return;
+    case Phase::idle:
+    case Phase::working:
+    case Phase::blocked:
+      break;
+  }
+  throw sim::InternalError("a node of the pipeline finishes what it has not begun");
+}
+
+// Sends the node's ray to its target, where it has a slot.
+void PipelineCore::dispatch(std::uint32_t node, sim::Ticks now) {
+  Node& at = nodes_[node];
+  put(at.ray, at.target, send_ray(node, at.target, now));
+  at.ray = none;
+  next_work(node, now);
+}
+
+// The ray in service has ended. Its first child takes its place; the others are set aside.
+void PipelineCore::end_ray(std::uint32_t node, sim::Ticks now) {
+  FlowRay& ray = ray_of(node);
+  const std::uint32_t tree = ray.tree;
+  const std::uint32_t first = trees_.ray(tree, ray.number).first_child;
+  ++counts_[node].ended;
+  if (first == LoggedRay::none) {
+    trees_.end_ray(tree);
+    rays_.give_back(nodes_[node].ray);
+    nodes_[node].ray = none;
+    const std::uint32_t cluster = cluster_of(node);
+    host_.leave(cluster);
+    give_credits(cluster, now);
+    next_work(node, now);
+    return;
+  }
+  std::vector<SetAside>& stack = set_aside_of(node);
+  const std::size_t below = stack.size();
+  for (std::uint32_t child = trees_.ray(tree, first).next_sibling; child != LoggedRay::none;
+       child = trees_.ray(tree, child).next_sibling) {
+    stack.push_back({tree, child});
+  }
+  std::reverse(stack.begin() + static_cast<std::ptrdiff_t>(below), stack.end());
+  const std::size_t more = stack.size() - below;
+  for (std::size_t child = 0; child <= more; ++child) {
+    trees_.begin_ray(tree);
+  }
+  trees_.end_ray(tree);
+  counts_[node].made += static_cast<std::int64_t>(more) + 1;
+  counts_[node].most_set_aside =
+      std::max(counts_[node].most_set_aside, static_cast<std::int64_t>(stack.size()));
+  start_ray(ray, tree, first);
+  compose(node, stage_of(ray.word), now);
+  if (more != 0) {
+    const std::uint32_t cluster = cluster_of(node);
+    clusters_[cluster].requests.insert(clusters_[cluster].requests.end(), more, node);
+    give_credits(cluster, now);
+  }
+}
+
+void PipelineCore::start_ray(FlowRay& ray, std::uint32_t tree, std::uint32_t number) const {
+  const LoggedRay& logged = trees_.ray(tree, number);
+  ray.word = logged.begin;
+  ray.end = logged.end;
+  ray.tree = tree;
+  ray.number = number;
+  ray.kind = logged.kind;
+  ray.record_read = false;
+  ray.lit = false;
+}
+
+// ---- Work for a node.
+
+void PipelineCore::next_work(std::uint32_t node, sim::Ticks now) {
+  Node& at = nodes_[node];
+  at.phase = Phase::idle;
+  at.since = now;
+  statistics_[node].finish = now;
+  end_ = std::max(end_, now);
+  wake(node, now);
+}
+
+// Gives an idle node the next thing to do, if there is any.
+void PipelineCore::wake(std::uint32_t node, sim::Ticks now) {
+  Node& at = nodes_[node];
+  if (at.wake_at <= now) {
+    at.wake_at = no_wake;
+  }
+  if (at.phase != Phase::idle) {
+    return;
+  }
+  if (at.granted != 0) {
+    send_set_aside(node, now);
+  } else if (at.queue.head != none) {
+    const sim::Ticks arrival = rays_[at.queue.head].arrival;
+    if (arrival <= now) {
+      take(node, now);
+    } else {
+      post_wake(node, arrival);
+    }
+  }
+  refresh(node);
+}
+
+void PipelineCore::take(std::uint32_t node, sim::Ticks now) {
+  Node& at = nodes_[node];
+  spend(node, Activity::message_wait, now - at.since);
+  watch(node, NodeState::message_wait, now);
+  at.ray = at.queue.pop(rays_);
+  FlowRay& ray = rays_[at.ray];
+  FlowCounts& counts = counts_[node];
+  ++counts.taken;
+  counts.queued = sim::add_ticks(counts.queued, now - ray.arrival);
+  give_slot(node, now);
+  spend(node, Activity::messaging, receive_);
+  at.phase = Phase::working;
+  begin(node, ray);
+  work(node);
+}
+
+// The ray that was set aside last enters in the place that the node was granted.
+void PipelineCore::send_set_aside(std::uint32_t node, sim::Ticks now) {
+  Node& at = nodes_[node];
+  spend(node, Activity::message_wait, now - at.since);
+  watch(node, NodeState::message_wait, now);
+  --at.granted;
+  std::vector<SetAside>& stack = set_aside_of(node);
+  const SetAside next = stack.back();
+  stack.pop_back();
+  at.ray = rays_.take();
+  start_ray(rays_[at.ray], next.tree, next.number);
+  compose(node, stage_of(rays_[at.ray].word), now);
+}
+
+void PipelineCore::post_wake(std::uint32_t node, sim::Ticks time) {
+  if (time < nodes_[node].wake_at) {
+    nodes_[node].wake_at = time;
+    post(FlowEvent::wake, time, node);
+  }
+}
+
+// ---- Credits: how many rays may be in flight.
+
+// Rays set aside go before new camera rays.
+void PipelineCore::give_credits(std::uint32_t cluster, sim::Ticks now) {
+  Cluster& at = clusters_[cluster];
+  while (!at.requests.empty() && host_.has_credit(cluster)) {
+    const std::uint32_t node = at.requests.front();
+    at.requests.pop_front();
+    host_.enter(cluster);
+    ++nodes_[node].granted;
+    if (nodes_[node].phase == Phase::idle) {
+      post_wake(node, now);
+    }
+  }
+  if (at.host == Phase::idle && host_.has_credit(cluster) && host_.has_ray(cluster)) {
+    at.host = Phase::sending;
+    post(FlowEvent::admit, std::max(now, host_.ready_at(cluster)), cluster);
+  }
+}
+
+void PipelineCore::admit(std::uint32_t cluster, sim::Ticks now) {
+  Cluster& at = clusters_[cluster];
+  if (at.host == Phase::granted) {
+    send_from_host(cluster, at.target, now);
+  }
+  for (;;) {
+    if (!host_.has_ray(cluster) || !host_.has_credit(cluster)) {
+      at.host = Phase::idle;
+      return;
+    }
+    at.host = Phase::sending;
+    if (host_.ready_at(cluster) > now) {
+      post(FlowEvent::admit, host_.ready_at(cluster), cluster);
+      return;
+    }
+    host_.enter(cluster);
+    const std::uint32_t target = slot_of(cluster, Stage::search);
+    if (target == LoadOrder::none) {
+      at.host = Phase::blocked;
+      wait_for_slot(cluster, Stage::search, input_.config.all_nodes() + cluster);
+      return;
+    }
+    reserve(target);
+    send_from_host(cluster, target, now);
+  }
+}
+
+void PipelineCore::send_from_host(std::uint32_t cluster, std::uint32_t target, sim::Ticks now) {
+  const std::uint32_t ray = rays_.take();
+  start_ray(rays_[ray], trees_.open(host_.send(cluster, now)), 0);
+  put(ray, target, send_camera_ray(target, now));
+}
+
+// ---- Slots of the queues.
+
+// The node of a stage that takes the next ray; LoadOrder::none when all queues are full.
+std::uint32_t PipelineCore::slot_of(std::uint32_t cluster, Stage stage) {
+  StageState& state = stage_state(cluster, stage);
+  const std::uint32_t least = state.order.least();
+  return least == LoadOrder::none ? least : state.first + least;
+}
+
+void PipelineCore::reserve(std::uint32_t node) {
+  RayQueue& queue = nodes_[node].queue;
+  ++queue.count;
+  counts_[node].longest_queue = std::max(counts_[node].longest_queue, std::int64_t{queue.count});
+  refresh(node);
+}
+
+// The node's load is what is in its queue and in service; without a free slot it takes no more.
+void PipelineCore::refresh(std::uint32_t node) {
+  const Node& at = nodes_[node];
+  const std::uint32_t load = at.queue.count + (at.phase != Phase::idle ? 1 : 0);
+  stages_[at.state].order.set(at.place, at.queue.count < queue_slots_ ? load : LoadOrder::none);
+}
+
+// A ray that has a slot is sent and arrives at `arrival`.
+void PipelineCore::put(std::uint32_t ray, std::uint32_t node, sim::Ticks arrival) {
+  Node& at = nodes_[node];
+  rays_[ray].arrival = arrival;
+  at.queue.insert(rays_, ray);
+  if (at.phase == Phase::idle) {
+    post_wake(node, arrival);
+  }
+}
+
+std::uint32_t& PipelineCore::next_waiter_of(std::uint32_t waiter) {
+  const std::uint32_t nodes = input_.config.all_nodes();
+  return waiter < nodes ? nodes_[waiter].next_waiter : clusters_[waiter - nodes].next_waiter;
+}
+
+void PipelineCore::wait_for_slot(std::uint32_t cluster, Stage stage, std::uint32_t waiter) {
+  StageState& state = stage_state(cluster, stage);
+  next_waiter_of(waiter) = none;
+  if (state.first_waiter == none) {
+    state.first_waiter = waiter;
+  } else {
+    next_waiter_of(state.last_waiter) = waiter;
+  }
+  state.last_waiter = waiter;
+}
+
+// A slot of the node has become free: whoever has waited longest gets it.
+void PipelineCore::give_slot(std::uint32_t node, sim::Ticks now) {
+  StageState& state = stages_[nodes_[node].state];
+  const std::uint32_t waiter = state.first_waiter;
+  if (waiter == none) {
+    return;
+  }
+  state.first_waiter = next_waiter_of(waiter);
+  ++nodes_[node].queue.count;
+  const std::uint32_t nodes = input_.config.all_nodes();
+  if (waiter < nodes) {
+    nodes_[waiter].phase = Phase::granted;
+    nodes_[waiter].target = node;
+    post(FlowEvent::done, now, waiter);
+  } else {
+    clusters_[waiter - nodes].host = Phase::granted;
+    clusters_[waiter - nodes].target = node;
+    post(FlowEvent::admit, now, waiter - nodes);
+  }
+}
+
+std::vector<PipelineCore::SetAside>& PipelineCore::set_aside_of(std::uint32_t node) {
+  return set_aside_[std::size_t{cluster_of(node)} * input_.config.pipeline.shade + nodes_[node].place];
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,81 @@
+// A walk through the log that takes the visit to a leaf in two parts: its record, and its list with the
+// tests.
+#pragma once
+
+#include "processors/flow/pipeline/stages.h"
+#include "processors/walk/log_walker.h"
+
+namespace marti::processors {
+
+/// `Caches` is one of node_caches.h.
+template <class Caches>
+class StagedWalker : public LogWalker<Caches> {
+  using Base = LogWalker<Caches>;
+  using Base::entries_;
+  using Base::input_;
+  using Base::node_bytes_;
+  using Base::plan_;
+  using Base::plan_limit_;
+  using Base::rank_;
+  using Base::ticks_;
+  using Base::topology_;
+
+ public:
+  using Base::Base;
+
+  /// Begins a visit to the leaf at cursor.word as far as its own record; `advance` over no words (word equal
+  /// to word_end) reads it. cursor.word stays at the leaf, for begin_objects.
+  void begin_record(Cursor& cursor, NodeStatistics& statistics) const {
+    const std::uint32_t leaf = operand_of(*cursor.word);
+    ++statistics.steps.leaves;
+    spend(cursor, ticks_.leaf, 1);
+    if (const Visit* const visit = planned(*cursor.word)) {
+      const std::uint32_t lines = visit->counts.of(VisitCount::node_line);
+      hits_of(statistics, memory::RecordKind::node) += lines;
+      begin_lines(cursor, visit->begin, lines);
+      return;
+    }
+    cursor.kind = memory::RecordKind::node;
+    cursor.at = input_.layout.address(cursor.kind, rank_ == nullptr ? leaf : rank_[leaf]);
+    cursor.end = cursor.at + node_bytes_;
+  }
+
+  /// Begins the rest of that visit, perhaps at another node: the leaf's list and its tests. cursor.word goes
+  /// behind the leaf; `advance` over no words reads and tests.
+  void begin_objects(Cursor& cursor, NodeStatistics& statistics) const {
+    const std::uint32_t* const word = cursor.word;
+    cursor.word += step_words(word);
+    if (const Visit* const visit = planned(*word)) {
+      // The whole visit but what begin_record counted.
+      const std::uint32_t lines = visit->counts.of(VisitCount::node_line);
+      add_visits(visit->counts, 1, input_.log.mailboxes, statistics);
+      --statistics.steps.leaves;
+      hits_of(statistics, memory::RecordKind::node) -= lines;
+      begin_lines(cursor, visit->begin + lines, visit->lines - lines);
+      return;
+    }
+    cursor.list_count = entries_read(word, input_.log.topology);
+    statistics.steps.lists += cursor.list_count != 0 ? 1 : 0;
+    cursor.entry = entries_ + topology_[operand_of(*word)].first;
+    cursor.entry_end = cursor.entry + cursor.list_count;
+    cursor.tested = step_of(*word) == Step::mailed_leaf ? word + 2 : nullptr;
+    cursor.entry_number = 0;
+  }
+
+ private:
+  // The plan of a whole leaf's visit; null when it has to be taken record by record.
+  [[nodiscard]] const Visit* planned(std::uint32_t word) const {
+    if (word >= plan_limit_) {
+      return nullptr;
+    }
+    const Visit& visit = plan_.visits[operand_of(word)];
+    return visit.lines == 0 ? nullptr : &visit;
+  }
+  void begin_lines(Cursor& cursor, std::uint32_t first, std::uint32_t lines) const {
+    cursor.line = plan_.lines.data() + first;
+    cursor.line_end = cursor.line + lines;
+    cursor.tests_begun = 0;
+  }
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,43 @@
+// The stages of the pipeline, after LINKS-1, and which of them takes a step.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "accel/topology.h"
+#include "processors/machine/flow_config.h"
+#include "processors/program/work_log.h"
+
+namespace marti::processors {
+
+/// search walks the structure to the next leaf with objects, nearest tests them, shade does material and
+/// lights.
+enum class Stage : std::uint8_t { search, nearest, shade };
+inline constexpr std::array<std::string_view, pipeline_stages> stage_names = {"search", "nearest", "shade"};
+
+/// How many entries of a leaf's list the visit at `word` (a leaf, partial_leaf or mailed_leaf) reads.
+[[nodiscard]] inline std::uint32_t entries_read(const std::uint32_t* word, const accel::Topology& topology) {
+  return step_of(*word) == Step::leaf ? topology.nodes[operand_of(*word)].count : word[1];
+}
+
+/// The stage that takes the step at `word`, of a leaf's visit the first part: its record. The objects of a
+/// leaf with entries belong to `nearest`.
+[[nodiscard]] constexpr Stage stage_of(const std::uint32_t* word) {
+  switch (step_of(*word)) {
+    case Step::shade:
+    case Step::texel:
+    case Step::light:
+      return Stage::shade;
+    default:
+      return Stage::search;
+  }
+}
+
+/// Whether the step at `word` visits a leaf, wholly or in part.
+[[nodiscard]] constexpr bool visits_leaf(const std::uint32_t* word) {
+  const Step step = step_of(*word);
+  return step == Step::leaf || step == Step::partial_leaf || step == Step::mailed_leaf;
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,102 @@
+#include "processors/flow/space/region_work.h"
+
+#include <span>
+
+#include "processors/program/ray_tree.h"
+
+namespace marti::processors {
+
+namespace {
+
+// Computes the time of one leaf's tests.
+sim::Ticks tests_time(const WorkLog& log, const StepTicks& ticks, const std::uint32_t* word) {
+  const accel::TopologyNode& leaf = log.topology.nodes[operand_of(*word)];
+  const std::uint32_t entries = step_of(*word) == Step::leaf ? leaf.count : word[1];
+  const std::uint32_t* const mask = step_of(*word) == Step::mailed_leaf ? word + 2 : nullptr;
+  StepCounts counts;
+  sim::Ticks time = log.mailboxes ? sim::multiply_ticks(ticks.lookup, entries) : 0;
+  for (std::uint32_t entry = 0; entry < entries; ++entry) {
+    if (mask == nullptr || tested_in_mask(mask, entry)) {
+      const std::uint32_t primitive = log.topology.entries[leaf.first + entry];
+      time = sim::add_ticks(time, count_test(ticks, log.kind_of(primitive), counts));
+    }
+  }
+  return time;
+}
+
+sim::Ticks compute_time(const WorkLog& log, const StepTicks& ticks, const std::uint32_t* word) {
+  switch (step_of(*word)) {
+    case Step::branch:
+      return ticks.branch;
+    case Step::leaf:
+    case Step::partial_leaf:
+    case Step::mailed_leaf:
+      return sim::add_ticks(ticks.leaf, tests_time(log, ticks, word));
+    case Step::ray:
+      return ticks.ray[operand_of(*word) & 3U];
+    case Step::shade:
+      return ticks.shade;
+    case Step::light:
+      return ticks.light;
+    case Step::texel:
+      return ticks.texel;
+    case Step::cut:
+      return ticks.cut;
+    case Step::pass:
+      return ticks.pass;
+  }
+  return 0;
+}
+
+// The region that a step is in, or RegionMap::top.
+std::uint32_t region_of_step(const RegionMap& regions, std::uint32_t word) {
+  return visits_node(step_of(word)) ? regions.region_of[operand_of(word)] : RegionMap::top;
+}
+
+std::uint32_t first_region(const RegionMap& regions, const LoggedRay& ray) {
+  for (const std::uint32_t* word = ray.begin; word != ray.end; word += step_words(word)) {
+    if (const std::uint32_t region = region_of_step(regions, *word); region != RegionMap::top) {
+      return region;
+    }
+  }
+  return RegionMap::top;
+}
+
+}  // namespace
+
+RegionWork sample_work(const WorkLog& log, const RegionMap& regions, const StepTicks& ticks,
+                       std::uint32_t step) {
+  RegionWork work;
+  work.of.assign(regions.size(), 0);
+  std::vector<LoggedRay> rays;
+  std::vector<std::uint32_t> ended_in;
+  for (std::uint64_t y = 0; y < log.height; y += step) {
+    for (std::uint64_t x = 0; x < log.width; x += step) {
+      std::span<const std::uint32_t> left =
+          log.pixel(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+      while (!left.empty()) {
+        const std::span<const std::uint32_t> sample = first_sample(log, left);
+        left = left.subspan(sample.size());
+        rays_of_sample(sample, rays);
+        ended_in.clear();
+        for (const LoggedRay& ray : rays) {
+          std::uint32_t at =
+              ray.parent == LoggedRay::none ? first_region(regions, ray) : ended_in[ray.parent];
+          for (const std::uint32_t* word = ray.begin; word != ray.end; word += step_words(word)) {
+            const std::uint32_t entered = region_of_step(regions, *word);
+            at = entered == RegionMap::top ? at : entered;
+            const sim::Ticks time = compute_time(log, ticks, word);
+            work.total = sim::add_ticks(work.total, time);
+            if (at != RegionMap::top) {
+              work.of[at] += static_cast<std::uint64_t>(time);
+            }
+          }
+          ended_in.push_back(at);
+        }
+      }
+    }
+  }
+  return work;
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,405 @@
+// Nodes of the space scheme: see space.h for what they do.
+//
+// Everything a node does with a ray touches only its own memory, so it is worked out at once, and one event
+// stands for it: the moment at which the node is done with the ray and sends it on.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "processors/flow/flow_nodes_base.h"
+#include "processors/flow/pixel_trees.h"
+#include "processors/flow/ray_queues.h"
+#include "processors/flow/space/space_plan.h"
+#include "processors/walk/log_walker.h"
+#include "sim/large_pages.h"
+#include "sim/prefetch.h"
+
+namespace marti::processors {
+
+/// `Caches` is one of node_caches.h. See node_array.h for what the members do.
+template <class Caches>
+class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
+  using Base = FlowNodesBase<SpaceNodes<Caches>>;
+  friend Base;
+  using Base::cluster_of;
+  using Base::counts_;
+  using Base::end_;
+  using Base::host_;
+  using Base::input_;
+  using Base::port_of;
+  using Base::post;
+  using Base::spend;
+  using Base::statistics_;
+  using Base::watch;
+  using Base::watch_work;
+
+ public:
+  SpaceNodes(const FlowParts& parts, const SpacePlan& plan, Caches caches)
+      : Base(parts),
+        plan_(plan),
+        owner_(plan.owner.data()),
+        walker_(parts.input, std::move(caches)),
+        nodes_(parts.input.config.all_nodes()),
+        cursors_(parts.input.config.all_nodes()),
+        admissions_(parts.input.config.clusters),
+        slots_(parts.input.config.space.queue),
+        send_(parts.input.config.clock.cycles(parts.input.config.messages.send_cycles)),
+        receive_(parts.input.config.clock.cycles(parts.input.config.messages.receive_cycles)) {}
+
+  void start(std::uint64_t seed) override {
+    for (const std::uint32_t cluster : Base::first_order(seed)) {
+      ask_for_rays(cluster, host_.ready_at(cluster));
+    }
+  }
+
+  void handle(const sim::Event& event) override {
+    switch (static_cast<FlowEvent>(event.event_class())) {
+      case FlowEvent::step:
+        run(event.component());
+        break;
+      case FlowEvent::done:
+        done(event.component(), event.time);
+        break;
+      case FlowEvent::wake:
+        wake(event.component(), event.time);
+        break;
+      case FlowEvent::admit:
+        admit(event.component(), event.time);
+        break;
+      default:
+        throw sim::InternalError("the nodes of the space scheme share no memory");
+    }
+  }
+
+  void prepare(const sim::Event& event) override {
+    if (static_cast<FlowEvent>(event.event_class()) != FlowEvent::admit) {
+      sim::prefetch(nodes_[event.component()]);
+      sim::prefetch(cursors_[event.component()]);
+      sim::prefetch(statistics_[event.component()]);
+    }
+  }
+
+  void finish() override {
+    for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
+      Base::finish_node(node, walker_.ticks());
+    }
+  }
+
+  void report(FlowResult& result) const override {
+    Base::report(result);
+    result.memory_bytes.clear();
+    for (std::uint32_t cluster = 0; cluster < input_.config.clusters; ++cluster) {
+      result.memory_bytes.insert(result.memory_bytes.end(), plan_.memory_bytes.begin(),
+                                 plan_.memory_bytes.end());
+    }
+    result.regions = plan_.regions.size();
+    result.top_nodes = plan_.regions.top_nodes;
+    result.duplicated_primitives = plan_.duplicated_primitives;
+    result.sampling_work = plan_.sampling_work;
+  }
+
+  SecondLevelResult second_level() const override { return walker_.second_level().result(); }
+
+  std::size_t bytes_per_node() const override {
+    return sizeof(Node) + sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(FlowCounts) + sizeof(sim::Event) +
+           rays_.bytes() / nodes_.size();
+  }
+
+ private:
+  static constexpr sim::Ticks never = std::numeric_limits<sim::Ticks>::max();
+  static constexpr std::uint32_t from_host = RayPool::none;
+
+  struct Node {
+    RayQueue queue;                         // before the node and under way to it
+    RayQueue waiting;                       // set aside somewhere for want of a slot before this node
+    std::uint32_t made = RayPool::none;     // rays made here, next first
+    std::uint32_t current = RayPool::none;  // the ray in service
+    std::uint32_t set_aside = 0;            // rays in its memory that wait for slots elsewhere
+    sim::Ticks wake_at = never;             // the wake event that counts
+  };
+
+  // Whether the host looks for camera rays of a cluster.
+  struct Admission {
+    bool posted = false;
+    bool all_sent = false;
+  };
+
+  [[noreturn]] static void read_done(std::uint32_t /*node*/, const memory::Service& /*service*/) {
+    throw sim::InternalError("the nodes of the space scheme share no memory");
+  }
+
+  // The node of its cluster that has the tree node which a step reads; RegionMap::top when all have it or
+  // none is read.
+  [[nodiscard]] std::uint32_t owner_of(std::uint32_t word) const {
+    return visits_node(step_of(word)) ? owner_[operand_of(word)] : RegionMap::top;
+  }
+
+  // --- the host ---
+
+  void ask_for_rays(std::uint32_t cluster, sim::Ticks time) {
+    Admission& admission = admissions_[cluster];
+    if (!admission.posted && !admission.all_sent) {
+      admission.posted = true;
+      post(FlowEvent::admit, time, cluster);
+    }
+  }
+
+  // The host sends camera rays as long as it may.
+  void admit(std::uint32_t cluster, sim::Ticks now) {
+    admissions_[cluster].posted = false;
+    while (host_.has_credit(cluster)) {
+      if (!host_.has_ray(cluster)) {
+        admissions_[cluster].all_sent = true;
+        return;
+      }
+      if (host_.ready_at(cluster) > now) {
+        ask_for_rays(cluster, host_.ready_at(cluster));
+        return;
+      }
+      host_.enter(cluster);
+      const std::uint32_t tree = trees_.open(host_.send(cluster, now));
+      const std::uint32_t ray = new_ray(tree, 0);
+      send_or_set_aside(from_host, cluster * input_.config.nodes + first_owner(rays_[ray]), ray, now);
+    }
+  }
+
+  // Rays that see only the top go round the nodes.
+  [[nodiscard]] std::uint32_t first_owner(const FlowRay& ray) const {
+    for (const std::uint32_t* word = ray.word; word != ray.end; word += step_words(word)) {
+      if (const std::uint32_t owner = owner_of(*word); owner != RegionMap::top) {
+        return owner;
+      }
+    }
+    return static_cast<std::uint32_t>((host_.sent() - 1) % input_.config.nodes);
+  }
+
+  std::uint32_t new_ray(std::uint32_t tree, std::uint32_t number) {
+    const std::uint32_t index = rays_.take();
+    const LoggedRay& logged = trees_.ray(tree, number);
+    FlowRay& ray = rays_[index];
+    ray = {};
+    ray.word = logged.begin;
+    ray.end = logged.end;
+    ray.tree = tree;
+    ray.number = number;
+    ray.kind = logged.kind;
+    return index;
+  }
+
+  // --- messages ---
+
+  void send_or_set_aside(std::uint32_t from, std::uint32_t to, std::uint32_t ray, sim::Ticks now) {
+    if (nodes_[to].queue.count < slots_) {
+      send(from, to, ray, now);
+      return;
+    }
+    rays_[ray].from = from;
+    rays_[ray].arrival = now;  // rays wait in the order in which they were set aside
+    ++nodes_[to].waiting.count;
+    nodes_[to].waiting.insert(rays_, ray);
+    if (from != from_host) {
+      const std::uint32_t aside = ++nodes_[from].set_aside;
+      counts_[from].most_set_aside = std::max<std::int64_t>(counts_[from].most_set_aside, aside);
+    }
+  }
+
+  // Takes a slot before `to` and sends the ray there.
+  void send(std::uint32_t from, std::uint32_t to, std::uint32_t ray, sim::Ticks now) {
+    RayQueue& queue = nodes_[to].queue;
+    counts_[to].longest_queue = std::max<std::int64_t>(counts_[to].longest_queue, ++queue.count);
+    rays_[ray].arrival = from == from_host ? Base::send_camera_ray(to, now) : Base::send_ray(from, to, now);
+    queue.insert(rays_, ray);
+    if (nodes_[to].current == RayPool::none) {
+      wake_for_first(to);
+    }
+  }
+
+  void wake_for_first(std::uint32_t node) {
+    const sim::Ticks arrival = rays_[nodes_[node].queue.head].arrival;
+    if (arrival < nodes_[node].wake_at) {
+      nodes_[node].wake_at = arrival;
+      post(FlowEvent::wake, arrival, node);
+    }
+  }
+
+  void wake(std::uint32_t number, sim::Ticks now) {
+    Node& node = nodes_[number];
+    if (node.wake_at != now) {
+      return;  // a message sent later has come earlier, and was woken for
+    }
+    node.wake_at = never;
+    spend(number, Activity::message_wait, now - cursors_[number].time);
+    watch(number, NodeState::message_wait, now);
+    take(number, now);
+  }
+
+  // --- the nodes ---
+
+  // A node without a ray looks for one.
+  void next(std::uint32_t number, sim::Ticks now) {
+    Node& node = nodes_[number];
+    if (node.made != RayPool::none) {
+      const std::uint32_t ray = node.made;
+      node.made = rays_[ray].next;
+      serve(number, ray);
+    } else if (node.queue.head != RayPool::none) {
+      if (rays_[node.queue.head].arrival <= now) {
+        take(number, now);
+      } else {
+        wake_for_first(number);
+      }
+    }
+  }
+
+  // Takes the first ray of the queue. Its slot goes to the ray that has waited longest for one.
+  void take(std::uint32_t number, sim::Ticks now) {
+    const std::uint32_t ray = nodes_[number].queue.pop(rays_);
+    FlowCounts& counts = counts_[number];
+    ++counts.taken;
+    counts.queued = sim::add_ticks(counts.queued, now - rays_[ray].arrival);
+    Cursor& cursor = cursors_[number];
+    cursor.time = sim::add_ticks(now, receive_);
+    spend(number, Activity::messaging, receive_);
+    nodes_[number].current = ray;  // it needs no wake event for what is sent now
+    if (nodes_[number].waiting.head != RayPool::none) {
+      const std::uint32_t waited = nodes_[number].waiting.pop(rays_);
+      const std::uint32_t from = rays_[waited].from;
+      if (from != from_host) {
+        --nodes_[from].set_aside;
+      }
+      send(from, number, waited, now);
+    }
+    serve(number, ray);
+  }
+
+  // Begins with a ray at the cursor's time.
+  void serve(std::uint32_t number, std::uint32_t index) {
+    nodes_[number].current = index;
+    FlowRay& ray = rays_[index];
+    Cursor& cursor = cursors_[number];
+    cursor.word = ray.word;
+    cursor.word_end = last_word_here(port_of(number), ray);
+    run(number);
+  }
+
+  // Up to where the ray's steps are taken at a node; also finds the light that a shadow ray reaches.
+  const std::uint32_t* last_word_here(std::uint32_t port, FlowRay& ray) const {
+    const std::uint32_t* word = ray.word;
+    const std::uint32_t* const end = ray.end;
+    for (; word != end; word += step_words(word)) {
+      while (whole_visit(*word)) {
+        const std::uint32_t owner = owner_[operand_of(*word)];
+        if ((owner != port && owner != RegionMap::top) || ++word == end) {
+          return word;
+        }
+      }
+      const std::uint32_t owner = owner_of(*word);
+      if (owner != port && owner != RegionMap::top) {
+        break;
+      }
+      ray.lit |= step_of(*word) == Step::light;
+    }
+    return word;
+  }
+
+  void run(std::uint32_t number) {
+    Cursor& cursor = cursors_[number];
+    NodeStatistics& statistics = statistics_[number];
+    if (input_.step_by_step) {
+      if (walker_.template advance<false>(number, cursor, statistics) != Stop::end) {
+        post(FlowEvent::step, cursor.time, number);
+        return;
+      }
+    } else {
+      (void)walker_.template advance<true>(number, cursor, statistics);
+    }
+    const FlowRay& ray = rays_[nodes_[number].current];
+    if (cursor.word != ray.end || contributes(ray)) {
+      cursor.time = sim::add_ticks(cursor.time, send_);
+      spend(number, Activity::messaging, send_);
+    }
+    post(FlowEvent::done, cursor.time, number);
+    fetch_what_comes_next(number, ray);
+  }
+
+  // Until the node is done others are at work, and what it needs then comes into the host's caches meanwhile:
+  // of a ray that ends its children, of the queue's first ray its steps.
+  void fetch_what_comes_next(std::uint32_t number, const FlowRay& ray) const {
+    if (cursors_[number].word == ray.end) {
+      sim::prefetch(trees_.ray(ray.tree, ray.number));
+    }
+    if (const std::uint32_t first = nodes_[number].queue.head; first != RayPool::none) {
+      __builtin_prefetch(rays_[first].word);
+    }
+  }
+
+  // Whether a ray, when it has ended, adds to its pixel: a shadow ray only if it has reached its light.
+  static bool contributes(const FlowRay& ray) { return ray.kind != RayKind::shadow || ray.lit; }
+
+  void done(std::uint32_t number, sim::Ticks now) {
+    const std::uint32_t ray = std::exchange(nodes_[number].current, RayPool::none);
+    watch_work(number, now, trees_.place(rays_[ray].tree));
+    statistics_[number].finish = now;
+    end_ = std::max(end_, now);
+    rays_[ray].word = cursors_[number].word;
+    if (rays_[ray].word != rays_[ray].end) {
+      const std::uint32_t to = number - port_of(number) + owner_of(*rays_[ray].word);
+      send_or_set_aside(number, to, ray, now);
+    } else {
+      end_ray(number, ray, now);
+    }
+    next(number, now);
+  }
+
+  void end_ray(std::uint32_t number, std::uint32_t index, sim::Ticks now) {
+    const FlowRay ray = rays_[index];
+    rays_.give_back(index);
+    ++counts_[number].ended;
+    if (contributes(ray)) {
+      Base::send_contribution(number, now);
+    }
+    const std::uint32_t cluster = cluster_of(number);
+    host_.leave(cluster);
+    make_rays(number, ray);
+    trees_.end_ray(ray.tree);
+    if (host_.has_credit(cluster)) {
+      ask_for_rays(cluster, now);
+    }
+  }
+
+  // Puts the rays that begin where `parent` ended before those that wait in the node's own memory.
+  void make_rays(std::uint32_t number, const FlowRay& parent) {
+    std::uint32_t last = RayPool::none;
+    const std::uint32_t older = nodes_[number].made;
+    for (std::uint32_t child = trees_.ray(parent.tree, parent.number).first_child; child != LoggedRay::none;
+         child = trees_.ray(parent.tree, child).next_sibling) {
+      const std::uint32_t ray = new_ray(parent.tree, child);
+      trees_.begin_ray(parent.tree);
+      host_.enter(cluster_of(number));
+      ++counts_[number].made;
+      (last == RayPool::none ? nodes_[number].made : rays_[last].next) = ray;
+      last = ray;
+    }
+    if (last != RayPool::none) {
+      rays_[last].next = older;
+    }
+  }
+
+  const SpacePlan& plan_;
+  const std::uint32_t* owner_;
+  LogWalker<Caches> walker_;
+  RayPool rays_;
+  PixelTrees trees_;
+  sim::LargeVector<Node> nodes_;
+  sim::LargeVector<Cursor> cursors_;
+  std::vector<Admission> admissions_;
+  std::uint32_t slots_;
+  sim::Ticks send_;
+  sim::Ticks receive_;
+};
+
+}  // namespace marti::processors

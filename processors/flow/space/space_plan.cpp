@@ -1,0 +1,88 @@
+#include "processors/flow/space/space_plan.h"
+
+#include <algorithm>
+
+#include "processors/cost/step_time.h"
+#include "processors/flow/space/region_policy.h"
+#include "processors/flow/space/region_work.h"
+#include "sim/key_error.h"
+
+namespace marti::processors {
+
+namespace {
+
+using memory::RecordKind;
+
+std::vector<std::uint32_t> deal(const WorkLog& log, const MachineConfig& config, SpacePlan& plan) {
+  const RegionMap& regions = plan.regions;
+  switch (config.space.policy) {
+    case RegionPolicy::blocks:
+      return deal_in_blocks(regions.size(), config.nodes);
+    case RegionPolicy::scatter:
+      return deal_scattered(regions.size(), config.nodes);
+    case RegionPolicy::balanced:
+      return deal_balanced(
+          distinct_primitives(log.topology, regions.region_of, regions.size(), log.primitives), config.nodes);
+    case RegionPolicy::sampled: {
+      const RegionWork work = sample_work(log, regions, step_ticks(config, log), config.space.sample_step);
+      plan.sampling_work = work.total;
+      return deal_balanced(work.of, config.nodes);
+    }
+  }
+  throw sim::InternalError("space: an unknown policy");
+}
+
+// Bytes from a primitive's record to the next one's.
+std::uint64_t stride_of(const memory::Layout& layout, std::uint64_t primitive) {
+  return layout.address(RecordKind::primitive, primitive + 1) -
+         layout.address(RecordKind::primitive, primitive);
+}
+
+// Adds the records of each node's regions to its memory, and finds how often primitives are there.
+void add_regions(const WorkLog& log, const memory::Layout& layout, SpacePlan& plan) {
+  const accel::Topology& topology = log.topology;
+  for (std::size_t number = 0; number < topology.nodes.size(); ++number) {
+    if (plan.owner[number] != RegionMap::top) {
+      const accel::TopologyNode& node = topology.nodes[number];
+      const std::uint64_t entries = node.leaf ? node.count : 0;
+      plan.memory_bytes[plan.owner[number]] +=
+          layout.stride(RecordKind::node) + entries * layout.stride(RecordKind::list);
+    }
+  }
+  std::vector<bool> is_held(log.primitives);  // by anybody so far
+  each_distinct_primitive(topology, plan.owner, static_cast<std::uint32_t>(plan.memory_bytes.size()),
+                          log.primitives, [&](std::uint32_t node, std::uint32_t primitive) {
+                            plan.memory_bytes[node] += stride_of(layout, primitive);
+                            plan.duplicated_primitives += is_held[primitive] ? 1 : 0;
+                            is_held[primitive] = true;
+                          });
+}
+
+}  // namespace
+
+SpacePlan plan_space(const WorkLog& log, const MachineConfig& config, const memory::Layout& layout) {
+  if (config.space.level == 0) {
+    throw sim::KeyError("space.level", "the root is level 1");
+  }
+  if (config.space.sample_step == 0) {
+    throw sim::KeyError("space.sample_step", "must be at least 1");
+  }
+  if (config.space.queue == 0) {
+    throw sim::KeyError("space.queue", "a node needs room for at least one ray");
+  }
+  SpacePlan plan;
+  plan.regions = cut_regions(log.topology, config.space.level);
+  plan.node_of_region = deal(log, config, plan);
+  plan.owner.resize(log.topology.nodes.size());
+  std::transform(plan.regions.region_of.begin(), plan.regions.region_of.end(), plan.owner.begin(),
+                 [&](std::uint32_t region) {
+                   return region == RegionMap::top ? RegionMap::top : plan.node_of_region[region];
+                 });
+  plan.memory_bytes.assign(
+      config.nodes, std::uint64_t{plan.regions.top_nodes} * layout.stride(RecordKind::node) +
+                        layout.section_bytes(RecordKind::material) + layout.section_bytes(RecordKind::texel));
+  add_regions(log, layout, plan);
+  return plan;
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,16 @@
+// What is counted about caches beside hits and misses, as values; all of it only when asked.
+#pragma once
+
+namespace marti::processors {
+
+struct CountConfig {
+  bool miss_classes = false;  ///< why first-level caches missed
+  bool sharing = false;       ///< how many nodes of a cluster fetched each line
+  bool attribution = false;  ///< references, misses and waits by record kind, tree level, ray kind and bounce
+  bool working_set = false;  ///< misses of caches of other sizes and ways (processors/passes/working_set.h)
+
+  /// Of those that nodes count while they are timed; the working set is worked out afterwards.
+  [[nodiscard]] bool any() const { return miss_classes || sharing || attribution; }
+};
+
+}  // namespace marti::processors

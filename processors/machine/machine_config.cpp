@@ -1,0 +1,118 @@
+#include "processors/machine/machine_config.h"
+
+#include <bit>
+#include <string>
+
+#include "sim/key_error.h"
+
+namespace marti::processors {
+
+namespace {
+
+// A tree that is built while others read it needs a memory that serves in the order of asking.
+void check_order(const MachineConfig& config) {
+  if (config.build.sharing != Sharing::shared || !writes_done_later(config)) {
+    return;
+  }
+  if (config.placement == Placement::distributed) {
+    throw sim::KeyError(
+        "build.sharing",
+        "a read may overtake another node's write in the network, so nodes cannot share a "
+        "tree "
+        "that is built in a distributed memory (database.placement = \"distributed\"); use \"private\" or "
+        "\"none\"");
+  }
+  throw sim::KeyError(
+      "build.sharing",
+      "a read may overtake another node's write on a bus that is not granted first come first "
+      "served, so nodes cannot share a tree that is built; use interconnect.arbitration = \"fifo\", or "
+      "\"private\" or \"none\"");
+}
+
+void check_distribution(const MachineConfig& config) {
+  const DistributionConfig& distribution = config.distribution;
+  if (config.scheme != Scheme::image) {
+    throw sim::KeyError("database.placement",
+                        "\"distributed\" is for machine.scheme = \"image\"; where rays move, each node "
+                        "holds what it needs");
+  }
+  if (!std::has_single_bit(distribution.interleave)) {
+    throw sim::KeyError("database.interleave", "must be a power of two");
+  }
+  const bool cached = config.cache.organisation != CacheOrganisation::none;
+  const std::uint32_t unit = config.reference_bytes();
+  if (distribution.interleave < unit) {
+    throw sim::KeyError(
+        "database.interleave",
+        "must be at least " +
+            (cached ? "a cache line" : std::string("what one reference reads without a cache")) + ", " +
+            std::to_string(unit) + " bytes");
+  }
+  if (distribution.header_bytes == 0 || config.network.width == 0) {
+    throw sim::KeyError(distribution.header_bytes == 0 ? "database.header" : "network.width",
+                        "must be at least one byte");
+  }
+}
+
+}  // namespace
+
+bool writes_done_later(const MachineConfig& config) {
+  return config.placement == Placement::distributed ||
+         (config.interconnect.kind == memory::InterconnectKind::bus &&
+          config.interconnect.arbitration != memory::Arbitration::fifo);
+}
+
+MachineConfig one_node_of(const MachineConfig& config) {
+  MachineConfig one = config;
+  one.clusters = 1;
+  one.nodes = 1;
+  one.scheme = Scheme::image;
+  one.count = {};
+  if (config.scheme == Scheme::space) {
+    one.placement = Placement::replicated;
+  }
+  return one;
+}
+
+void check(const MachineConfig& config) {
+  if (config.clusters == 0 || config.nodes == 0) {
+    throw sim::KeyError("machine.nodes", "a machine needs at least one cluster of one node");
+  }
+  if (std::uint64_t{config.clusters} * config.nodes > most_nodes) {
+    throw sim::KeyError("machine.nodes", "a machine of more than 2^24 nodes");
+  }
+  check_contexts(config);
+  check_flow(config);
+  if (config.write_buffer == 0 || config.word_bytes == 0) {
+    throw sim::KeyError(config.write_buffer == 0 ? "node.write_buffer" : "node.word", "must not be 0");
+  }
+  if (config.placement == Placement::replicated && config.build.sharing == Sharing::shared) {
+    throw sim::KeyError("build.sharing",
+                        "nodes with a database each (database.placement = \"replicated\") have no tree to "
+                        "share; use \"private\" or \"none\"");
+  }
+  check_order(config);
+  if (config.placement == Placement::distributed) {
+    check_distribution(config);
+  }
+  if ((config.placement != Placement::shared || config.build.sharing == Sharing::private_trees ||
+       config.scheme == Scheme::space) &&
+      config.local.width == 0) {
+    throw sim::KeyError("local.width", "local memory must be at least one byte wide");
+  }
+  if (config.cache.organisation == CacheOrganisation::unified) {
+    (void)sim::KeyError::laid_at("cache.size", [&] { return memory::shape_of(config.cache.cache); });
+  }
+  if (config.cache.organisation == CacheOrganisation::split) {
+    for (std::size_t i = 0; i < split_caches; ++i) {
+      memory::CacheConfig part = config.cache.cache;
+      part.size = config.cache.split_sizes[i];
+      (void)sim::KeyError::laid_at("cache." + std::string(split_cache_names[i]) + "_size",
+                                   [&] { return memory::shape_of(part); });
+    }
+  }
+  check_second_level(config);
+  check_counting(config);
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,21 @@
+// What is left of a build when the frame is over: levels, bytes, and the laws they obey.
+#pragma once
+
+#include "processors/cost/accounting.h"
+#include "processors/cost/build_mix.h"
+#include "processors/node/build_result.h"
+#include "processors/node/tree_copies.h"
+#include "processors/walk/replay_input.h"
+
+namespace marti::processors {
+
+/// Levels and copies; start-up time and counts of nodes are left to the caller. `input.tree` must be set.
+[[nodiscard]] BuildResult report_build(const ReplayInput& input, const TreeCopies& copies);
+
+/// Adds the compute cycles of `counts` to the node's time for building.
+void add_building_time(const BuildTicks& ticks, const BuildCounts& counts, TimeDivision& time);
+
+/// Throws InternalError unless what the nodes count agrees with the trees that are there.
+void check_build(const WorkLog& log, const MachineConfig& config, const BuildResult& result);
+
+}  // namespace marti::processors

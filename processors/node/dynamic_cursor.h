@@ -1,0 +1,70 @@
+// Where a node is in its work on a machine whose tree is built while it is used.
+#pragma once
+
+#include <cstdint>
+
+#include "memory/record_kind.h"
+#include "processors/machine/packets.h"
+#include "sim/time.h"
+
+namespace marti::processors {
+
+/// What follows when the bytes from DynamicCursor::at to `end` are dealt with.
+enum class Todo : std::uint8_t {
+  step,     ///< the next step of the log, or the next branch to split before the frame
+  list,     ///< a leaf's record was read: read its list
+  tests,    ///< test the next primitive of the leaf
+  branch,   ///< a lazy branch's record was read: is it built?
+  inherit,  ///< a private tree's slot was empty and the shared record was read: split the branch
+  voxel,    ///< the record of a node that is taken as one voxel was read; it may stay a P node
+  lock,     ///< the lock transaction is under way
+  split,    ///< a branch to be split before the frame was read: split it
+  sort,     ///< the list of the branch was read: read and sort its next primitive
+  make,     ///< the next child: write its list
+  record,   ///< its list was written: write its record
+  publish,  ///< all children were written: write the branch's own record
+  done,     ///< it was written
+};
+
+/// How a lock transaction came out.
+enum class Lock : std::uint8_t { won, wait, built };
+
+struct DynamicCursor {
+  sim::Ticks time = 0;
+  const std::uint32_t* word = nullptr;
+  const std::uint32_t* word_end = nullptr;
+  memory::Address at = 0;                ///< next byte to read or write
+  memory::Address end = 0;               ///< one past the last of them
+  const std::uint32_t* entry = nullptr;  ///< primitives still to be tested or sorted
+  const std::uint32_t* entry_end = nullptr;
+  const std::uint32_t* tested = nullptr;  ///< of a mailed leaf: a bit for each entry; null: all are tested
+  sim::Ticks arrived = 0;                 ///< waiting: when the lock transaction was done; -1 before
+  sim::Ticks published = 0;               ///< waiting: when the branch can be seen; -1 before
+  std::uint32_t node = 0;             ///< the leaf that is tested, or the branch that is looked at or split
+  std::uint32_t child = 0;            ///< next child to make
+  std::uint32_t eager = 0;            ///< next branch to split before the frame
+  std::uint32_t tests = 0;            ///< entries of the leaf's list to read
+  std::uint32_t entry_number = 0;     ///< of `entry` in the mailed leaf's list
+  std::uint32_t first_waiter = none;  ///< of the nodes that wait for this one to publish
+  std::uint32_t next_waiter = none;   ///< in the list this one waits in
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  std::uint32_t writes = 0;  ///< where the next posted write goes in the write buffer
+  Packet packet;
+  memory::RecordKind kind = memory::RecordKind::node;
+  Todo todo = Todo::step;
+  Lock lock = Lock::won;
+  bool writing = false;  ///< the bytes are written, not read
+  bool due = false;      ///< the simulation has reached the reference that comes next
+  bool seen = false;     ///< the lazy branch just read was seen built
+  bool before = false;   ///< it still splits branches before the frame
+
+  static constexpr std::uint32_t none = 0xffffffffU;
+};
+
+/// Why a walk stopped. due: the reference at the cursor's time must wait for the simulation. lock, miss: it
+/// asks the interconnect. write: it posts a write, of a pixel when todo is `step`. ready: nothing is left to
+/// split before the frame.
+enum class DynamicStop : std::uint8_t { due, miss, lock, write, ready };
+
+}  // namespace marti::processors

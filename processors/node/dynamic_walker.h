@@ -1,0 +1,495 @@
+// Walks a node through its log on a machine whose tree is built while it is used: as LogWalker, and splits
+// branches on the way. It knows no event and no queue.
+//
+// A reference whose outcome another node may still change (a line that is not settled, so that somebody may
+// write it) is not taken ahead of its time: the walk stops before it and goes on when the simulation has got
+// there. A line that is brought in may push another out, and somebody may have emptied a way by then: so a
+// miss too changes the cache only when its time has come. Hits of settled lines change nothing that others
+// see, and taking lines out of a cache and using others in it commute; they are taken ahead.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "processors/cost/accounting.h"
+#include "processors/cost/build_mix.h"
+#include "processors/cost/step_time.h"
+#include "processors/node/branch_lists.h"
+#include "processors/node/build_result.h"
+#include "processors/node/dynamic_cursor.h"
+#include "processors/node/tree_addresses.h"
+#include "processors/node/tree_copies.h"
+#include "processors/program/work_log.h"
+#include "processors/walk/local_memory.h"
+#include "processors/walk/node_caches.h"
+#include "processors/walk/replay_input.h"
+#include "processors/walk/second_level.h"
+#include "processors/walk/visit_plan.h"
+
+namespace marti::processors {
+
+template <class Caches>
+class DynamicWalker {
+ public:
+  DynamicWalker(const ReplayInput& input, Caches caches)
+      : input_(input),
+        plan_(*input.tree),
+        layout_(input.layout),
+        topology_(input.log.topology),
+        caches_(std::move(caches)),
+        line_bytes_(input.config.reference_bytes()),
+        unit_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
+        copies_(plan_, topology_, layout_, input.config, unit_shift_),
+        addresses_(plan_, topology_, layout_, copies_),
+        lists_(topology_),
+        ticks_(step_ticks(input.config, input.log)),
+        build_ticks_(build_ticks(input.config)),
+        local_(input.config.local),
+        second_level_(input.config),
+        local_base_(input.config.placement == Placement::replicated ? 0
+                    : private_()                                    ? plan_.lower_base()
+                                                                    : ~memory::Address{0}) {
+    if (Caches::present && !input.step_by_step) {
+      visits_ = plan_initial_visits(plan_, input.log, layout_, unit_shift_, ticks_);
+      planned_limit_ = visits_.empty() ? 0 : 2U << operand_bits;
+    }
+  }
+
+  DynamicWalker(const DynamicWalker&) = delete;  // its parts know each other
+  DynamicWalker& operator=(const DynamicWalker&) = delete;
+
+  [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
+  [[nodiscard]] const BuildTicks& times() const { return build_ticks_; }
+  [[nodiscard]] TreeCopies& copies() { return copies_; }
+  [[nodiscard]] const TreeCopies& copies() const { return copies_; }
+  [[nodiscard]] const PrivateSecondLevel& second_level() const { return second_level_; }
+  /// Takes a line out of a node's caches; how many copies there were.
+  [[nodiscard]] std::int64_t take_out(std::uint32_t node, std::uint32_t line) {
+    return caches_.view(node).remove(line) + second_level_.remove(node, line);
+  }
+
+  /// Takes `node` on from its cursor. Without RunAhead it stops before every reference.
+  template <bool RunAhead>
+  DynamicStop advance(std::uint32_t node, DynamicCursor& cursor, NodeStatistics& statistics,
+                      BuildCounts& built) {
+    const std::uint32_t copy = copies_.copy_of(node);
+    const LineStates lines = copies_.lines(copy);
+    const typename Caches::View cache = caches_.view(node);
+    for (;;) {
+      while (cursor.at < cursor.end) {
+        if (cursor.writing) {
+          if (cursor.at < local_base_) {
+            return DynamicStop::write;
+          }
+          write_local(copy, cursor, statistics, built);
+        } else if (DynamicStop stop = DynamicStop::due;
+                   !refer<RunAhead>(node, copy, lines, cache, cursor, statistics, built, stop)) {
+          return stop;
+        }
+      }
+      switch (cursor.todo) {
+        case Todo::step:
+          if (cursor.before) {
+            if (cursor.eager == plan_.eager().size()) {
+              return DynamicStop::ready;
+            }
+            read_record(cursor, copy, plan_.eager()[cursor.eager++], Todo::split);
+            break;
+          }
+          if constexpr (RunAhead && Caches::present) {
+            take_planned(lines, cache, cursor, statistics);
+          }
+          if (cursor.word == cursor.word_end) {
+            ++statistics.steps.pixels;
+            spend(cursor, ticks_.pixel, 1);
+            return DynamicStop::write;
+          }
+          take_step(cursor, copy, statistics, *cursor.word++);
+          break;
+        case Todo::list:
+          cursor.todo = Todo::tests;
+          read(cursor, memory::RecordKind::list, addresses_.list(copy, cursor.node),
+               std::uint64_t{cursor.tests} * layout_.record_bytes(memory::RecordKind::list));
+          break;
+        case Todo::tests:
+          if (cursor.entry == cursor.entry_end) {
+            cursor.todo = Todo::step;
+            break;
+          }
+          if (input_.log.mailboxes) {
+            ++statistics.steps.lookups;
+            spend(cursor, ticks_.lookup, 1);
+            if (cursor.tested != nullptr && !tested_in_mask(cursor.tested, cursor.entry_number++)) {
+              ++cursor.entry;
+              break;
+            }
+          }
+          begin_test(cursor, statistics.steps, *cursor.entry);
+          read_one(cursor, memory::RecordKind::primitive, *cursor.entry++);
+          break;
+        case Todo::branch:
+          if (cursor.seen) {
+            cursor.todo = Todo::step;
+          } else if (!private_()) {
+            spend(cursor, build_ticks_.lock, 1);
+            cursor.todo = Todo::lock;
+            return DynamicStop::lock;
+          } else if (addresses_.has_slot(plan_.place(cursor.node))) {
+            cursor.todo = Todo::inherit;
+            read(cursor, memory::RecordKind::node, addresses_.initial_record(cursor.node), node_bytes());
+          } else {
+            take(node, copy, cursor, built);
+          }
+          break;
+        case Todo::voxel:
+          cursor.todo = Todo::step;
+          if (const TreePlan::Place& place = plan_.place(cursor.node);
+              addresses_.has_slot(place) && !copies_.built(copy, place.lazy)) {
+            read(cursor, memory::RecordKind::node, addresses_.initial_record(cursor.node), node_bytes());
+          }
+          break;
+        case Todo::inherit:
+          take(node, copy, cursor, built);
+          break;
+        case Todo::lock:
+          if (cursor.lock == Lock::won) {
+            ++built.splits;
+            begin_split(copy, cursor, built);
+          } else {
+            ++built.rereads;
+            read_record(cursor, copy, cursor.node, Todo::branch);
+          }
+          break;
+        case Todo::split:
+          ++built.start_up_splits;
+          begin_split(copy, cursor, built);
+          break;
+        case Todo::sort:
+          sort_next(cursor, built);
+          break;
+        case Todo::make:
+          make_child(copy, cursor, built);
+          break;
+        case Todo::record:
+          cursor.todo = Todo::make;
+          write(cursor, addresses_.record(copy, topology_.nodes[cursor.node].first + cursor.child++),
+                node_bytes());
+          break;
+        case Todo::publish:
+          cursor.todo = Todo::done;
+          spend(cursor, build_ticks_.publish, 1);
+          write(cursor, addresses_.record(copy, cursor.node), node_bytes());
+          break;
+        case Todo::done:
+          cursor.todo = Todo::step;
+          break;
+      }
+    }
+  }
+
+  /// Address and bytes of the transaction that the node stopped for: of a miss a whole line with a cache,
+  /// else its own part of the interleave unit; of a write its part of a line.
+  [[nodiscard]] memory::Address address(const DynamicCursor& cursor) const {
+    return Caches::present && !cursor.writing ? (cursor.at >> unit_shift_) << unit_shift_ : cursor.at;
+  }
+  [[nodiscard]] std::uint32_t bytes(const DynamicCursor& cursor) const {
+    return Caches::present && !cursor.writing ? line_bytes_ : part(cursor);
+  }
+  /// The record that a lock transaction is about.
+  [[nodiscard]] memory::Address locked_address(std::uint32_t node, const DynamicCursor& cursor) const {
+    return addresses_.record(copies_.copy_of(node), cursor.node);
+  }
+
+  /// The time of the miss has come: its line is brought in. False when the second level has served it.
+  bool miss(std::uint32_t node, DynamicCursor& cursor, NodeStatistics& statistics) {
+    const std::uint32_t copy = copies_.copy_of(node);
+    const auto line = static_cast<std::uint32_t>(cursor.at >> unit_shift_);
+    (void)caches_.view(node).access(cursor.kind, line);
+    ++statistics.references.misses[static_cast<std::size_t>(cursor.kind)];
+    if (Caches::present && !private_()) {
+      copies_.note_cached(copy, line);
+    }
+    look(copy, cursor);
+    if (second_level_.access(node, line, cursor.time, statistics.time)) {
+      pass(cursor);
+      return false;
+    }
+    return true;
+  }
+  /// The transaction has been made.
+  void pass(DynamicCursor& cursor) const { cursor.at = ((cursor.at >> unit_shift_) + 1) << unit_shift_; }
+
+  /// Whether the bytes just written were the last of a lazy branch's own record.
+  [[nodiscard]] bool publishes(const DynamicCursor& cursor) const {
+    return cursor.todo == Todo::done && cursor.at >= cursor.end &&
+           plan_.place(cursor.node).lazy != TreePlan::none;
+  }
+
+ private:
+  using View = typename Caches::View;
+
+  [[nodiscard]] bool private_() const { return input_.config.build.sharing == Sharing::private_trees; }
+  [[nodiscard]] std::uint32_t node_bytes() const { return layout_.record_bytes(memory::RecordKind::node); }
+  [[nodiscard]] std::uint32_t part(const DynamicCursor& cursor) const {
+    const memory::Address next = ((cursor.at >> unit_shift_) + 1) << unit_shift_;
+    return static_cast<std::uint32_t>(std::min(cursor.end, next) - cursor.at);
+  }
+  static void spend(DynamicCursor& cursor, sim::Ticks each, std::int64_t count) {
+    cursor.time = sim::add_ticks(cursor.time, sim::multiply_ticks(each, count));
+  }
+
+  static void read(DynamicCursor& cursor, memory::RecordKind kind, memory::Address at, std::uint64_t bytes) {
+    cursor.kind = kind;
+    cursor.at = at;
+    cursor.end = at + bytes;
+    cursor.writing = false;
+  }
+  static void write(DynamicCursor& cursor, memory::Address at, std::uint64_t bytes) {
+    read(cursor, memory::RecordKind::node, at, bytes);  // the kind of a write does not matter
+    cursor.writing = true;
+  }
+  void read_record(DynamicCursor& cursor, std::uint32_t copy, std::uint32_t tree_node, Todo todo) const {
+    cursor.node = tree_node;
+    cursor.todo = todo;
+    read(cursor, memory::RecordKind::node, addresses_.record(copy, tree_node), node_bytes());
+  }
+  void read_one(DynamicCursor& cursor, memory::RecordKind kind, std::uint64_t index) const {
+    read(cursor, kind, layout_.address(kind, index), layout_.record_bytes(kind, index));
+  }
+
+  // A test's computing, at its price.
+  void begin_test(DynamicCursor& cursor, StepCounts& steps, std::uint32_t primitive) const {
+    cursor.time = sim::add_ticks(cursor.time, count_test(ticks_, input_.log.kind_of(primitive), steps));
+  }
+
+  // Takes visits to the initial tree whose lines are all settled and in the cache. The visit at which that
+  // ends is made record by record from its beginning: using lines once more in the same order changes
+  // nothing.
+  void take_planned(const LineStates& lines, View cache, DynamicCursor& cursor, NodeStatistics& statistics) {
+    VisitCounts counts;
+    std::uint32_t visits = 0;
+    sim::Ticks time = cursor.time;
+    const std::uint32_t* word = cursor.word;
+    for (; word != cursor.word_end && *word < planned_limit_; ++word) {
+      const Visit& visit = visits_.visits[operand_of(*word)];
+      const std::uint32_t* line = visits_.lines.data() + visit.begin;
+      const std::uint32_t* const end = line + visit.lines;
+      while (line != end && lines.settled(*line) && look_up(cache, line)) {
+        ++line;
+      }
+      if (line != end || visit.lines == 0) {
+        break;
+      }
+      time = sim::add_ticks(time, visit.time);
+      counts += visit.counts;
+      if (++visits == most_summed_visits) [[unlikely]] {
+        add_visits(std::exchange(counts, {}), visits, input_.log.mailboxes, statistics);
+        visits = 0;
+      }
+    }
+    cursor.word = word;
+    cursor.time = time;
+    add_visits(counts, visits, input_.log.mailboxes, statistics);
+  }
+
+  [[gnu::always_inline]] bool look_up(View cache, const std::uint32_t* line) const {
+    if constexpr (Caches::by_kind) {
+      const auto at = static_cast<std::size_t>(line - visits_.lines.data());
+      return cache.touch(kind_of_label(visits_.labels[at]), *line);
+    } else {
+      return cache.touch(memory::RecordKind::node, *line);  // such caches do not look at the kind
+    }
+  }
+
+  // Whether the node sees the lazy branch built whose record it reads now.
+  void look(std::uint32_t copy, DynamicCursor& cursor) const {
+    if (cursor.todo == Todo::branch) {
+      cursor.seen = copies_.built(copy, plan_.place(cursor.node).lazy);
+    }
+  }
+
+  // Reads the next part. False when the node has to stop.
+  template <bool RunAhead>
+  bool refer(std::uint32_t node, std::uint32_t copy, const LineStates& lines, View cache,
+             DynamicCursor& cursor, NodeStatistics& statistics, BuildCounts& built, DynamicStop& stop) {
+    const auto line = static_cast<std::uint32_t>(cursor.at >> unit_shift_);
+    if ((!RunAhead || (Caches::present && !lines.settled(line))) && !cursor.due) {
+      stop = DynamicStop::due;
+      return false;
+    }
+    cursor.due = false;
+    const bool local = cursor.at >= local_base_;
+    if (local ? cache.access(cursor.kind, line) : cache.touch(cursor.kind, line)) [[likely]] {
+      ++statistics.references.hits[static_cast<std::size_t>(cursor.kind)];
+      spend(cursor, ticks_.hit, 1);
+    } else if (!local) {
+      stop = DynamicStop::miss;
+      return false;
+    } else {
+      ++statistics.references.misses[static_cast<std::size_t>(cursor.kind)];
+      if (!second_level_.access(node, line, cursor.time, statistics.time)) {
+        ++built.local_misses;
+        use_local(cursor, statistics, Caches::present ? line_bytes_ : part(cursor));
+      }
+    }
+    look(copy, cursor);
+    pass(cursor);
+    return true;
+  }
+
+  void use_local(DynamicCursor& cursor, NodeStatistics& statistics, std::uint32_t bytes) const {
+    cursor.time = sim::add_ticks(cursor.time, local_.use(bytes, statistics.time));
+  }
+
+  void write_local(std::uint32_t copy, DynamicCursor& cursor, NodeStatistics& statistics,
+                   BuildCounts& built) {
+    built.written_bytes += part(cursor);
+    use_local(cursor, statistics, part(cursor));
+    pass(cursor);
+    if (publishes(cursor)) {
+      // Only a tree of its own lies in a node's own memory, so nobody else looks.
+      copies_.publish(copy, plan_.place(cursor.node).lazy);
+    }
+  }
+
+  void take(std::uint32_t node, std::uint32_t copy, DynamicCursor& cursor, BuildCounts& built) {
+    copies_.take(copy, plan_.place(cursor.node).lazy, node);
+    ++built.splits;
+    begin_split(copy, cursor, built);
+  }
+
+  void begin_split(std::uint32_t copy, DynamicCursor& cursor, BuildCounts& built) {
+    const std::span<const std::uint32_t> primitives = lists_.of(cursor.node);
+    const std::uint32_t listed = plan_.listed(cursor.node);
+    sim::ensure(listed >= primitives.size(), "a branch lists fewer primitives than the leaves below it");
+    built.listed += listed;
+    cursor.entry = primitives.data();
+    cursor.entry_end = primitives.data() + primitives.size();
+    cursor.todo = Todo::sort;
+    read(cursor, memory::RecordKind::list, addresses_.list(copy, cursor.node),
+         std::uint64_t{listed} * layout_.record_bytes(memory::RecordKind::list));
+  }
+
+  void sort_next(DynamicCursor& cursor, BuildCounts& built) {
+    if (cursor.entry != cursor.entry_end) {
+      spend(cursor, build_ticks_.listed, 1);
+      read_one(cursor, memory::RecordKind::primitive, *cursor.entry++);
+      return;
+    }
+    // What the branch listed and no leaf does is classified too; then come the overlap tests.
+    const std::uint32_t overlaps = topology_.work[cursor.node].overlaps;
+    const auto sorted = static_cast<std::int64_t>(lists_.of(cursor.node).size());
+    spend(cursor, build_ticks_.listed, plan_.listed(cursor.node) - sorted);
+    spend(cursor, build_ticks_.overlap, overlaps);
+    built.overlaps += overlaps;
+    cursor.child = 0;
+    cursor.todo = Todo::make;
+  }
+
+  void make_child(std::uint32_t copy, DynamicCursor& cursor, BuildCounts& built) {
+    if (cursor.child == topology_.nodes[cursor.node].count) {
+      cursor.todo = Todo::publish;
+      return;
+    }
+    const std::uint32_t child = topology_.nodes[cursor.node].first + cursor.child;
+    const std::uint32_t entries = plan_.listed(child);
+    ++built.children;
+    built.entries += entries;
+    spend(cursor, build_ticks_.child, 1);
+    spend(cursor, build_ticks_.entry, entries);
+    cursor.todo = Todo::record;
+    if (entries != 0) {
+      write(cursor, addresses_.list(copy, child),
+            std::uint64_t{entries} * layout_.record_bytes(memory::RecordKind::list));
+    }
+  }
+
+  void take_leaf(DynamicCursor& cursor, std::uint32_t copy, NodeStatistics& statistics, std::uint32_t leaf,
+                 std::uint32_t tests, const std::uint32_t* tested = nullptr) {
+    ++statistics.steps.leaves;
+    statistics.steps.lists += tests != 0 ? 1 : 0;
+    spend(cursor, ticks_.leaf, 1);
+    cursor.tests = tests;
+    cursor.tested = tested;
+    cursor.entry_number = 0;
+    cursor.entry = topology_.entries.data() + topology_.nodes[leaf].first;
+    cursor.entry_end = cursor.entry + tests;
+    read_record(cursor, copy, leaf, tests != 0 ? Todo::list : Todo::step);
+  }
+
+  // Any step: its compute cycles, and the first of its references made ready.
+  void take_step(DynamicCursor& cursor, std::uint32_t copy, NodeStatistics& statistics, std::uint32_t word) {
+    const std::uint32_t operand = operand_of(word);
+    StepCounts& steps = statistics.steps;
+    switch (step_of(word)) {
+      case Step::branch:
+        ++steps.branches;
+        spend(cursor, ticks_.branch, 1);
+        read_record(cursor, copy, operand,
+                    plan_.place(operand).lazy == TreePlan::none ? Todo::step : Todo::branch);
+        break;
+      case Step::leaf:
+        take_leaf(cursor, copy, statistics, operand, topology_.nodes[operand].count);
+        break;
+      case Step::partial_leaf:
+        take_leaf(cursor, copy, statistics, operand, *cursor.word++);
+        break;
+      case Step::mailed_leaf: {
+        const std::uint32_t entries = *cursor.word++;
+        const std::uint32_t* const tested = cursor.word;
+        cursor.word += mask_words(entries);
+        take_leaf(cursor, copy, statistics, operand, entries, tested);
+        break;
+      }
+      case Step::ray:
+        ++(steps.*ray_counters[operand & 3U]);
+        spend(cursor, ticks_.ray[operand & 3U], 1);
+        break;
+      case Step::shade:
+        ++steps.shades;
+        spend(cursor, ticks_.shade, 1);
+        read_one(cursor, memory::RecordKind::material, operand);
+        break;
+      case Step::cut:
+        ++steps.cuts;
+        spend(cursor, ticks_.cut, 1);
+        read_record(cursor, copy, operand, Todo::voxel);
+        break;
+      case Step::pass:
+        ++steps.passes;
+        spend(cursor, ticks_.pass, 1);
+        read_one(cursor, memory::RecordKind::material, operand);
+        break;
+      case Step::light:
+        ++steps.lights;
+        spend(cursor, ticks_.light, 1);
+        break;
+      case Step::texel:
+        ++steps.texels;
+        spend(cursor, ticks_.texel, 1);
+        read_one(cursor, memory::RecordKind::texel, input_.log.texture_begin[operand] + *cursor.word++);
+        break;
+    }
+  }
+
+  ReplayInput input_;
+  const TreePlan& plan_;
+  const memory::Layout& layout_;
+  const accel::Topology& topology_;
+  Caches caches_;
+  std::uint32_t line_bytes_;
+  unsigned unit_shift_;
+  TreeCopies copies_;
+  TreeAddresses addresses_;
+  VisitPlan visits_;  // of the initial tree
+  std::uint32_t planned_limit_ = 0;
+  BranchLists lists_;
+  StepTicks ticks_;
+  BuildTicks build_ticks_;
+  LocalMemory local_;
+  PrivateSecondLevel second_level_;
+  memory::Address local_base_;  ///< from here on addresses are those of a node's own memory
+};
+
+}  // namespace marti::processors

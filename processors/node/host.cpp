@@ -1,0 +1,42 @@
+#include "processors/node/host.h"
+
+#include <algorithm>
+
+namespace marti::processors {
+
+Host::Host(const HostConfig& config, std::uint64_t packets, std::uint32_t nodes)
+    : config_(config),
+      packets_(packets),
+      nodes_(nodes),
+      taken_(config.assignment == Assignment::dynamic ? 0 : nodes),
+      latency_(config.clock.cycles(config.latency_cycles)),
+      occupancy_(config.clock.cycles(config.occupancy_cycles)) {}
+
+std::optional<Grant> Host::next(std::uint32_t node, sim::Ticks now) {
+  if (config_.assignment == Assignment::interleaved) {
+    const std::uint64_t packet = node + taken_[node] * nodes_;
+    if (packet >= packets_) {
+      return std::nullopt;
+    }
+    ++taken_[node];
+    return Grant{packet, now};
+  }
+  if (config_.assignment == Assignment::blocks) {
+    const std::uint64_t packet = packets_ * node / nodes_ + taken_[node];
+    if (packet >= packets_ * (node + 1) / nodes_) {
+      return std::nullopt;
+    }
+    ++taken_[node];
+    return Grant{packet, now};
+  }
+  ++statistics_.requests;
+  if (handed_out_ == packets_) {
+    return std::nullopt;
+  }
+  const sim::Ticks begin = std::max(now, free_at_);
+  free_at_ = sim::add_ticks(begin, occupancy_);
+  statistics_.busy = sim::add_ticks(statistics_.busy, occupancy_);
+  return Grant{handed_out_++, sim::add_ticks(begin, latency_)};
+}
+
+}  // namespace marti::processors

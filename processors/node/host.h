@@ -1,0 +1,57 @@
+// The host: gives packets to the nodes of all clusters.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "processors/machine/host_config.h"
+#include "processors/machine/packets.h"
+#include "sim/statistics.h"
+#include "sim/time.h"
+
+namespace marti::processors {
+
+/// A packet and when its node may begin it.
+struct Grant {
+  std::uint64_t packet = 0;
+  sim::Ticks start = 0;
+};
+
+struct HostStatistics {
+  std::int64_t requests = 0;  ///< dynamic requests, those that found no packet left included
+  sim::Ticks busy = 0;
+
+  static constexpr auto counters() {
+    using C = sim::Counter<HostStatistics>;
+    return std::array{C{"requests", "1", "requests of free nodes, those that found no packet left included",
+                        &HostStatistics::requests},
+                      C{"busy", "ps", "time that requests kept the host", &HostStatistics::busy}};
+  }
+};
+static_assert(sim::declares_every_member<HostStatistics>());
+
+/// Requests must come in the order of simulated time.
+class Host {
+ public:
+  Host(const HostConfig& config, std::uint64_t packets, std::uint32_t nodes);
+
+  /// Node `node` is free at `now`. Nothing when no packet is left for it.
+  std::optional<Grant> next(std::uint32_t node, sim::Ticks now);
+
+  [[nodiscard]] const HostStatistics& statistics() const { return statistics_; }
+
+ private:
+  HostConfig config_;
+  std::uint64_t packets_;
+  std::uint64_t nodes_;
+  std::uint64_t handed_out_ = 0;      // dynamic
+  std::vector<std::uint32_t> taken_;  // static: packets each node has taken
+  sim::Ticks latency_;
+  sim::Ticks occupancy_;
+  sim::Ticks free_at_ = 0;
+  HostStatistics statistics_;
+};
+
+}  // namespace marti::processors

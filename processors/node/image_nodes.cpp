@@ -1,0 +1,24 @@
+#include "processors/node/image_nodes.h"
+
+#include "processors/node/node_factory.h"
+#include "processors/walk/log_walker.h"
+
+namespace marti::processors {
+
+namespace {
+
+// Of one parameter, as make_nodes asks for: not every compiler leaves out a defaulted one.
+template <class Caches>
+using LoggedNodes = ImageNodes<Caches, LogWalker<Caches>>;
+
+}  // namespace
+
+std::unique_ptr<NodeArray> make_image_nodes(const ReplayInput& input, sim::Engine& engine, Host& host) {
+  if (input.line_set != 0) {
+    return std::make_unique<LoggedNodes<RoomyCaches>>(input, engine, host,
+                                                      RoomyCaches(input.config, input.line_set));
+  }
+  return make_nodes<LoggedNodes>(input, engine, host);
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,191 @@
+// Nodes of the image scheme: each takes a packet of neighbouring pixels and traces it whole.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "processors/cost/step_time.h"
+#include "processors/node/packet_nodes.h"
+#include "processors/walk/log_walker.h"
+#include "processors/walk/node_caches.h"
+#include "sim/prefetch.h"
+
+namespace marti::processors {
+
+/// `Caches` is one of node_caches.h, `Walker` LogWalker or StrippedWalker of them. See node_array.h for what
+/// the members do.
+template <class Caches, class Walker = LogWalker<Caches>>
+class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> {
+  using Base = PacketNodes<ImageNodes<Caches, Walker>, Cursor>;
+  friend Base;
+  using Base::cursors_;
+  using Base::dispatch;
+  using Base::end_;
+  using Base::has_room;
+  using Base::input_;
+  using Base::interconnect_of;
+  using Base::port_of;
+  using Base::post;
+  using Base::spend;
+  using Base::statistics_;
+  using Base::watch;
+  using Base::watch_read;
+  using Base::write_pixel;
+
+ public:
+  ImageNodes(const ReplayInput& input, sim::Engine& engine, Host& host, Caches caches)
+      : Base(input, engine, host),
+        walker_(input, std::move(caches)),
+        begun_(input.sample == nullptr ? 0 : input.config.all_nodes()) {}
+
+  void start(std::uint64_t seed) override {
+    for (const std::uint32_t node : Base::first_order(seed)) {
+      post(EventClass::dispatch, 0, node);
+    }
+  }
+
+  void handle(const sim::Event& event) override {
+    const std::uint32_t node = event.component();
+    switch (static_cast<EventClass>(event.event_class())) {
+      case EventClass::step:
+        run(node);
+        break;
+      case EventClass::dispatch:
+        dispatch(node);
+        break;
+      case EventClass::reply:
+        interconnect_of(node).reply(port_of(node));
+        break;
+      case EventClass::memory:
+        interconnect_of(node).proceed(port_of(node), event.sequence());
+        break;
+      case EventClass::read:
+        read(node);
+        break;
+      case EventClass::write:
+        if (has_room(node)) {
+          write_pixel(node);
+        }
+        break;
+    }
+  }
+
+  void prepare(const sim::Event& event) override {
+    const std::uint32_t node = event.component();
+    sim::prefetch(cursors_[node]);
+    sim::prefetch(statistics_[node]);
+  }
+
+  void finish() override {
+    for (NodeStatistics& node : statistics_) {
+      add_counted_time(walker_.ticks(), node.steps, node.references.all_hits(), node.time);
+      node.time[static_cast<std::size_t>(Activity::idle)] = end_ - node.finish;
+    }
+    Base::watch_idle();
+    if (input_.own_reads) {
+      count_own_reads();
+    }
+  }
+
+  SecondLevelResult second_level() const override { return walker_.second_level().result(); }
+
+  CacheCountResult cache_counts() const override {
+    if constexpr (requires { Caches::counted; }) {
+      return walker_.caches().counting().result();
+    } else {
+      return {};
+    }
+  }
+
+  std::size_t bytes_per_node() const override { return Base::common_bytes(); }
+
+ private:
+  void count_own_reads() {
+    if constexpr (requires { walker_.own_read_bytes(0); }) {
+      for (std::uint32_t cluster = 0; cluster < input_.config.clusters; ++cluster) {
+        const std::uint32_t first = cluster * input_.config.nodes;
+        std::int64_t reads = 0;
+        for (std::uint32_t node = first; node < first + input_.config.nodes; ++node) {
+          reads += statistics_[node].references.all_misses();
+        }
+        interconnect_of(first).count_reads(reads, walker_.own_read_bytes(cluster));
+      }
+    }
+  }
+
+  static bool for_pixel(const Cursor& /*cursor*/) { return true; }
+
+  [[nodiscard]] std::span<const std::uint32_t> words_of(std::uint32_t x, std::uint32_t y) const {
+    return walker_.words_of(x, y);
+  }
+
+  // The node's caches meet what has been left out before its next packet: no time passes, nothing is counted
+  // and nothing is read.
+  void warm_up(std::uint32_t node, std::uint64_t packet) {
+    if constexpr (Walker::steps_singly) {
+      const std::uint64_t next = input_.sample->chosen()[packet];
+      NodeStatistics unused;
+      input_.sample->for_each_warmed(begun_[node], next, begun_.size(), [&](std::uint64_t left_out) {
+        const Packet area = (*input_.all_packets)[left_out];
+        for (std::uint32_t y = area.y0; y < area.y1; ++y) {
+          for (std::uint32_t x = area.x0; x < area.x1; ++x) {
+            const std::span<const std::uint32_t> words = words_of(x, y);
+            Cursor cursor;
+            cursor.word = words.data();
+            cursor.word_end = words.data() + words.size();
+            while (walker_.template advance<true>(node, cursor, unused) != Stop::end) {
+              walker_.pass(cursor);
+            }
+          }
+        }
+      });
+      begun_[node] = next + 1;
+    }
+  }
+
+  Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
+    if constexpr (Walker::steps_singly) {
+      if (input_.step_by_step) {
+        return walker_.template advance<false>(node, cursor, statistics);
+      }
+    }
+    return walker_.template advance<true>(node, cursor, statistics);
+  }
+
+  // Lets a node work until it needs something shared.
+  void run(std::uint32_t node) {
+    Cursor& cursor = cursors_[node];
+    NodeStatistics& statistics = statistics_[node];
+    const sim::Ticks from = cursor.time;
+    const Stop stop = advance(node, cursor, statistics);
+    if (stop == Stop::end) {
+      walker_.finish_pixel(cursor, statistics);
+    }
+    watch(node, NodeState::working, from);
+    constexpr std::array classes = {EventClass::step, EventClass::read, EventClass::write};
+    post(classes[static_cast<std::size_t>(stop)], cursor.time, node);
+  }
+
+  void read(std::uint32_t node) {
+    const Cursor& cursor = cursors_[node];
+    interconnect_of(node).read({port_of(node), walker_.missed_address(cursor), walker_.missed_bytes(cursor)});
+  }
+
+  void read_done(std::uint32_t node, const memory::Service& service) {
+    spend(node, service);
+    watch_read(node, service);
+    Cursor& cursor = cursors_[node];
+    cursor.time = service.done;
+    walker_.note_wait(cursor, service);
+    walker_.pass(cursor);
+    run(node);
+  }
+
+  Walker walker_;
+  std::vector<std::uint64_t> begun_;  // with a sample: one past the packet that each node has begun last
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,34 @@
+#include "processors/node/node_array.h"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "processors/node/node_factory.h"
+
+namespace marti::processors {
+
+std::vector<std::uint32_t> order_drawn_from(std::uint64_t seed, std::size_t count) {
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0U);
+  if (seed != 0) {
+    std::shuffle(order.begin(), order.end(), std::mt19937_64(seed));
+  }
+  return order;
+}
+
+std::unique_ptr<NodeArray> make_node_array(const ReplayInput& input, sim::Engine& engine, Host& host) {
+  if (input.stripped != nullptr) {
+    return make_stripped_nodes(input, engine, host);
+  }
+  if (input.config.count.any()) {
+    return make_counted_nodes(input, engine, host);
+  }
+  if (input.tree != nullptr) {
+    return make_dynamic_nodes(input, engine, host);
+  }
+  const bool contexts = input.with_contexts || input.config.contexts > 1 || input.config.prefetch.on();
+  return contexts ? make_context_nodes(input, engine, host) : make_image_nodes(input, engine, host);
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,65 @@
+// The processor nodes of a machine, replaying a work log.
+//
+// A node's hits touch no shared state, so a node runs ahead through them without events. It stops where it
+// meets something shared: a miss, a pixel write, a request to the host. The result is the same as with an
+// event for every reference (`step_by_step`), which tests prove.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "memory/interconnect.h"
+#include "processors/cost/accounting.h"
+#include "processors/node/build_result.h"
+#include "processors/node/host.h"
+#include "processors/walk/cache_counting.h"
+#include "processors/walk/context_result.h"
+#include "processors/walk/replay_input.h"
+#include "processors/walk/second_level.h"
+#include "sim/engine.h"
+
+namespace marti::processors {
+
+/// Event classes. At equal times local progress comes before requests to the host, replies before new
+/// requests (an interconnect's data do not wait for an address of the same instant), reads before writes.
+/// `memory` is last: what the memory system does by itself when all requests of the instant are made.
+enum class EventClass : std::uint8_t { step, dispatch, reply, read, write, memory };
+
+/// The nodes of all clusters as one event handler; node n is port n % nodes of cluster n / nodes.
+class NodeArray : public sim::EventHandler {
+ public:
+  /// Posts each node's first event, in an order drawn from `seed` (0: ascending), which changes nothing.
+  virtual void start(std::uint64_t seed) = 0;
+  /// The interconnect of each cluster; set before start().
+  virtual void connect(std::vector<memory::Interconnect*> interconnects) = 0;
+  /// The client to plug into cluster `cluster`'s interconnect.
+  [[nodiscard]] virtual memory::InterconnectClient& client(std::uint32_t cluster) = 0;
+
+  /// After the run: when the last node and the last write were done.
+  [[nodiscard]] virtual sim::Ticks end() const = 0;
+  /// After the run: fills in idle time and the times that follow from counts.
+  virtual void finish() = 0;
+  [[nodiscard]] virtual std::vector<NodeStatistics> statistics() const = 0;
+  /// After the run: what building the tree took; nothing when it is given.
+  [[nodiscard]] virtual BuildResult build_result() const { return {}; }
+  /// After the run: what private second-level caches counted; nothing when there are none.
+  [[nodiscard]] virtual SecondLevelResult second_level() const { return {}; }
+  /// After the run: what was asked to be counted beside hits and misses.
+  [[nodiscard]] virtual CacheCountResult cache_counts() const { return {}; }
+  /// After the run: what contexts and prefetches did; nothing where there are none.
+  [[nodiscard]] virtual ContextResult context_result() const { return {}; }
+  /// After the run: what each packet of a sample took; nothing where there is none.
+  [[nodiscard]] virtual std::vector<PacketFigures> packet_figures() const { return {}; }
+  /// Host bytes per simulated node beside its cache tags.
+  [[nodiscard]] virtual std::size_t bytes_per_node() const = 0;
+};
+
+/// The numbers from 0 to count - 1, in an order drawn from `seed` (0: ascending).
+[[nodiscard]] std::vector<std::uint32_t> order_drawn_from(std::uint64_t seed, std::size_t count);
+
+/// Builds the nodes with the look-up code that the cache configuration asks for.
+[[nodiscard]] std::unique_ptr<NodeArray> make_node_array(const ReplayInput& input, sim::Engine& engine,
+                                                         Host& host);
+
+}  // namespace marti::processors

@@ -1,0 +1,62 @@
+// Inside of make_node_array: chooses the look-up code that a cache configuration asks for. Each kind of node
+// instantiates it in a source file of its own, because that takes long to compile.
+#pragma once
+
+#include <memory>
+
+#include "memory/quad_tags.h"
+#include "memory/set_tags.h"
+#include "processors/node/node_array.h"
+#include "processors/walk/node_caches.h"
+
+namespace marti::processors {
+
+[[nodiscard]] std::unique_ptr<NodeArray> make_image_nodes(const ReplayInput& input, sim::Engine& engine,
+                                                          Host& host);
+[[nodiscard]] std::unique_ptr<NodeArray> make_context_nodes(const ReplayInput& input, sim::Engine& engine,
+                                                            Host& host);
+[[nodiscard]] std::unique_ptr<NodeArray> make_dynamic_nodes(const ReplayInput& input, sim::Engine& engine,
+                                                            Host& host);
+[[nodiscard]] std::unique_ptr<NodeArray> make_stripped_nodes(const ReplayInput& input, sim::Engine& engine,
+                                                             Host& host);
+
+/// For the counts that a run may be asked for beside hits and misses.
+[[nodiscard]] std::unique_ptr<NodeArray> make_counted_nodes(const ReplayInput& input, sim::Engine& engine,
+                                                            Host& host);
+
+/// make(caches) with the caches of `config`, one of node_caches.h. Each kind of cache that has look-up code
+/// of its own is compiled once for each kind of node, so only the commonest have: unified LRU caches with few
+/// ways.
+template <class Make>
+auto with_caches(const MachineConfig& config, const Make& make) {
+  if (config.cache.organisation == CacheOrganisation::none) {
+    return make(NoCaches{});
+  }
+  const memory::CacheConfig& cache = config.cache.cache;
+  if (config.cache.organisation == CacheOrganisation::unified &&
+      cache.replacement == memory::Replacement::lru) {
+    const memory::CacheShape shape = memory::shape_of(cache);
+    switch (shape.ways) {
+      case 1:
+        return make(UnifiedCaches<memory::SetTags<memory::Replacement::lru, 1>>(config, shape));
+      case 2:
+        return make(UnifiedCaches<memory::SetTags<memory::Replacement::lru, 2>>(config, shape));
+      case 4:
+        return make(UnifiedCaches<memory::QuadTags>(config, shape));
+      case 8:
+        return make(UnifiedCaches<memory::SetTags<memory::Replacement::lru, 8>>(config, shape));
+      default:
+        break;
+    }
+  }
+  return make(AnyCaches(config));
+}
+
+template <template <class> class Nodes>
+std::unique_ptr<NodeArray> make_nodes(const ReplayInput& input, sim::Engine& engine, Host& host) {
+  return with_caches(input.config, [&]<class Caches>(Caches caches) -> std::unique_ptr<NodeArray> {
+    return std::make_unique<Nodes<Caches>>(input, engine, host, std::move(caches));
+  });
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,289 @@
+// What the nodes of every replay of the image scheme have in common: packets from the host, pixels one after
+// the other, posted writes, and the way to their cluster's interconnect.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "processors/machine/machine_config.h"
+#include "processors/node/node_array.h"
+#include "processors/walk/observer.h"
+#include "sim/large_pages.h"
+
+namespace marti::processors {
+
+/// `Derived` has run(node), which lets a node work until it needs something shared, read_done(node, service),
+/// and for_pixel(cursor), whether what the node does now is for the pixel at its cursor. `Cursor` has time,
+/// word, word_end, writes, x, y and packet. Where a node has several ports (MachineConfig::ports_of_node),
+/// read_done gets the port, counted through all clusters.
+template <class Derived, class Cursor>
+class PacketNodes : public NodeArray {
+ public:
+  void connect(std::vector<memory::Interconnect*> interconnects) override {
+    interconnects_ = std::move(interconnects);
+  }
+  memory::InterconnectClient& client(std::uint32_t cluster) override { return clients_[cluster]; }
+  sim::Ticks end() const override { return end_; }
+  std::vector<NodeStatistics> statistics() const override { return {statistics_.begin(), statistics_.end()}; }
+  std::vector<PacketFigures> packet_figures() const override { return meter_.figures(); }
+
+ protected:
+  PacketNodes(const ReplayInput& input, sim::Engine& engine, Host& host)
+      : input_(input),
+        engine_(engine),
+        host_(host),
+        cursors_(input.config.all_nodes()),
+        statistics_(input.config.all_nodes()),
+        ports_(input.config.ports_of_node()),
+        meter_(input.sample == nullptr ? 0 : input.packets.size(), input.config.all_nodes()),
+        writes_(std::size_t{input.config.all_nodes()} * input.config.write_buffer),
+        late_(writes_done_later(input.config) ? input.config.all_nodes() : 0) {
+    clients_.reserve(input.config.clusters);
+    for (std::uint32_t cluster = 0; cluster < input.config.clusters; ++cluster) {
+      clients_.emplace_back(derived(), cluster * input.config.nodes * ports_, ports_);
+    }
+  }
+
+  // All nodes, in an order drawn from `seed` (0: ascending).
+  [[nodiscard]] std::vector<std::uint32_t> first_order(std::uint64_t seed) const {
+    return order_drawn_from(seed, cursors_.size());
+  }
+
+  // One cluster is the common case, and a division at every event shows.
+  std::uint32_t cluster_of(std::uint32_t node) const {
+    return interconnects_.size() == 1 ? 0 : node / input_.config.nodes;
+  }
+  // The first of the node's ports, which posts its writes.
+  std::uint32_t port_of(std::uint32_t node) const {
+    return (node - cluster_of(node) * input_.config.nodes) * ports_;
+  }
+  memory::Interconnect& interconnect_of(std::uint32_t node) { return *interconnects_[cluster_of(node)]; }
+  void post(EventClass event_class, sim::Ticks time, std::uint32_t node) {
+    engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(event_class), node));
+  }
+  void spend(std::uint32_t node, Activity activity, sim::Ticks time) {
+    statistics_[node].time[static_cast<std::size_t>(activity)] += time;
+  }
+  void spend(std::uint32_t node, const memory::Service& service) {
+    add_service(statistics_[node].time, service);
+  }
+  // Tells who watches, if anybody does, that the node was in `state` from `from` to its present time.
+  void watch(std::uint32_t node, NodeState state, sim::Ticks from, bool for_pixel = true) {
+    if (input_.observer != nullptr && from != cursors_[node].time) {
+      input_.observer->spent(node, state, from, cursors_[node].time,
+                             for_pixel ? place_of(node) : PixelPlace{});
+    }
+  }
+  // The same of a read that is done and was asked for at the node's present time.
+  void watch_read(std::uint32_t node, const memory::Service& service, bool for_pixel = true) {
+    if (input_.observer != nullptr) {
+      spent_reading(*input_.observer, node, service, cursors_[node].time,
+                    for_pixel ? place_of(node) : PixelPlace{});
+    }
+  }
+  // Misses since the last call were for `pixel`.
+  void watch_misses(std::uint32_t node, PixelPlace pixel) {
+    if (input_.observer == nullptr) {
+      return;
+    }
+    seen_misses_.resize(cursors_.size());
+    const std::int64_t all = statistics_[node].references.all_misses();
+    if (all != seen_misses_[node]) {
+      input_.observer->missed(node, all - seen_misses_[node], pixel);
+      seen_misses_[node] = all;
+    }
+  }
+  void watch_idle() {
+    for (std::uint32_t node = 0; input_.observer != nullptr && node < cursors_.size(); ++node) {
+      if (statistics_[node].finish != end_) {
+        input_.observer->spent(node, NodeState::idle, statistics_[node].finish, end_, {});
+      }
+    }
+  }
+  /// What all nodes take each: the cursor, statistics, an event, and the write buffer.
+  [[nodiscard]] std::size_t common_bytes() const {
+    return sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(sim::Event) +
+           input_.config.write_buffer * sizeof(sim::Ticks) + (late_.empty() ? 0 : sizeof(LateWrites));
+  }
+
+  [[nodiscard]] PixelPlace place_of(std::uint32_t node) const { return {cursors_[node].x, cursors_[node].y}; }
+
+  // What the node has to go through for a pixel. Derived may have its own.
+  [[nodiscard]] std::span<const std::uint32_t> words_of(std::uint32_t x, std::uint32_t y) const {
+    return input_.log.pixel(x, y);
+  }
+
+  void begin_pixel(Cursor& cursor) {
+    const std::span<const std::uint32_t> words = derived().words_of(cursor.x, cursor.y);
+    cursor.word = words.data();
+    cursor.word_end = words.data() + words.size();
+  }
+
+  // Gives the node its next packet, or ends it.
+  void dispatch(std::uint32_t node) {
+    Cursor& cursor = cursors_[node];
+    watch_misses(node, {});  // those before the frame are no pixel's
+    if (meter_.on()) {
+      meter_.end(node, cursor.time, statistics_[node]);
+    }
+    const std::optional<Grant> grant = host_.next(node, cursor.time);
+    if (!grant) {
+      statistics_[node].finish = cursor.time;
+      end_ = std::max(end_, cursor.time);
+      return;
+    }
+    spend(node, Activity::dispatch_wait, grant->start - cursor.time);
+    ++statistics_[node].packets;
+    const sim::Ticks asked = std::exchange(cursor.time, grant->start);
+    if (input_.observer != nullptr) {
+      watch(node, NodeState::dispatch_wait, asked, false);
+      input_.observer->began_packet(node, grant->packet, grant->start);
+    }
+    if (meter_.on()) {
+      meter_.begin(node, grant->packet, grant->start, statistics_[node]);
+      if constexpr (requires { derived().warm_up(node, grant->packet); }) {
+        derived().warm_up(node, grant->packet);
+      }
+    }
+    cursor.packet = input_.packets[grant->packet];
+    cursor.y = cursor.packet.y0;
+    cursor.x = cursor.packet.x0;
+    begin_pixel(cursor);
+    derived().run(node);
+  }
+
+  // The oldest write still in the buffer decides whether there is room; a full buffer stalls the node until
+  // that write is done, and the write is tried again then.
+  bool has_room(std::uint32_t node) {
+    Cursor& cursor = cursors_[node];
+    const sim::Ticks room_at = writes_[std::size_t{node} * input_.config.write_buffer + cursor.writes];
+    if (room_at <= cursor.time) {
+      return true;
+    }
+    if (room_at == not_known) {
+      late_[node].stalled = true;
+    } else {
+      wait_for_room(node, room_at);
+    }
+    return false;
+  }
+
+  // Posts a write for which there is room.
+  void make_write(std::uint32_t node, memory::Address address, std::uint32_t bytes) {
+    if (!late_.empty()) {
+      enter_write(node, not_known);
+      ++late_writes_;
+    }
+    interconnect_of(node).write({port_of(node), address, bytes});
+  }
+  // Whether it is known of every write when it is done.
+  [[nodiscard]] bool all_writes_known() const { return late_writes_ == 0; }
+  // The last of the writes of which it was not known is done. Derived may have its own.
+  void writes_are_known() {}
+
+  // Posts the finished pixel and goes on to the next.
+  void write_pixel(std::uint32_t node) {
+    Cursor& cursor = cursors_[node];
+    ++statistics_[node].writes;
+    const std::uint64_t pixel = std::uint64_t{cursor.y} * input_.log.width + cursor.x;
+    make_write(node, input_.layout.address(memory::RecordKind::pixel, pixel),
+               input_.layout.record_bytes(memory::RecordKind::pixel));
+    watch_misses(node, place_of(node));
+    if (++cursor.x == cursor.packet.x1) {
+      cursor.x = cursor.packet.x0;
+      if (++cursor.y == cursor.packet.y1) {
+        post(EventClass::dispatch, cursor.time, node);
+        return;
+      }
+    }
+    begin_pixel(cursor);
+    derived().run(node);
+  }
+
+  ReplayInput input_;
+  sim::Engine& engine_;
+  Host& host_;
+  sim::LargeVector<Cursor> cursors_;
+  sim::LargeVector<NodeStatistics> statistics_;
+  sim::Ticks end_ = 0;
+  sim::Ticks last_write_done_ = 0;  // of the write posted last
+  std::uint32_t ports_;             // of each node
+
+ private:
+  // One cluster's ports, with port numbers turned into node numbers.
+  class Client final : public memory::InterconnectClient {
+   public:
+    Client(Derived& nodes, std::uint32_t first, std::uint32_t ports)
+        : nodes_(nodes), first_(first), ports_(ports) {}
+    void read_done(std::uint32_t port, const memory::Service& service) override {
+      nodes_.read_done(first_ + port, service);
+    }
+    void write_done(std::uint32_t port, sim::Ticks done) override {
+      const std::uint32_t all = first_ + port;
+      static_cast<PacketNodes&>(nodes_).write_done(ports_ == 1 ? all : all / ports_, done);
+    }
+
+   private:
+    Derived& nodes_;
+    std::uint32_t first_;
+    std::uint32_t ports_;
+  };
+
+  Derived& derived() { return static_cast<Derived&>(*this); }
+
+  void wait_for_room(std::uint32_t node, sim::Ticks room_at) {
+    Cursor& cursor = cursors_[node];
+    spend(node, Activity::queue_full_wait, room_at - cursor.time);
+    const sim::Ticks from = std::exchange(cursor.time, room_at);
+    watch(node, NodeState::queue_full_wait, from, derived().for_pixel(cursor));
+    post(EventClass::write, room_at, node);
+  }
+
+  void enter_write(std::uint32_t node, sim::Ticks done) {
+    Cursor& cursor = cursors_[node];
+    const std::uint32_t depth = input_.config.write_buffer;
+    writes_[std::size_t{node} * depth + cursor.writes] = done;
+    cursor.writes = cursor.writes + 1 == depth ? 0 : cursor.writes + 1;
+  }
+
+  // Said during the write by what serves first come, first served; else later, for the oldest write first.
+  void write_done(std::uint32_t node, sim::Ticks done) {
+    last_write_done_ = done;
+    end_ = std::max(end_, done);
+    if (late_.empty()) {
+      enter_write(node, done);
+      return;
+    }
+    LateWrites& late = late_[node];
+    const std::uint32_t depth = input_.config.write_buffer;
+    writes_[std::size_t{node} * depth + late.oldest] = done;
+    late.oldest = late.oldest + 1 == depth ? 0 : late.oldest + 1;
+    if (std::exchange(late.stalled, false)) {
+      wait_for_room(node, done);
+    }
+    if (--late_writes_ == 0) {
+      derived().writes_are_known();
+    }
+  }
+
+  // Of a node whose writes may be done at a time that is not known when they are posted.
+  struct LateWrites {
+    std::uint32_t oldest = 0;  // entry of the write buffer of which it is known next
+    bool stalled = false;      // the node waits for that entry
+  };
+  static constexpr sim::Ticks not_known = std::numeric_limits<sim::Ticks>::max();
+
+  PacketMeter meter_;                    // on with a sample of packets
+  sim::LargeVector<sim::Ticks> writes_;  // when each entry of each node's write buffer is free
+  sim::LargeVector<LateWrites> late_;    // empty where writes say at once when they are done
+  std::int64_t late_writes_ = 0;         // of which it is not known
+  std::vector<Client> clients_;
+  std::vector<memory::Interconnect*> interconnects_;
+  std::vector<std::int64_t> seen_misses_;  // that the observer has been told of; empty without one
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,121 @@
+#include "processors/node/tree_copies.h"
+
+#include <string>
+
+#include "sim/key_error.h"
+
+namespace marti::processors {
+
+TreeCopies::TreeCopies(const TreePlan& plan, const accel::Topology& topology, const memory::Layout& layout,
+                       const MachineConfig& config, unsigned line_shift)
+    : plan_(plan),
+      topology_(topology),
+      private_(config.build.sharing == Sharing::private_trees),
+      nodes_(config.nodes),
+      copies_(private_ ? config.all_nodes() : config.clusters),
+      lazies_(plan.lazy().size()),
+      line_shift_(line_shift),
+      node_bytes_(config.layout.node_bytes),
+      node_section_(layout.base(memory::RecordKind::node)) {
+  const auto lines_below = [&](memory::Address end) {
+    return static_cast<std::uint32_t>((end + (memory::Address{1} << line_shift) - 1) >> line_shift);
+  };
+  if (!private_ && lazies_ != 0) {
+    initial_lines_ = lines_below(node_section_ + layout.section_bytes(memory::RecordKind::node));
+    lower_begin_ = static_cast<std::uint32_t>(plan.lower_base() >> line_shift);
+    lines_ = initial_lines_ + std::size_t{lines_below(plan.end()) - lower_begin_};
+  }
+  const std::uint64_t bytes = std::uint64_t{copies_} * (lazies_ * 13 + lines_ * 5 + 12);
+  if (bytes > most_bytes) {
+    throw sim::KeyError("build.sharing",
+                        "keeping track of " + std::to_string(copies_) + " trees with " +
+                            std::to_string(lazies_) + " branches to build would take " +
+                            std::to_string(bytes >> 20U) +
+                            " MiB; simulate fewer processor nodes, or raise build.initial_level");
+  }
+  block_.resize(copies_ * lazies_);
+  built_.resize(copies_ * lazies_);
+  builder_.resize(private_ ? 0 : copies_ * lazies_);
+  next_.assign(copies_, plan.first_block());
+  open_.resize(copies_ * lines_);
+  cached_.resize(copies_ * lines_);
+  allocated_.assign(copies_, lower_begin_);
+  if (lines_ == 0) {
+    return;
+  }
+  for (const TreePlan::LazyBranch& branch : plan.lazy()) {
+    const TreePlan::Place& place = plan.place(branch.node);
+    for (std::uint32_t copy = 0; place.home == TreePlan::none && copy < copies_; ++copy) {
+      count_open(copy, layout.address(memory::RecordKind::node, place.record), node_bytes_, 1);
+    }
+  }
+}
+
+std::size_t TreeCopies::index_of(std::uint32_t copy, std::uint32_t line) const {
+  return copy * lines_ + (line < initial_lines_ ? line : initial_lines_ + (line - lower_begin_));
+}
+
+void TreeCopies::count_open(std::uint32_t copy, memory::Address begin, std::uint64_t bytes, std::int32_t by) {
+  if (lines_ == 0 || bytes == 0) {
+    return;
+  }
+  const auto last = static_cast<std::uint32_t>((begin + bytes - 1) >> line_shift_);
+  for (auto line = static_cast<std::uint32_t>(begin >> line_shift_); line <= last; ++line) {
+    open_[index_of(copy, line)] += static_cast<std::uint32_t>(by);
+  }
+}
+
+void TreeCopies::take(std::uint32_t copy, std::uint32_t lazy, std::uint32_t processor) {
+  sim::ensure(!taken(copy, lazy), "a branch is split twice in one tree");
+  const TreePlan::LazyBranch& branch = plan_.lazy()[lazy];
+  const memory::Address block = next_[copy];
+  block_[at(copy, lazy)] = block;
+  next_[copy] = block + branch.block_bytes;
+  if (private_) {
+    return;
+  }
+  builder_[at(copy, lazy)] = processor;
+  allocated_[copy] = static_cast<std::uint32_t>(next_[copy] >> line_shift_);
+  // The block as a whole is open until it is published, P nodes' records in it until they are themselves.
+  count_open(copy, block, branch.block_bytes, 1);
+  const accel::TopologyNode& node = topology_.nodes[branch.node];
+  for (std::uint32_t child = 0; child < node.count; ++child) {
+    if (!topology_.nodes[node.first + child].leaf) {
+      count_open(copy, block + child * plan_.stride(), node_bytes_, 1);
+    }
+  }
+}
+
+void TreeCopies::publish(std::uint32_t copy, std::uint32_t lazy) {
+  sim::ensure(taken(copy, lazy) && !built(copy, lazy), "a branch is published that nobody has split");
+  built_[at(copy, lazy)] = 1;
+  if (private_) {
+    return;
+  }
+  const TreePlan::LazyBranch& branch = plan_.lazy()[lazy];
+  count_open(copy, block(copy, lazy), branch.block_bytes, -1);
+  const TreePlan::Place& place = plan_.place(branch.node);
+  const memory::Address record = place.home == TreePlan::none
+                                     ? node_section_ + place.record * plan_.stride()
+                                     : block(copy, place.home) + place.record * plan_.stride();
+  count_open(copy, record, node_bytes_, -1);
+}
+
+LineStates TreeCopies::lines(std::uint32_t copy) const {
+  if (lines_ == 0) {
+    return {};
+  }
+  return {open_.data() + copy * lines_, initial_lines_, lower_begin_, &allocated_[copy]};
+}
+
+void TreeCopies::note_cached(std::uint32_t copy, std::uint32_t line) {
+  if (lines_ != 0 && !lines(copy).settled(line)) {
+    cached_[index_of(copy, line)] = 1;
+  }
+}
+
+bool TreeCopies::maybe_cached(std::uint32_t copy, std::uint32_t line) const {
+  return lines_ != 0 && (line < initial_lines_ || line >= lower_begin_) && cached_[index_of(copy, line)] != 0;
+}
+
+}  // namespace marti::processors

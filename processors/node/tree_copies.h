@@ -1,0 +1,100 @@
+// How far each copy of a tree has been built: the state of its lazy branches, and which lines of memory may
+// still be written. State only ever goes one way: P, being built, built; open line, settled line.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "processors/walk/tree_plan.h"
+
+namespace marti::processors {
+
+/// Which lines of one copy are settled: all their bytes have the value they will have at the end. Lines are
+/// those of the caches, or interleave units without a cache.
+struct LineStates {
+  const std::uint32_t* open = nullptr;  ///< of each line: records and lists in it that are not final
+  std::uint32_t initial_end = 0;  ///< one past the last line of the node section; 0 when nothing is open
+  std::uint32_t lower_begin = 0xffffffffU;   ///< first line of the blocks
+  const std::uint32_t* allocated = nullptr;  ///< one past the last line whose bytes all belong to some block
+
+  [[nodiscard]] bool settled(std::uint32_t line) const {
+    if (line < initial_end) {
+      return open[line] == 0;
+    }
+    return line < lower_begin || (line < *allocated && open[initial_end + (line - lower_begin)] == 0);
+  }
+};
+
+/// All copies: one a cluster when trees are shared, one a processor node when they are private.
+class TreeCopies {
+ public:
+  /// Throws UserError when the host's memory that the copies take is beyond `most_bytes`.
+  TreeCopies(const TreePlan& plan, const accel::Topology& topology, const memory::Layout& layout,
+             const MachineConfig& config, unsigned line_shift);
+
+  /// The copy that a processor node reads.
+  [[nodiscard]] std::uint32_t copy_of(std::uint32_t processor) const {
+    return private_ ? processor : processor / nodes_;
+  }
+  [[nodiscard]] std::uint32_t copies() const { return copies_; }
+
+  [[nodiscard]] bool taken(std::uint32_t copy, std::uint32_t lazy) const {
+    return block_[at(copy, lazy)] != 0;
+  }
+  [[nodiscard]] bool built(std::uint32_t copy, std::uint32_t lazy) const {
+    return built_[at(copy, lazy)] != 0;
+  }
+  /// Address of a branch's block; it must have been taken.
+  [[nodiscard]] memory::Address block(std::uint32_t copy, std::uint32_t lazy) const {
+    return block_[at(copy, lazy)];
+  }
+  /// Who took it; only of shared trees.
+  [[nodiscard]] std::uint32_t builder(std::uint32_t copy, std::uint32_t lazy) const {
+    return builder_[at(copy, lazy)];
+  }
+
+  /// `processor` splits the branch from now on: its block is allocated.
+  void take(std::uint32_t copy, std::uint32_t lazy, std::uint32_t processor);
+  /// The branch's children can be seen.
+  void publish(std::uint32_t copy, std::uint32_t lazy);
+
+  [[nodiscard]] LineStates lines(std::uint32_t copy) const;
+  /// Some cache of the cluster has got a line that is not settled.
+  void note_cached(std::uint32_t copy, std::uint32_t line);
+  /// Whether some cache may have the line.
+  [[nodiscard]] bool maybe_cached(std::uint32_t copy, std::uint32_t line) const;
+
+  /// Host bytes a replay may take for the state of all copies.
+  static constexpr std::uint64_t most_bytes = std::uint64_t{4} << 30U;
+
+ private:
+  [[nodiscard]] std::size_t at(std::uint32_t copy, std::uint32_t lazy) const {
+    return std::size_t{copy} * lazies_ + lazy;
+  }
+  [[nodiscard]] std::size_t index_of(std::uint32_t copy, std::uint32_t line) const;
+  // Adds `by` to the count of what is not final in each line that these bytes touch.
+  void count_open(std::uint32_t copy, memory::Address begin, std::uint64_t bytes, std::int32_t by);
+
+  const TreePlan& plan_;
+  const accel::Topology& topology_;
+  bool private_;
+  std::uint32_t nodes_;
+  std::uint32_t copies_;
+  std::size_t lazies_;
+  unsigned line_shift_;
+  std::uint64_t node_bytes_;
+  std::vector<memory::Address> block_;  // 0: a P node
+  std::vector<std::uint8_t> built_;
+  std::vector<std::uint32_t> builder_;
+  std::vector<memory::Address> next_;  // of each copy: where its next block goes
+  // Shared trees: of each copy the lines of the node section, then those of the blocks.
+  std::uint32_t initial_lines_ = 0;
+  std::uint32_t lower_begin_ = 0xffffffffU;
+  std::size_t lines_ = 0;
+  std::vector<std::uint32_t> open_;
+  std::vector<std::uint8_t> cached_;
+  std::vector<std::uint32_t> allocated_;
+  memory::Address node_section_ = 0;
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,145 @@
+#include "processors/passes/one_pass.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "memory/all_ways.h"
+#include "memory/stack_distance.h"
+#include "processors/replay/replay_parts.h"
+#include "processors/walk/handed_out.h"
+#include "processors/walk/log_walker.h"
+#include "processors/walk/record_places.h"
+#include "sim/error.h"
+
+namespace marti::processors {
+
+namespace {
+
+// A set with more ways than this is searched in a tree, not in a list.
+constexpr std::uint32_t most_listed_ways = 64;
+
+bool listed(const memory::CacheShape& shape) { return shape.sets > 1 || shape.ways <= most_listed_ways; }
+
+// The passes of all shapes.
+class Passes {
+ public:
+  explicit Passes(std::span<const memory::CacheShape> shapes) {
+    std::set<std::uint32_t> sets;
+    std::uint32_t ways = 0;
+    for (const memory::CacheShape& shape : shapes) {
+      if (listed(shape)) {
+        sets.insert(shape.sets);
+        ways = std::max(ways, shape.ways);
+      } else if (!distances_) {
+        distances_.emplace();
+      }
+    }
+    if (!sets.empty()) {
+      ways_.emplace(std::vector(sets.begin(), sets.end()), ways);
+    }
+  }
+
+  [[gnu::always_inline]] void access(std::uint32_t line) {
+    ++references_;
+    if (ways_) {
+      ways_->access(line);
+    }
+    if (distances_) {
+      distances_->access(line);
+    }
+  }
+  void forget() {
+    if (ways_) {
+      ways_->forget();
+    }
+    if (distances_) {
+      distances_->forget();
+    }
+  }
+  [[nodiscard]] std::int64_t references() const { return references_; }
+  [[nodiscard]] std::int64_t misses(const memory::CacheShape& shape) const {
+    if (!listed(shape)) {
+      return distances_->histogram().misses(shape.lines());
+    }
+    for (const memory::WaysHistogram& histogram : ways_->histograms()) {
+      if (histogram.sets == shape.sets) {
+        return histogram.misses(shape.ways);
+      }
+    }
+    throw sim::InternalError("a cache was not passed");
+  }
+
+ private:
+  std::int64_t references_ = 0;
+  std::optional<memory::AllWays> ways_;
+  std::optional<memory::StackDistances> distances_;
+};
+
+// Caches in which everything is found, so that a walk goes through to the end.
+struct PassedCaches {
+  static constexpr bool present = true;
+  static constexpr bool by_kind = false;
+  struct View {
+    Passes* passes;
+    [[gnu::always_inline]] bool access(memory::RecordKind /*kind*/, std::uint32_t line) const {
+      passes->access(line);
+      return true;
+    }
+  };
+  [[nodiscard]] View view(std::uint32_t /*node*/) { return {&passes}; }
+
+  Passes passes;
+};
+
+}  // namespace
+
+OnePass one_pass(const WorkLog& log, const MachineConfig& config, std::span<const memory::CacheShape> shapes,
+                 std::span<const std::vector<std::uint64_t>> packets_of_node) {
+  sim::ensure(
+      config.cache.organisation == CacheOrganisation::unified && config.build.sharing == Sharing::given,
+      "one pass is for a unified cache and a given tree");
+  for (const memory::CacheShape& shape : shapes) {
+    sim::ensure(shape.sets > 0 && (1U << shape.line_shift) == config.cache.cache.line,
+                "one pass is for caches of one line size");
+  }
+  MachineConfig plain = config;  // every reference goes to the first level and no further
+  plain.placement = Placement::shared;
+  plain.l2 = {};
+  std::optional<TreePlan> given;
+  const memory::Layout layout = layout_of(log, plain, given);
+  const PacketList packets(log.width, log.height, plain.packets);
+  const std::vector<std::uint32_t> rank = node_ranks(log, plain);
+  const ReplayInput input = {log, plain, layout, packets, rank};
+  LogWalker<PassedCaches> walker(input, PassedCaches{Passes(shapes)});
+  OnePass pass;
+  NodeStatistics statistics;
+  for (const std::vector<std::uint64_t>& numbers : packets_of_node) {
+    walker.caches().passes.forget();
+    for_each_pixel(input, numbers, [&](Cursor& cursor, std::uint32_t, std::uint32_t) {
+      pass.words += static_cast<std::uint64_t>(cursor.word_end - cursor.word);
+      (void)walker.template advance<true>(0, cursor, statistics);
+      walker.finish_pixel(cursor, statistics);
+    });
+  }
+  pass.steps = statistics.steps;
+  pass.references = walker.caches().passes.references();
+  for (const memory::CacheShape& shape : shapes) {
+    pass.misses.push_back(walker.caches().passes.misses(shape));
+  }
+  return pass;
+}
+
+std::vector<std::uint64_t> words_of_packets(const WorkLog& log, const PacketConfig& config) {
+  const PacketList packets(log.width, log.height, config);
+  std::vector<std::uint64_t> words(packets.size());
+  for (std::uint64_t number = 0; number < packets.size(); ++number) {
+    const Packet packet = packets[number];
+    for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
+      words[number] += log.rows[y].begin[packet.x1] - log.rows[y].begin[packet.x0];
+    }
+  }
+  return words;
+}
+
+}  // namespace marti::processors

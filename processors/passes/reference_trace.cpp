@@ -1,0 +1,42 @@
+#include "processors/passes/reference_trace.h"
+
+#include <span>
+
+#include "processors/walk/log_walker.h"
+
+namespace marti::processors {
+
+namespace {
+
+// A cache in which nothing is ever found: the walk stops at every reference.
+struct EmptyCaches : NoCaches {
+  static constexpr bool present = true;
+};
+
+template <class Caches>
+void walk_packets(const ReplayInput& input, std::span<const std::uint64_t> packets,
+                  const std::function<void(const Reference&)>& take) {
+  LogWalker<Caches> walker(input, Caches{});
+  NodeStatistics statistics;
+  for_each_pixel(input, packets, [&](Cursor& cursor, std::uint32_t x, std::uint32_t y) {
+    while (walker.template advance<true>(0, cursor, statistics) == Stop::miss) {
+      take({cursor.kind, cursor.at, false});
+      walker.pass(cursor);
+    }
+    const std::uint64_t pixel = std::uint64_t{y} * input.log.width + x;
+    take({memory::RecordKind::pixel, input.layout.address(memory::RecordKind::pixel, pixel), true});
+  });
+}
+
+}  // namespace
+
+void ReferenceTrace::for_each(std::uint32_t node, const std::function<void(const Reference&)>& take) const {
+  const ReplayInput walked = input(true);
+  if (walked.config.cache.organisation == CacheOrganisation::none) {
+    walk_packets<NoCaches>(walked, packets_of(node), take);
+  } else {
+    walk_packets<EmptyCaches>(walked, packets_of(node), take);
+  }
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,199 @@
+#include "processors/passes/working_set.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "processors/walk/law.h"
+#include "processors/walk/log_walker.h"
+#include "sim/key_error.h"
+
+namespace marti::processors {
+
+namespace {
+
+// The machine's own caches of a node, as they are configured.
+std::vector<memory::CacheShape> shapes_of(const NodeCacheConfig& config) {
+  std::vector<memory::CacheShape> shapes;
+  if (config.organisation == CacheOrganisation::unified) {
+    shapes.push_back(memory::shape_of(config.cache));
+  } else if (config.organisation == CacheOrganisation::split) {
+    for (const std::uint64_t size : config.split_sizes) {
+      memory::CacheConfig part = config.cache;
+      part.size = size;
+      shapes.push_back(memory::shape_of(part));
+    }
+  }
+  return shapes;
+}
+
+// The passes over the references of one cache.
+class CachePass {
+ public:
+  explicit CachePass(const memory::CacheShape& shape) : shape_(shape) {
+    if (shape.sets > 1) {
+      ways_.emplace(std::vector{shape.sets}, std::max(shape.ways, counted_ways));
+    }
+  }
+
+  [[gnu::always_inline]] void access(std::uint32_t line) {
+    distances_.access(line);
+    if (ways_) {
+      ways_->access(line);
+    }
+  }
+  void forget() {
+    distances_.forget();
+    if (ways_) {
+      ways_->forget();
+    }
+  }
+  [[nodiscard]] CacheWorkingSet result() const {
+    return {shape_, distances_.histogram(), ways_ ? ways_->histograms()[0] : memory::WaysHistogram{}};
+  }
+
+ private:
+  memory::CacheShape shape_;
+  memory::StackDistances distances_;
+  std::optional<memory::AllWays> ways_;
+};
+
+// Caches in which everything is found, so that a walk goes through to the end.
+template <bool Split>
+struct PassingCaches {
+  static constexpr bool present = true;
+  static constexpr bool by_kind = Split;
+  struct View {
+    std::vector<CachePass>* passes;
+    [[gnu::always_inline]] bool access(memory::RecordKind kind, std::uint32_t line) const {
+      (*passes)[Split ? split_cache_of[static_cast<std::size_t>(kind)] : 0].access(line);
+      return true;
+    }
+  };
+  [[nodiscard]] View view(std::uint32_t /*node*/) { return {&passes}; }
+
+  std::vector<CachePass> passes;
+};
+
+template <bool Split>
+std::vector<CacheWorkingSet> walk_nodes(const HandedOut& handed_out, const ReplayInput& input,
+                                        unsigned threads) {
+  using Walker = LogWalker<PassingCaches<Split>>;
+  const std::vector<memory::CacheShape> shapes = shapes_of(input.config.cache);
+  tbb::enumerable_thread_specific<Walker> walkers([&] {
+    PassingCaches<Split> caches;
+    for (const memory::CacheShape& shape : shapes) {
+      caches.passes.emplace_back(shape);
+    }
+    return Walker(input, std::move(caches));
+  });
+  const auto walk = [&](std::uint32_t node) {
+    Walker& walker = walkers.local();
+    for (CachePass& pass : walker.caches().passes) {
+      pass.forget();
+    }
+    NodeStatistics statistics;
+    for_each_pixel(input, handed_out.packets_of(node), [&](Cursor& cursor, std::uint32_t, std::uint32_t) {
+      (void)walker.template advance<true>(0, cursor, statistics);
+    });
+  };
+  tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
+  arena.execute([&] { tbb::parallel_for(std::uint32_t{0}, handed_out.nodes(), walk); });
+
+  // Sums of integers: which thread had which nodes makes no difference.
+  std::vector<CacheWorkingSet> sum;
+  for (Walker& walker : walkers) {
+    const std::vector<CachePass>& passes = walker.caches().passes;
+    for (std::size_t i = 0; i < passes.size(); ++i) {
+      CacheWorkingSet part = passes[i].result();
+      if (i == sum.size()) {
+        sum.push_back(std::move(part));
+      } else {
+        sum[i].distances += part.distances;
+        sum[i].ways += part.ways;
+      }
+    }
+  }
+  return sum;
+}
+
+bool packets_are_fixed(const MachineConfig& config) {
+  return config.all_nodes() == 1 || config.host.assignment != Assignment::dynamic;
+}
+
+}  // namespace
+
+void check_working_set(const MachineConfig& config) {
+  if (!config.count.working_set) {
+    return;
+  }
+  if (config.scheme != Scheme::image) {
+    throw sim::KeyError("count.working_set", "the working set is told for machine.scheme = \"image\" only");
+  }
+  if (config.cache.organisation == CacheOrganisation::none) {
+    throw sim::KeyError(
+        "count.working_set",
+        "without a cache (cache.organisation) nodes read parts of lines, and there is no working set");
+  }
+  if (config.build.sharing != Sharing::given) {
+    throw sim::KeyError(
+        "count.working_set",
+        "the working set is told for build.sharing = \"given\" only: while the tree is built, other nodes "
+        "decide what a node reads");
+  }
+  if (config.contexts > 1 || config.prefetch.on()) {
+    throw sim::KeyError(
+        "count.working_set",
+        "with several contexts or prefetching (node.contexts, [prefetch]) the order in which a node refers "
+        "to "
+        "lines depends on its cache, so one pass cannot tell the misses of another cache");
+  }
+  for (const memory::CacheShape& shape : shapes_of(config.cache)) {
+    if (shape.sets > 1 && shape.ways > most_counted_ways) {
+      throw sim::KeyError("count.working_set",
+                          "the working set is told for caches of one set, or of sets of at most " +
+                              std::to_string(most_counted_ways) + " ways, not " + std::to_string(shape.ways));
+    }
+  }
+}
+
+WorkingSet working_set(const HandedOut& handed_out, unsigned threads) {
+  const ReplayInput input = handed_out.input(false);
+  const bool split = input.config.cache.organisation == CacheOrganisation::split;
+  return {.line = input.config.cache.cache.line,
+          .any_cache = packets_are_fixed(input.config),
+          .caches = split ? walk_nodes<true>(handed_out, input, threads)
+                          : walk_nodes<false>(handed_out, input, threads)};
+}
+
+void check_working_set(const WorkingSet& set, const MachineConfig& config, const MachineResult& result) {
+  const ReferenceCounts counts = result.references();
+  for (std::size_t i = 0; i < set.caches.size(); ++i) {
+    std::int64_t references = 0;
+    std::int64_t misses = 0;
+    for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
+      if (set.caches.size() == 1 || split_cache_of[kind] == i) {
+        references += counts.hits[kind] + counts.misses[kind];
+        misses += counts.misses[kind];
+      }
+    }
+    const CacheWorkingSet& cache = set.caches[i];
+    require_equal(cache.distances.references, references, "one pass meets the references of the replay");
+    require(cache.shape.sets == 1 || cache.ways.references == references,
+            "the pass over all ways meets the references of the replay");
+    if (config.cache.cache.replacement == memory::Replacement::lru) {
+      require_equal(cache.shape.sets == 1 ? cache.distances.misses(cache.shape.ways)
+                                          : cache.ways.misses(cache.shape.ways),
+                    misses, "one pass finds the misses of the replay");
+    }
+    require(misses >= cache.distances.compulsory, "a cache misses at least the first uses of lines");
+  }
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,53 @@
+#include "processors/replay/cache_laws.h"
+#include "processors/walk/law.h"
+
+#include "sim/error.h"
+
+namespace marti::processors {
+
+namespace {
+
+void check_private(const MachineResult& result) {
+  require(result.l2.caches.size() == result.nodes.size(), "every node has a second level");
+  for (std::size_t node = 0; node < result.nodes.size(); ++node) {
+    require(result.l2.caches[node].references() == result.nodes[node].references.all_misses(),
+            "what misses in a node's first level is what its second level is asked for");
+  }
+}
+
+void check_cluster(const ClusterResult& cluster, const memory::CacheCounters* cache) {
+  const memory::InterconnectStatistics& traffic = cluster.interconnect;
+  std::int64_t accesses = 0;
+  for (const memory::BankStatistics& bank : cluster.banks) {
+    accesses += bank.accesses;
+  }
+  if (cache != nullptr) {
+    require(cache->references() == traffic.reads, "every read of the interconnect asks the shared cache");
+  }
+  require(accesses == (cache != nullptr ? cache->misses : traffic.reads) + traffic.writes,
+          "every write, and every read that no cache serves, is an access of a bank");
+}
+
+}  // namespace
+
+std::int64_t misses_beyond_caches(const MachineConfig& config, const MachineResult& result) {
+  return config.l2.sharing == SecondLevel::private_caches ? result.l2.counters().misses
+                                                          : result.references().all_misses();
+}
+
+void check_second_level_laws(const MachineConfig& config, const MachineResult& result) {
+  if (config.l2.sharing == SecondLevel::private_caches) {
+    check_private(result);
+  }
+  const bool shared = config.l2.sharing == SecondLevel::shared;
+  require(!shared || result.l2.caches.size() == result.clusters.size(),
+          "every cluster has a shared second level");
+  for (std::size_t cluster = 0; cluster < result.clusters.size(); ++cluster) {
+    // A distributed memory's banks serve their own nodes beside the network: it has laws of its own.
+    if (!result.clusters[cluster].banks.empty() && !result.clusters[cluster].distributed) {
+      check_cluster(result.clusters[cluster], shared ? &result.l2.caches[cluster] : nullptr);
+    }
+  }
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,74 @@
+#include "processors/replay/flow_replay.h"
+
+#include <limits>
+#include <optional>
+
+#include "processors/replay/bounds.h"
+#include "processors/replay/replay_parts.h"
+#include "processors/walk/observer.h"
+#include "processors/walk/record_places.h"
+#include "sim/key_error.h"
+
+namespace marti::processors {
+
+MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options,
+                          std::uint32_t limit, const MakeFlowNodes& make) {
+  if (!options.starts.empty()) {
+    throw sim::KeyError("build.sharing", "start states of branches need the image scheme");
+  }
+  std::optional<TreePlan> given;
+  const memory::Layout layout = layout_of(log, config, given);
+  const PacketList packets(log.width, log.height, config.packets);
+  const std::vector<std::uint32_t> rank = node_ranks(log, config);
+  sim::Engine engine;
+  engine.reserve(std::size_t{config.all_nodes()} + config.clusters);
+  FlowHost host(log, packets, config, limit);
+  std::vector<std::unique_ptr<memory::Network>> networks;
+  ReplayInput input{log, config, layout, packets, rank, options.step_by_step};
+  input.observer = options.observer;
+  if (input.observer != nullptr) {
+    input.observer->begin(input);
+  }
+  FlowParts parts{input, engine, host, {}};
+  for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
+    networks.push_back(memory::make_network(config.network, config.nodes));
+    parts.networks.push_back(networks.back().get());
+  }
+  const std::unique_ptr<FlowNodes> nodes = make(parts);
+  const Interconnects interconnects =
+      connect_memory(config, engine, static_cast<std::uint8_t>(FlowEvent::memory), *nodes);
+  for (const FlowEvent c : {FlowEvent::step, FlowEvent::reply, FlowEvent::read, FlowEvent::done,
+                            FlowEvent::wake, FlowEvent::admit, FlowEvent::memory}) {
+    engine.attach(static_cast<std::uint8_t>(c), *nodes);
+  }
+  nodes->start(options.start_seed);
+  // Every event moves a ray on, or is the only one of a node or a cluster that finds nothing to do.
+  engine.run(std::numeric_limits<std::uint64_t>::max());
+  nodes->finish();
+
+  if (input.observer != nullptr) {
+    input.observer->end(nodes->end());
+  }
+  MachineResult result = common_result(config, engine, *nodes, interconnects, layout);
+  result.host = host.statistics();
+  result.packets = packets.size();
+  FlowResult& flow = result.flow;
+  flow.memory_bytes.assign(config.all_nodes(),
+                           config.placement == Placement::replicated ? layout.database_bytes() : 0);
+  flow.collected = host.collected();
+  flow.most_in_flight = host.most_in_flight();
+  for (const auto& network : networks) {
+    flow.networks.push_back(network->statistics());
+  }
+  nodes->report(flow);
+  flow.rays = host.sent();
+  for (const FlowCounts& node : flow.nodes) {
+    flow.rays += node.made;
+  }
+  sim::ensure(host.in_flight() == 0, "rays are left over");
+  check_conservation(log, config, result);
+  check_bounds(config, result);
+  return result;
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,20 @@
+// What the replays of the schemes in which rays move have in common.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "processors/flow/flow_parts.h"
+#include "processors/replay/replay.h"
+
+namespace marti::processors {
+
+using MakeFlowNodes = std::function<std::unique_ptr<FlowNodes>(const FlowParts&)>;
+
+/// Times a frame on such nodes, with at most `limit` rays in flight in each cluster, and checks the laws of
+/// the result. Throws as replay() does.
+[[nodiscard]] MachineResult replay_flow(const WorkLog& log, const MachineConfig& config,
+                                        const ReplayOptions& options, std::uint32_t limit,
+                                        const MakeFlowNodes& make);
+
+}  // namespace marti::processors

@@ -1,0 +1,61 @@
+#include "processors/replay/host_bytes.h"
+
+#include "memory/cache.h"
+#include "memory/tags.h"
+#include "processors/cost/accounting.h"
+
+namespace marti::processors {
+
+namespace {
+
+std::uint64_t tag_bytes(const memory::CacheConfig& cache) {
+  const memory::CacheShape shape = memory::shape_of(cache);
+  // Hashed sets keep a list entry and two to four table slots for each line.
+  const std::uint64_t bytes_a_line = shape.ways > memory::most_searched_ways ? 28 : 6;
+  const std::uint64_t tree_bytes =
+      cache.replacement == memory::Replacement::plru ? 8 * std::uint64_t{shape.sets} + shape.lines() / 8 : 0;
+  return shape.lines() * bytes_a_line + tree_bytes;
+}
+
+}  // namespace
+
+std::uint64_t host_bytes(const MachineConfig& config) {
+  // What a node counts, while it runs and in the result, and its cursor, event and place in the order.
+  constexpr std::uint64_t bytes_a_node = 2 * sizeof(NodeStatistics) + 160;
+  std::uint64_t tags = 0;
+  if (config.cache.organisation == CacheOrganisation::unified) {
+    tags = tag_bytes(config.cache.cache);
+  } else if (config.cache.organisation == CacheOrganisation::split) {
+    for (const std::uint64_t size : config.cache.split_sizes) {
+      memory::CacheConfig part = config.cache.cache;
+      part.size = size;
+      tags += tag_bytes(part);
+    }
+  }
+  if (config.l2.sharing == SecondLevel::private_caches) {
+    tags += tag_bytes(second_level_cache(config)) + sizeof(memory::CacheCounters);
+  }
+  std::uint64_t homes =
+      config.l2.sharing == SecondLevel::shared ? config.clusters * tag_bytes(second_level_cache(config)) : 0;
+  if (config.placement == Placement::distributed) {
+    constexpr std::uint64_t bytes_a_home = 900;
+    homes += config.all_nodes() * bytes_a_home +
+             config.clusters * memory::network_bytes(config.network, config.nodes);
+  }
+  if (config.scheme != Scheme::image) {
+    constexpr std::uint64_t bytes_a_ray = 96;  // with its part of its pixel's tree
+    const std::uint32_t queue = config.scheme == Scheme::space ? config.space.queue : config.pipeline.queue;
+    homes += config.clusters * memory::network_bytes(config.network, config.nodes) +
+             config.all_nodes() * bytes_a_ray * (1 + std::uint64_t{queue});
+  }
+  constexpr std::uint64_t bytes_a_context = 200;
+  constexpr std::uint64_t bytes_a_port = 80;
+  const std::uint64_t contexts =
+      config.ports_of_node() == 1 ? 0
+                                  : config.contexts * bytes_a_context + config.ports_of_node() * bytes_a_port;
+  // At most 2^24 nodes of five caches of 2^28 lines: this cannot overflow.
+  return homes +
+         config.all_nodes() * (bytes_a_node + contexts + config.write_buffer * sizeof(sim::Ticks) + tags);
+}
+
+}  // namespace marti::processors

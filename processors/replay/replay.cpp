@@ -1,0 +1,187 @@
+#include "processors/replay/replay.h"
+
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "processors/machine/packets.h"
+#include "processors/node/node_array.h"
+#include "processors/replay/bounds.h"
+#include "processors/replay/pipeline.h"
+#include "processors/replay/replay_parts.h"
+#include "processors/replay/space.h"
+#include "processors/walk/left_out.h"
+#include "processors/walk/observer.h"
+#include "processors/walk/record_places.h"
+#include "processors/walk/stripped_log.h"
+#include "sim/engine.h"
+#include "sim/error.h"
+
+namespace marti::processors {
+
+namespace {
+
+// How the tree is built; nothing when it is given.
+std::optional<TreePlan> plan_of(const WorkLog& log, const MachineConfig& config,
+                                const ReplayOptions& options) {
+  if (config.build.sharing == Sharing::given) {
+    if (!options.starts.empty()) {
+      throw sim::UserError("build.sharing: start states of branches need another than \"given\"");
+    }
+    return std::nullopt;
+  }
+  std::vector<BranchStart> starts =
+      options.starts.empty() ? branch_starts(log.topology, config.build) : options.starts;
+  check_starts(log.topology, starts);
+  TreePlan plan(log.topology, std::move(starts), config);
+  if (config.build.sharing == Sharing::none && !plan.lazy().empty()) {
+    throw sim::UserError("build.sharing: \"none\" leaves no branch to be split during the frame");
+  }
+  return plan;
+}
+
+// Decides what is left out, and enters it.
+LeftOut leave_out(const ReplayOptions& options, ReplayInput& input) {
+  LeftOut left;
+  if (options.step_by_step || options.with_contexts || options.stripped != nullptr) {
+    return left;
+  }
+  const MachineConfig& config = input.config;
+  if (!options.keep_lookups && why_lookups(config, input.layout) == nullptr) {
+    input.line_set = lines_of(input.layout, config.cache.cache.line);
+    left.lookups = true;
+    left.tag_bytes =
+        memory::shape_of(config.cache.cache).lines() * sizeof(std::uint32_t) * config.all_nodes();
+    left.line_set_bytes = (input.line_set + 7) / 8 * config.all_nodes();
+  }
+  // Who watches is told of each read; what is not exact has its own way with events.
+  const bool plain = options.observer == nullptr && options.sample == nullptr && options.quantum <= 1;
+  if (!options.keep_read_events && plain && why_read_events(config) == nullptr) {
+    input.own_reads = memory::ideal_read(config.interconnect);
+    left.read_events = true;
+  }
+  return left;
+}
+
+std::uint64_t pixels_of(const PacketList& packets, const WorkLog& log, const PacketSample* sample) {
+  if (sample == nullptr) {
+    return std::uint64_t{log.width} * log.height;
+  }
+  std::uint64_t pixels = 0;
+  for (std::uint64_t i = 0; i < packets.size(); ++i) {
+    const Packet packet = packets[i];
+    pixels += std::uint64_t{packet.x1 - packet.x0} * (packet.y1 - packet.y0);
+  }
+  return pixels;
+}
+
+}  // namespace
+
+StepCounts MachineResult::steps() const {
+  StepCounts sum;
+  for (const NodeStatistics& node : nodes) {
+    sim::merge(sum, node.steps);
+  }
+  return sum;
+}
+
+ReferenceCounts MachineResult::references() const {
+  ReferenceCounts sum;
+  for (const NodeStatistics& node : nodes) {
+    sum += node.references;
+  }
+  return sum;
+}
+
+TimeDivision MachineResult::time() const {
+  TimeDivision sum{};
+  for (const NodeStatistics& node : nodes) {
+    for (std::size_t i = 0; i < activities; ++i) {
+      sum[i] = sim::add_ticks(sum[i], node.time[i]);
+    }
+  }
+  return sum;
+}
+
+MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
+  check(config);
+  check_prefetch(config.prefetch, log.traversal);
+  if (options.sample != nullptr) {
+    check_sampled(config);
+  }
+  if (options.quantum > 1) {
+    check_relaxed(config);
+  }
+  switch (config.scheme) {
+    case Scheme::image:
+      break;
+    case Scheme::pipeline:
+      return replay_pipeline(log, config, options);
+    case Scheme::space:
+      return replay_space(log, config, options);
+  }
+  std::optional<TreePlan> plan = plan_of(log, config, options);
+  const memory::Layout layout = layout_of(log, config, plan);
+  const PacketList all_packets(log.width, log.height, config.packets);
+  const PacketList packets =
+      options.sample == nullptr ? all_packets : all_packets.only(options.sample->chosen());
+  const std::vector<std::uint32_t> rank = node_ranks(log, config);
+  sim::Engine engine;
+  engine.reserve(std::size_t{config.all_nodes()} * config.contexts + 1);
+  Host host(config.host, packets.size(), config.all_nodes());
+  ReplayInput input = {log,
+                       config,
+                       layout,
+                       packets,
+                       rank,
+                       options.step_by_step,
+                       plan ? &*plan : nullptr,
+                       options.report_built,
+                       options.observer,
+                       options.stripped,
+                       options.with_contexts,
+                       options.sample,
+                       &all_packets};
+  const LeftOut left_out = leave_out(options, input);
+  if (options.stripped != nullptr) {
+    sim::ensure(options.stripped->fits(log) && !options.step_by_step && !options.with_contexts &&
+                    options.sample == nullptr && options.stripped->key() == StrippedLog::key_of(config),
+                "a stripped log is walked by a machine that it was not made for");
+  }
+  if (options.observer != nullptr) {
+    options.observer->begin(input);
+  }
+  const std::unique_ptr<NodeArray> nodes = make_node_array(input, engine, host);
+  const Interconnects interconnects =
+      connect_memory(config, engine, static_cast<std::uint8_t>(EventClass::memory), *nodes);
+  for (const EventClass c : {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read,
+                             EventClass::write, EventClass::memory}) {
+    engine.attach(static_cast<std::uint8_t>(c), *nodes);
+  }
+  nodes->start(options.start_seed);
+  engine.relax(options.quantum);
+  // Every event moves some node on by at least one step of a finite log, so no limit is needed.
+  engine.run(std::numeric_limits<std::uint64_t>::max());
+  nodes->finish();
+
+  if (options.observer != nullptr) {
+    options.observer->end(nodes->end());
+  }
+  MachineResult result = common_result(config, engine, *nodes, interconnects, layout);
+  result.host = host.statistics();
+  result.packets = packets.size();
+  result.left_out = left_out;
+  if (left_out.lookups) {
+    result.left_out.references = result.references().references();
+  }
+  if (left_out.read_events) {
+    result.left_out.reads = result.references().all_misses();
+  }
+  result.pixels = pixels_of(packets, log, options.sample);
+  result.packet_figures = nodes->packet_figures();
+  check_conservation(log, config, result);
+  check_bounds(config, result);
+  return result;
+}
+
+}  // namespace marti::processors

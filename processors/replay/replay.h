@@ -1,0 +1,111 @@
+// Times one machine from a work log.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "memory/distributed.h"
+#include "memory/interconnect.h"
+#include "processors/cost/accounting.h"
+#include "processors/flow/flow_result.h"
+#include "processors/machine/machine_config.h"
+#include "processors/node/build_result.h"
+#include "processors/node/host.h"
+#include "processors/program/work_log.h"
+#include "processors/walk/build_start.h"
+#include "processors/walk/cache_counting.h"
+#include "processors/walk/context_result.h"
+#include "processors/walk/left_out.h"
+#include "processors/walk/packet_sample.h"
+#include "processors/walk/second_level.h"
+
+namespace marti::processors {
+
+class Observer;
+class StrippedLog;
+
+/// What a cluster's distributed memory counted beside what every interconnect does.
+struct DistributedResult {
+  memory::DistributedStatistics accesses;
+  memory::NetworkStatistics network;
+};
+
+/// What one cluster's interconnect and banks counted. Of a distributed memory: its network and each node's
+/// memory.
+struct ClusterResult {
+  memory::InterconnectStatistics interconnect;
+  std::vector<memory::BankStatistics> banks;
+  std::optional<DistributedResult> distributed{};
+};
+
+/// A timed frame. All figures are integers; ratios are left to whoever prints them.
+struct MachineResult {
+  sim::Ticks end = 0;  ///< when the last node and the last posted write are done: the frame time
+  std::vector<NodeStatistics> nodes;
+  std::vector<ClusterResult> clusters;
+  HostStatistics host;
+  BuildResult build;                          ///< empty when the tree is given
+  FlowResult flow;                            ///< empty with the image scheme
+  ContextResult contexts;                     ///< empty with one context and no prefetch
+  SecondLevelResult l2;                       ///< empty without a second level
+  CacheCountResult counts;                    ///< what MachineConfig::count asks for
+  std::uint64_t packets = 0;                  ///< that were handed out
+  std::uint64_t pixels = 0;                   ///< image scheme: of these packets
+  std::vector<PacketFigures> packet_figures;  ///< of a sample's packets, in its order; else empty
+  std::uint64_t database_bytes = 0;           ///< of one copy, as the frame begins
+  std::uint64_t copies = 0;                   ///< one for each cluster, or for each node when replicated
+  std::uint64_t events = 0;
+  LeftOut left_out;
+  std::size_t host_bytes_per_node = 0;
+  sim::Ticks unloaded_miss = 0;  ///< a miss that meets no other transaction
+
+  [[nodiscard]] StepCounts steps() const;
+  [[nodiscard]] ReferenceCounts references() const;
+  [[nodiscard]] TimeDivision time() const;
+};
+
+struct ReplayOptions {
+  bool step_by_step = false;     ///< an event for every reference instead of running ahead; same result
+  std::uint64_t start_seed = 0;  ///< order in which the nodes' first events are posted; same result
+  /// What of the tree is there when the frame begins, one entry a node, instead of what MachineConfig::build
+  /// says; its `sharing` must not be `given`, and with `none` no branch may be lazy. Empty: what it says.
+  std::vector<BranchStart> starts{};
+  bool report_built = false;     ///< fill BuildResult::built; empty all the same when the tree is given
+  Observer* observer = nullptr;  ///< watches (processors/walk/observer.h); same result
+  /// Walked in the log's place: made of `log` for a machine of the same StrippedLog::key_of; same result.
+  const StrippedLog* stripped = nullptr;
+  /// Look tags up, and make an event of each read, even where left_out.h says that the outcome is known;
+  /// same result but for `events` and `left_out`.
+  bool keep_lookups = false;
+  bool keep_read_events = false;
+  /// Only these packets are handed out; the result is that of a frame which has no others. For the image
+  /// scheme with a given tree, dynamic assignment, one context, and no second level of caches, `stripped` or
+  /// counting of more than hits and misses (check_sampled).
+  const PacketSample* sample = nullptr;
+  /// Not exact (sim::Engine::relax): what is first come, first served, serves whoever's turn it is. For a
+  /// machine that check_relaxed() lets pass. 0 or 1: exact.
+  sim::Ticks quantum = 0;
+  bool with_contexts = false;  ///< with a given tree: nodes that can hold several contexts, even for one;
+                               ///< same result
+};
+
+/// Times `config` on `log`. Deterministic, single-threaded; many replays may share one log. Before it
+/// returns it checks the conservation laws of the result and throws InternalError when one is broken.
+/// Throws UserError for a machine that cannot be built or a time that does not fit.
+[[nodiscard]] MachineResult replay(const WorkLog& log, const MachineConfig& config,
+                                   const ReplayOptions& options = {});
+
+/// Throws UserError with the reason when some of the machine's packets cannot be replayed without the others.
+void check_sampled(const MachineConfig& config);
+
+/// Throws UserError with the reason when the machine's components need events in their exact order.
+void check_relaxed(const MachineConfig& config);
+
+/// The conservation laws that every result must obey: each node's time adds up to the end; every pixel is
+/// written once, or where rays move, every ray of the log is made, traced and ended once, and every message
+/// arrives; what the nodes waited is what the interconnect and the banks made them wait; what was built
+/// is what is there.
+void check_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result);
+
+}  // namespace marti::processors

@@ -1,0 +1,51 @@
+#include "processors/replay/replay_parts.h"
+
+#include "processors/node/memory_system.h"
+
+namespace marti::processors {
+
+Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine, std::uint8_t memory_class,
+                             NodeArray& nodes) {
+  Interconnects interconnects;
+  std::vector<memory::Interconnect*> links;
+  const std::uint32_t ports = config.nodes * config.ports_of_node();
+  for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
+    interconnects.push_back(make_memory_system(
+        config, {engine, nodes.client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * ports,
+                 ports, memory_class}));
+    links.push_back(interconnects.back().get());
+  }
+  nodes.connect(links);
+  return interconnects;
+}
+
+MachineResult common_result(const MachineConfig& config, const sim::Engine& engine, const NodeArray& nodes,
+                            const Interconnects& interconnects, const memory::Layout& layout) {
+  MachineResult result;
+  result.end = nodes.end();
+  result.nodes = nodes.statistics();
+  for (const auto& interconnect : interconnects) {
+    result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
+    if (const memory::DistributedStatistics* const accesses = interconnect->distribution()) {
+      result.clusters.back().distributed = {*accesses, *interconnect->network_statistics()};
+    }
+    if (const memory::SharedCacheStatistics* const cache = interconnect->cache_statistics()) {
+      result.l2.caches.push_back(cache->lookups);
+      result.l2.waits.push_back(cache->waits);
+    }
+  }
+  if (config.l2.sharing == SecondLevel::private_caches) {
+    result.l2 = nodes.second_level();
+  }
+  result.counts = nodes.cache_counts();
+  result.build = nodes.build_result();
+  result.contexts = nodes.context_result();
+  result.database_bytes = layout.database_bytes();
+  result.copies = config.placement == Placement::replicated ? config.all_nodes() : config.clusters;
+  result.events = engine.events();
+  result.host_bytes_per_node = nodes.bytes_per_node();
+  result.unloaded_miss = interconnects.front()->unloaded_read(config.reference_bytes());
+  return result;
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,38 @@
+#include "processors/replay/space.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "processors/flow/space/space_nodes.h"
+#include "processors/node/node_factory.h"
+#include "processors/replay/flow_replay.h"
+
+namespace marti::processors {
+
+std::uint32_t admission_limit(const MachineConfig& config) {
+  if (config.space.in_flight != 0) {
+    return config.space.in_flight;
+  }
+  const std::uint64_t half = std::uint64_t{config.nodes} * config.space.queue / 2;
+  return static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>(half, 1, std::numeric_limits<std::uint32_t>::max() / 2));
+}
+
+MachineResult replay_space(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
+  // Each node reads its own memory, as it does where the database is replicated.
+  MachineConfig own_memories = config;
+  own_memories.placement = Placement::replicated;
+  own_memories.interconnect.kind = memory::InterconnectKind::ideal;  // there is nothing behind it
+  SpacePlan plan;
+  const auto make = [&](const FlowParts& parts) {
+    plan = plan_space(log, own_memories, parts.input.layout);
+    return with_caches(own_memories, [&]<class Caches>(Caches caches) -> std::unique_ptr<FlowNodes> {
+      return std::make_unique<SpaceNodes<Caches>>(parts, plan, std::move(caches));
+    });
+  };
+  MachineResult result = replay_flow(log, own_memories, options, admission_limit(config), make);
+  result.copies = config.clusters;
+  return result;
+}
+
+}  // namespace marti::processors

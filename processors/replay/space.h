@@ -1,0 +1,28 @@
+// The space scheme: each node holds a part of space in its own memory, and rays go to the node whose part
+// they enter. After Dippé, Swensen, An adaptive subdivision algorithm and parallel architecture for realistic
+// image synthesis (SIGGRAPH 1984), and Cleary, Wyvill, Birtwistle, Vatti, Multiprocessor ray tracing (CGF
+// 5(1), 1986).
+//
+// A ray is a message. Its steps are taken at a node until the next one reads a tree node that another has;
+// the ray goes there then. Branches above the regions are read wherever the ray is. A node takes the rays
+// made at its hit points first, the last made point's first, then those of its queue in the order of their
+// arrival. What rays add to a pixel goes to the host, so nothing waits for anything to come back.
+//
+// Nothing can deadlock: a ray for which the next node has no room is set aside in the memory of the node
+// where it is, so no node ever waits with a ray in hand (docs/space.md).
+#pragma once
+
+#include "processors/replay/replay.h"
+
+namespace marti::processors {
+
+/// Times `config`, whose scheme is space, on `log`. A node reads its part through its cache, if it has one,
+/// from memory of its own (MachineConfig::local); MachineConfig::placement (which must not be distributed),
+/// interconnect and banks have no effect. Deterministic; throws as replay() does.
+[[nodiscard]] MachineResult replay_space(const WorkLog& log, const MachineConfig& config,
+                                         const ReplayOptions& options = {});
+
+/// The most rays that the host lets be in flight in each cluster when it sends one more.
+[[nodiscard]] std::uint32_t admission_limit(const MachineConfig& config);
+
+}  // namespace marti::processors

@@ -1,0 +1,40 @@
+#include "processors/walk/attribution.h"
+
+#include <algorithm>
+
+namespace marti::processors {
+
+AttributionCounts& Attribution::at(memory::RecordKind record, Origin origin) {
+  const std::size_t level = std::min<std::uint32_t>(origin.level, levels - 1);
+  const std::size_t cell =
+      (origin.ray * std::size_t{levels} + level) * memory::record_kinds + static_cast<std::size_t>(record);
+  if (cell >= cells_.size()) {
+    cells_.resize((origin.ray + std::size_t{1}) * levels * memory::record_kinds);
+  }
+  return cells_[cell];
+}
+
+void Attribution::wait(memory::RecordKind record, Origin origin, const memory::Service& service) {
+  AttributionCounts& counts = at(record, origin);
+  counts.interconnect_wait = sim::add_ticks(counts.interconnect_wait, service.wait_interconnect);
+  counts.transfer = sim::add_ticks(counts.transfer, service.transfer);
+  counts.bank_wait = sim::add_ticks(counts.bank_wait, service.wait_bank);
+  counts.bank_access = sim::add_ticks(counts.bank_access, service.bank);
+}
+
+std::vector<AttributionRow> Attribution::rows() const {
+  std::vector<AttributionRow> rows;
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+    if (cells_[cell].references == 0 && cells_[cell].waited() == 0) {
+      continue;
+    }
+    const std::size_t place = cell / memory::record_kinds;
+    const std::size_t ray = place / levels;
+    rows.push_back({static_cast<memory::RecordKind>(cell % memory::record_kinds),
+                    static_cast<std::uint32_t>(place % levels), static_cast<RayKind>(ray % ray_kinds),
+                    static_cast<std::uint32_t>(ray / ray_kinds), cells_[cell]});
+  }
+  return rows;
+}
+
+}  // namespace marti::processors

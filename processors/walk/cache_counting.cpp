@@ -1,0 +1,140 @@
+#include "processors/walk/cache_counting.h"
+#include "processors/walk/law.h"
+
+#include <string>
+#include <string_view>
+
+#include "sim/key_error.h"
+#include "sim/units.h"
+
+namespace marti::processors {
+
+namespace {
+
+// The private first-level caches of a node: how many lines each has.
+std::vector<std::uint64_t> lines_of_caches(const MachineConfig& config) {
+  std::vector<std::uint64_t> lines;
+  if (config.cache.organisation == CacheOrganisation::unified) {
+    lines.push_back(config.cache.cache.size / config.cache.cache.line);
+  } else if (config.cache.organisation == CacheOrganisation::split) {
+    for (const std::uint64_t size : config.cache.split_sizes) {
+      lines.push_back(size / config.cache.cache.line);
+    }
+  }
+  return lines;
+}
+
+std::string_view key_of(const CountConfig& count) {
+  return count.miss_classes ? "count.miss_classes" : count.sharing ? "count.sharing" : "count.attribution";
+}
+
+}  // namespace
+
+CacheCounting::CacheCounting(const MachineConfig& config, std::uint64_t lines) {
+  const std::vector<std::uint64_t> caches = lines_of_caches(config);
+  // A bit for each line and node and what it is kept for, and a hashed line of a fully associative cache.
+  std::uint64_t bytes = config.count.sharing ? lines / 8 : 0;
+  if (config.count.miss_classes) {
+    for (const std::uint64_t cache_lines : caches) {
+      bytes += lines / 4 + 28 * cache_lines;
+    }
+  }
+  if (bytes > most_bytes / config.all_nodes()) {
+    throw sim::KeyError(std::string(key_of(config.count)),
+                        "[count] would take more than " +
+                            sim::print_size(static_cast<std::int64_t>(most_bytes)) +
+                            " for so many nodes and so large a database; count on a smaller machine");
+  }
+  if (config.count.miss_classes) {
+    for (const std::uint64_t cache_lines : caches) {
+      classifiers_.emplace_back(cache_lines, config.all_nodes());
+    }
+  }
+  if (config.count.sharing) {
+    sharing_.emplace(config.clusters, config.nodes);
+  }
+  if (config.count.attribution) {
+    attribution_.emplace();
+  }
+}
+
+void CacheCounting::refer(std::uint32_t node, std::size_t cache, memory::RecordKind record,
+                          std::uint32_t line, Origin origin, bool hit) {
+  if (!classifiers_.empty()) {
+    if (hit) {
+      classifiers_[cache].hit(node, line);
+    } else {
+      const memory::MissClass why = classifiers_[cache].miss(node, line);
+      ++classes_[static_cast<std::size_t>(record)][static_cast<std::size_t>(why)];
+    }
+  }
+  if (sharing_ && !hit) {
+    sharing_->fetch(node, line);
+  }
+  if (attribution_) {
+    AttributionCounts& counts = attribution_->at(record, origin);
+    ++counts.references;
+    counts.misses += hit ? 0 : 1;
+  }
+}
+
+void CacheCounting::second_level_hit(memory::RecordKind record, Origin origin) {
+  if (attribution_) {
+    ++attribution_->at(record, origin).second_level_hits;
+  }
+}
+
+void CacheCounting::wait(memory::RecordKind record, Origin origin, const memory::Service& service) {
+  if (attribution_) {
+    attribution_->wait(record, origin, service);
+  }
+}
+
+CacheCountResult CacheCounting::result() const {
+  CacheCountResult result;
+  if (!classifiers_.empty()) {
+    result.miss_classes = classes_;
+  }
+  if (sharing_) {
+    result.sharing = sharing_->result();
+  }
+  if (attribution_) {
+    result.attribution = attribution_->rows();
+  }
+  return result;
+}
+
+void check_counts(const CacheCountResult& counts, const ReferenceCounts& references,
+                  const TimeDivision& time) {
+  if (counts.miss_classes) {
+    for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
+      std::int64_t misses = 0;
+      for (const std::int64_t of_class : (*counts.miss_classes)[kind]) {
+        misses += of_class;
+      }
+      require(misses == references.misses[kind], "every miss has one class");
+    }
+  }
+  if (counts.sharing) {
+    require(counts.sharing->fetches == references.all_misses(), "every miss fetches a line");
+  }
+  if (counts.attribution) {
+    ReferenceCounts sum;
+    AttributionCounts all;
+    for (const AttributionRow& row : *counts.attribution) {
+      const auto kind = static_cast<std::size_t>(row.record);
+      sum.hits[kind] += row.counts.references - row.counts.misses;
+      sum.misses[kind] += row.counts.misses;
+      sim::merge(all, row.counts);
+    }
+    require(sum.hits == references.hits && sum.misses == references.misses,
+            "the references attributed are those of the nodes, kind by kind");
+    const auto part = [&](Activity activity) { return time[static_cast<std::size_t>(activity)]; };
+    require(all.interconnect_wait == part(Activity::interconnect_wait) &&
+                all.transfer == part(Activity::transfer) && all.bank_wait == part(Activity::bank_wait) &&
+                all.bank_access == part(Activity::bank_access),
+            "the waits attributed are those of the nodes");
+  }
+}
+
+}  // namespace marti::processors

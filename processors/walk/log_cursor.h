@@ -1,0 +1,69 @@
+// Where a node is in its log, and why it stopped there.
+#pragma once
+
+#include <cstdint>
+
+#include "memory/record_kind.h"
+#include "processors/cost/step_time.h"
+#include "processors/machine/packets.h"
+#include "processors/walk/attribution.h"
+#include "processors/walk/visit_plan.h"
+#include "sim/time.h"
+
+namespace marti::processors {
+
+/// Where a node is in its packet: the pixel, the word of the pixel's log, and within a step either a line of
+/// a planned visit or a byte of a record with, for a leaf, the objects still to come.
+struct Cursor {
+  sim::Ticks time = 0;
+  const std::uint32_t* word = nullptr;
+  const std::uint32_t* word_end = nullptr;
+  const std::uint32_t* line = nullptr;  ///< next line of the planned visit
+  const std::uint32_t* line_end = nullptr;
+  memory::Address at = 0;   ///< next byte of the current record
+  memory::Address end = 0;  ///< one past its last byte
+  const std::uint32_t* entry = nullptr;
+  const std::uint32_t* entry_end = nullptr;
+  const std::uint32_t* tested = nullptr;  ///< of a mailed leaf: a bit for each entry; null: all are tested
+  std::uint32_t entry_number = 0;         ///< of `entry` in the mailed leaf's list
+  std::uint32_t list_count = 0;   ///< entries of the current leaf's list, while its read is still to come
+  std::uint32_t tests_begun = 0;  ///< of the planned visit, by kind as in tests_of_kind
+  std::uint32_t writes = 0;       ///< where the next pixel write goes in the write buffer
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  Packet packet;
+  memory::RecordKind kind = memory::RecordKind::node;
+  Origin origin;  ///< of the current record; kept only where it is counted
+  /// Guarded caches only: the branch whose record was visited last and whose children may be prefetched.
+  std::uint32_t branch = no_branch;
+
+  static constexpr std::uint32_t no_branch = 0xffffffffU;
+};
+
+/// Why a walk stopped: after a hit (only without running ahead), at a miss, or at the end of its words. due,
+/// with guarded caches only: the reference that comes next is of a line that may be under way, or a branch
+/// was read whose children are to be prefetched.
+enum class Stop : std::uint8_t { hit, miss, end, due };
+
+inline void spend(Cursor& cursor, sim::Ticks each, std::int64_t count) {
+  cursor.time = sim::add_ticks(cursor.time, sim::multiply_ticks(each, count));
+}
+
+/// Brings the time of a planned visit up to `line`, before which `tests` tests have begun.
+inline void settle_visit(const StepTicks& ticks, Cursor& cursor, const std::uint32_t* line,
+                         std::uint32_t tests) {
+  // No kind has fewer than before, so the kinds' counts do not borrow from each other.
+  const std::uint32_t begun = tests - cursor.tests_begun;
+  const std::uint32_t triangles = tests_of_kind(begun, accel::PrimitiveKind::triangle);
+  const std::uint32_t spheres = tests_of_kind(begun, accel::PrimitiveKind::sphere);
+  const std::uint32_t cones = tests_of_kind(begun, accel::PrimitiveKind::cone);
+  spend(cursor, ticks.test, triangles);
+  spend(cursor, ticks.sphere_test, spheres);
+  spend(cursor, ticks.cone_test, cones);
+  spend(cursor, ticks.lookup, std::int64_t{triangles} + spheres + cones);
+  spend(cursor, ticks.hit, line - cursor.line);
+  cursor.tests_begun = tests;
+  cursor.line = line;
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,500 @@
+// Walks a node through its log: spends the compute cycles of each step, looks its references up in the
+// node's cache, and stops where the node needs something shared. It knows no event and no queue.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "processors/cost/accounting.h"
+#include "processors/cost/step_time.h"
+#include "processors/machine/packets.h"
+#include "processors/program/work_log.h"
+#include "processors/walk/cache_counting.h"
+#include "processors/walk/lines_under_way.h"
+#include "processors/walk/local_memory.h"
+#include "processors/walk/log_cursor.h"
+#include "processors/walk/node_caches.h"
+#include "processors/walk/replay_input.h"
+#include "processors/walk/second_level.h"
+#include "processors/walk/visit_plan.h"
+
+namespace marti::processors {
+
+/// `Caches` is one of node_caches.h, those guarded (guarded_caches.h), or those that count
+/// (counted_caches.h).
+template <class Caches>
+class LogWalker {
+ public:
+  static constexpr bool steps_singly = true;  ///< can stop after every reference
+
+  LogWalker(const ReplayInput& input, Caches caches)
+      : input_(input),
+        caches_(std::move(caches)),
+        topology_(input.log.topology.nodes.data()),
+        entries_(input.log.topology.entries.data()),
+        rank_(input.node_rank.empty() ? nullptr : input.node_rank.data()),
+        node_bytes_(input.layout.record_bytes(memory::RecordKind::node)),
+        entry_bytes_(input.layout.record_bytes(memory::RecordKind::list)),
+        line_bytes_(input.config.reference_bytes()),
+        unit_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
+        ticks_(step_ticks(input.config, input.log)),
+        local_(input.config.local),
+        local_database_(input.config.placement == Placement::replicated),
+        second_level_(input.config),
+        passes_misses_on_((!local_database_ && !input.own_reads) || second_level_.present()),
+        own_read_bytes_(input.own_reads ? input.config.clusters : 0) {
+    if (Caches::present && !counted && !guarded && !input.step_by_step) {
+      plan_ = plan_visits(input.log, input.layout, input.node_rank, unit_shift_, ticks_);
+      plan_limit_ = plan_.empty() ? 0 : 2U << operand_bits;
+    }
+  }
+
+  [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
+  [[nodiscard]] const PrivateSecondLevel& second_level() const { return second_level_; }
+  [[nodiscard]] Caches& caches() { return caches_; }
+  [[nodiscard]] const Caches& caches() const { return caches_; }
+
+  [[nodiscard]] std::span<const std::uint32_t> words_of(std::uint32_t x, std::uint32_t y) const {
+    return input_.log.pixel(x, y);
+  }
+
+  /// Takes `node` on from its cursor. Without RunAhead it stops after every reference.
+  template <bool RunAhead>
+  Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
+    VisitTally tally;
+    Stop stop = Stop::hit;
+    do {
+      stop = walk<RunAhead>(caches_.view(node), cursor, statistics, tally);
+      if (stop != Stop::miss || !second_level_.present() || !serve(node, cursor, statistics)) {
+        break;
+      }
+      stop = Stop::hit;
+    } while (RunAhead);
+    flush(tally, statistics);
+    if (!own_read_bytes_.empty()) {
+      own_read_bytes_[node / input_.config.nodes] += std::exchange(read_bytes_, 0);
+    }
+    return stop;
+  }
+
+  /// Of the reads that a cluster's nodes have made by themselves.
+  [[nodiscard]] std::int64_t own_read_bytes(std::uint32_t cluster) const { return own_read_bytes_[cluster]; }
+  /// The steps of a pixel are done; what is left is to convert and store it.
+  void finish_pixel(Cursor& cursor, NodeStatistics& statistics) const {
+    ++statistics.steps.pixels;
+    spend(cursor, ticks_.pixel, 1);
+  }
+
+  /// Address and bytes of the reference that missed: a whole line with a cache, else its own part of the
+  /// interleave unit.
+  [[nodiscard]] memory::Address missed_address(const Cursor& cursor) const {
+    if (in_visit(cursor)) {
+      return memory::Address{*cursor.line} << unit_shift_;
+    }
+    return Caches::present ? (cursor.at >> unit_shift_) << unit_shift_ : cursor.at;
+  }
+  [[nodiscard]] std::uint32_t missed_bytes(const Cursor& cursor) const {
+    if (Caches::present) {
+      return line_bytes_;
+    }
+    const memory::Address next = ((cursor.at >> unit_shift_) + 1) << unit_shift_;
+    return static_cast<std::uint32_t>(std::min(cursor.end, next) - cursor.at);
+  }
+  [[nodiscard]] memory::RecordKind missed_kind(const Cursor& cursor) const {
+    return in_visit(cursor) ? kind_of_label(label_of(cursor.line)) : cursor.kind;
+  }
+  /// What the wait for the reference that missed was for, where that is counted.
+  void note_wait(const Cursor& cursor, const memory::Service& service) const {
+    if constexpr (counted) {
+      caches_.counting().wait(cursor.kind, cursor.origin, service);
+    }
+  }
+  /// The reference that missed has been served.
+  void pass(Cursor& cursor) const {
+    if (in_visit(cursor)) {
+      ++cursor.line;
+    } else {
+      cursor.at = ((cursor.at >> unit_shift_) + 1) << unit_shift_;
+    }
+  }
+
+ protected:
+  using View = typename Caches::View;
+  static constexpr bool guarded = requires { Caches::guarded; };
+  static constexpr bool counted = requires { Caches::counted; };
+
+  static bool in_visit(const Cursor& cursor) { return cursor.line != cursor.line_end; }
+
+  void flush(VisitTally& tally, NodeStatistics& statistics) const {
+    add_visits(tally.counts, tally.visits, input_.log.mailboxes, statistics);
+    tally = {};
+  }
+
+  template <bool RunAhead>
+  Stop walk(View cache, Cursor& cursor, NodeStatistics& statistics, VisitTally& tally) {
+    Stop stop = Stop::hit;
+    if ((Caches::present && !finish_visit(cache, cursor, statistics, stop)) ||
+        !touch<RunAhead>(cache, cursor, statistics, cursor.kind, stop) ||
+        !finish_leaf<RunAhead>(cache, cursor, statistics, stop)) {
+      return stop;
+    }
+    if (branch_read(cache, cursor, stop)) {
+      return stop;
+    }
+    while (cursor.word != cursor.word_end) {
+      if constexpr (RunAhead && Caches::present) {
+        if (!visit_planned(cache, cursor, statistics, tally, stop)) {
+          return stop;
+        }
+        if (cursor.word == cursor.word_end) {
+          break;
+        }
+      }
+      if (!take_step<RunAhead>(cache, cursor, statistics, *cursor.word++, stop) ||
+          branch_read(cache, cursor, stop)) {
+        return stop;
+      }
+    }
+    return Stop::end;
+  }
+
+  // A branch's record has been read: true when the node has to stop to prefetch its children.
+  static bool branch_read(View cache, Cursor& cursor, Stop& stop) {
+    if constexpr (guarded) {
+      if (cursor.branch != Cursor::no_branch && cache.wants_children(cursor.branch)) {
+        stop = Stop::due;
+        return true;
+      }
+      cursor.branch = Cursor::no_branch;
+    }
+    return false;
+  }
+
+  // Takes all planned visits up to the next step that has to be taken record by record, with what it needs
+  // in registers. False when the node has to stop.
+  bool visit_planned(View cache, Cursor& cursor, NodeStatistics& statistics, VisitTally& tally, Stop& stop) {
+    const std::uint32_t* word = cursor.word;
+    const std::uint32_t* const word_end = cursor.word_end;
+    const std::uint32_t limit = plan_limit_;
+    sim::Ticks time = cursor.time;
+    VisitTally sum = tally;
+    for (; word != word_end && *word < limit; ++word) {
+      const Visit& visit = plan_.visits[operand_of(*word)];
+      if (visit.lines == 0) [[unlikely]] {
+        break;
+      }
+      const std::uint32_t* const first = plan_.lines.data() + visit.begin;
+      const std::uint32_t* const end = first + visit.lines;
+      const std::uint32_t* line = first;
+      while (line != end && look_up(cache, line)) {
+        ++line;
+      }
+      // Lines count as hits until they miss.
+      sum.counts += visit.counts;
+      if (++sum.visits == most_summed_visits) [[unlikely]] {
+        flush(sum, statistics);
+      }
+      if (line == end) [[likely]] {
+        time = sim::add_ticks(time, visit.time);
+        continue;
+      }
+      cursor.time =
+          sim::add_ticks(time, visit.counts.of(VisitCount::leaf) != 0 ? ticks_.leaf : ticks_.branch);
+      cursor.word = word + 1;
+      cursor.tests_begun = 0;
+      cursor.line = first;
+      cursor.line_end = end;
+      if (!miss(cursor, statistics, line, stop) || !finish_visit(cache, cursor, statistics, stop)) {
+        tally = sum;
+        return false;
+      }
+      time = cursor.time;
+    }
+    cursor.word = word;
+    cursor.time = time;
+    tally = sum;
+    return true;
+  }
+
+  [[gnu::always_inline]] bool look_up(View cache, const std::uint32_t* line) const {
+    if constexpr (counted) {
+      return cache.access(kind_of_label(label_of(line)), *line, Origin{});  // never: nothing is planned then
+    } else if constexpr (Caches::by_kind) {
+      return cache.access(kind_of_label(label_of(line)), *line);
+    } else {
+      return cache.access(memory::RecordKind::node, *line);  // such caches do not look at the kind
+    }
+  }
+
+  // What is left of a planned visit after a miss.
+  bool finish_visit(View cache, Cursor& cursor, NodeStatistics& statistics, Stop& stop) {
+    const std::uint32_t* const end = cursor.line_end;
+    while (cursor.line != end) {
+      const std::uint32_t* missed = cursor.line;
+      while (missed != end && look_up(cache, missed)) {
+        ++missed;
+      }
+      if (missed == end) {
+        settle_visit(ticks_, cursor, end, tests_of_label(label_of(end - 1)));
+      } else if (!miss(cursor, statistics, missed, stop)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // `line` of a visit has missed. False when the node has to stop for it.
+  bool miss(Cursor& cursor, NodeStatistics& statistics, const std::uint32_t* line, Stop& stop) {
+    const std::uint32_t label = label_of(line);
+    settle_visit(ticks_, cursor, line, tests_of_label(label));
+    --hits_of(statistics, kind_of_label(label));
+    ++misses_of(statistics, kind_of_label(label));
+    if (passes_misses_on_) {
+      stop = Stop::miss;
+      return false;
+    }
+    read_alone(cursor, statistics, line_bytes_);
+    ++cursor.line;
+    return true;
+  }
+
+  [[nodiscard]] std::uint32_t label_of(const std::uint32_t* line) const {
+    return plan_.labels[static_cast<std::size_t>(line - plan_.lines.data())];
+  }
+
+  // Makes record `index` the current one and reads it; `bytes` may span several records of an array.
+  template <bool RunAhead>
+  bool refer(View cache, Cursor& cursor, NodeStatistics& statistics, memory::RecordKind kind,
+             std::uint64_t index, std::uint64_t bytes, Stop& stop) {
+    cursor.at = input_.layout.address(kind, index);
+    cursor.end = cursor.at + bytes;
+    if (counted && !of_tree(kind)) {
+      cursor.origin.level = 0;
+    }
+    return touch<RunAhead>(cache, cursor, statistics, kind, stop);
+  }
+
+  static bool access(View cache, const Cursor& cursor, std::uint32_t line) {
+    if constexpr (counted) {
+      return cache.access(cursor.kind, line, cursor.origin);
+    } else {
+      return cache.access(cursor.kind, line);
+    }
+  }
+
+  // Reads what is left of the current record, unit by unit. False when the node has to stop.
+  template <bool RunAhead>
+  bool touch(View cache, Cursor& cursor, NodeStatistics& statistics, memory::RecordKind kind, Stop& stop) {
+    while (cursor.at < cursor.end) {
+      const memory::Address unit = cursor.at >> unit_shift_;
+      cursor.kind = kind;
+      if constexpr (guarded) {
+        if (cache.awaits(kind, static_cast<std::uint32_t>(unit), cursor.time) != LinesUnderWay::none) {
+          stop = Stop::due;
+          return false;
+        }
+      }
+      if (access(cache, cursor, static_cast<std::uint32_t>(unit))) {
+        ++hits_of(statistics, kind);
+        spend(cursor, ticks_.hit, 1);
+        cursor.at = (unit + 1) << unit_shift_;
+      } else {
+        ++misses_of(statistics, kind);
+        if (passes_misses_on_) {
+          stop = Stop::miss;
+          return false;
+        }
+        read_alone(cursor, statistics, missed_bytes(cursor));
+        cursor.at = (unit + 1) << unit_shift_;
+      }
+      if constexpr (!RunAhead) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // What is left of a leaf that is not planned: reading its list, then looking its objects' mailboxes up, if
+  // there are any, and testing them one by one.
+  template <bool RunAhead>
+  bool finish_leaf(View cache, Cursor& cursor, NodeStatistics& statistics, Stop& stop) {
+    if (cursor.list_count != 0) {
+      const std::uint64_t bytes = std::uint64_t{cursor.list_count} * entry_bytes_;
+      cursor.list_count = 0;
+      const auto first = static_cast<std::uint64_t>(cursor.entry - entries_);
+      if (!refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::list, first, bytes, stop)) {
+        return false;
+      }
+    }
+    while (cursor.entry != cursor.entry_end) {
+      const std::uint32_t primitive = *cursor.entry++;
+      if (input_.log.mailboxes) {
+        ++statistics.steps.lookups;
+        spend(cursor, ticks_.lookup, 1);
+        if (left_out(cursor)) {
+          continue;
+        }
+      }
+      begin_test(cursor, statistics.steps, primitive);
+      if (!refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::primitive, primitive,
+                           input_.layout.record_bytes(memory::RecordKind::primitive, primitive), stop)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // Whether mailboxes left the entry at hand out; goes on to the next.
+  static bool left_out(Cursor& cursor) {
+    if (cursor.tested == nullptr) {
+      return false;
+    }
+    return !tested_in_mask(cursor.tested, cursor.entry_number++);
+  }
+
+  // A test's computing, at its price.
+  void begin_test(Cursor& cursor, StepCounts& steps, std::uint32_t primitive) const {
+    cursor.time = sim::add_ticks(cursor.time, count_test(ticks_, input_.log.kind_of(primitive), steps));
+  }
+
+  template <bool RunAhead>
+  bool refer_node(View cache, Cursor& cursor, NodeStatistics& statistics, std::uint32_t tree_node,
+                  Stop& stop) {
+    if (counted) {
+      cursor.origin.level = topology_[tree_node].level;
+    }
+    const std::uint32_t record = rank_ == nullptr ? tree_node : rank_[tree_node];
+    return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::node, record, node_bytes_, stop);
+  }
+
+  template <bool RunAhead>
+  bool take_leaf(View cache, Cursor& cursor, NodeStatistics& statistics, std::uint32_t leaf,
+                 std::uint32_t entries, const std::uint32_t* tested, Stop& stop) {
+    ++statistics.steps.leaves;
+    statistics.steps.lists += entries != 0 ? 1 : 0;
+    spend(cursor, ticks_.leaf, 1);
+    cursor.list_count = entries;
+    cursor.entry = entries_ + topology_[leaf].first;
+    cursor.entry_end = cursor.entry + entries;
+    cursor.tested = tested;
+    cursor.entry_number = 0;
+    return refer_node<RunAhead>(cache, cursor, statistics, leaf, stop) &&
+           finish_leaf<RunAhead>(cache, cursor, statistics, stop);
+  }
+
+  // Any step, record by record: its compute cycles first, then its references.
+  template <bool RunAhead>
+  bool take_step(View cache, Cursor& cursor, NodeStatistics& statistics, std::uint32_t word, Stop& stop) {
+    const std::uint32_t operand = operand_of(word);
+    StepCounts& steps = statistics.steps;
+    switch (step_of(word)) {
+      case Step::branch:
+        ++steps.branches;
+        spend(cursor, ticks_.branch, 1);
+        if constexpr (guarded) {
+          cursor.branch = operand;
+        }
+        return refer_node<RunAhead>(cache, cursor, statistics, operand, stop);
+      case Step::leaf:
+        return take_leaf<RunAhead>(cache, cursor, statistics, operand, topology_[operand].count, nullptr,
+                                   stop);
+      case Step::partial_leaf: {
+        const std::uint32_t tests = *cursor.word++;
+        return take_leaf<RunAhead>(cache, cursor, statistics, operand, tests, nullptr, stop);
+      }
+      case Step::mailed_leaf: {
+        const std::uint32_t entries = *cursor.word++;
+        const std::uint32_t* const tested = cursor.word;
+        cursor.word += mask_words(entries);
+        return take_leaf<RunAhead>(cache, cursor, statistics, operand, entries, tested, stop);
+      }
+      case Step::ray:
+        if (counted) {
+          cursor.origin.begin_ray(operand);
+        }
+        ++(steps.*ray_counters[operand & 3U]);
+        spend(cursor, ticks_.ray[operand & 3U], 1);
+        return true;
+      case Step::shade:
+        ++steps.shades;
+        spend(cursor, ticks_.shade, 1);
+        return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::material, operand,
+                               input_.layout.record_bytes(memory::RecordKind::material), stop);
+      case Step::cut:
+        ++steps.cuts;
+        spend(cursor, ticks_.cut, 1);
+        return refer_node<RunAhead>(cache, cursor, statistics, operand, stop);
+      case Step::pass:
+        ++steps.passes;
+        spend(cursor, ticks_.pass, 1);
+        return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::material, operand,
+                               input_.layout.record_bytes(memory::RecordKind::material), stop);
+      case Step::light:
+        ++steps.lights;
+        spend(cursor, ticks_.light, 1);
+        return true;
+      case Step::texel:
+        ++steps.texels;
+        spend(cursor, ticks_.texel, 1);
+        return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::texel,
+                               input_.log.texture_begin[operand] + *cursor.word++,
+                               input_.layout.record_bytes(memory::RecordKind::texel), stop);
+    }
+    return true;
+  }
+
+  // Serves a miss behind which there is a second level. False when it needs the interconnect.
+  bool serve(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
+    const auto line = static_cast<std::uint32_t>(missed_address(cursor) >> unit_shift_);
+    if (!second_level_.access(node, line, cursor.time, statistics.time)) {
+      if (!local_database_) {
+        return false;
+      }
+      read_alone(cursor, statistics, line_bytes_);
+    } else if constexpr (counted) {
+      caches_.counting().second_level_hit(cursor.kind, cursor.origin);
+    }
+    pass(cursor);
+    return true;
+  }
+
+  // A read that asks nobody: of the node's own memory, or one that always takes the same time.
+  void read_alone(Cursor& cursor, NodeStatistics& statistics, std::uint32_t bytes) {
+    const memory::Service service =
+        own_read_bytes_.empty()
+            ? local_.read(bytes, cursor.time)
+            : memory::Service{sim::add_ticks(cursor.time, *input_.own_reads), 0, *input_.own_reads, 0, 0};
+    read_bytes_ += bytes;
+    statistics.time[static_cast<std::size_t>(Activity::transfer)] += service.transfer;
+    statistics.time[static_cast<std::size_t>(Activity::bank_access)] += service.bank;
+    cursor.time = service.done;
+    note_wait(cursor, service);
+  }
+
+  ReplayInput input_;
+  Caches caches_;
+  // Branches and leaves are the two lowest steps, so one comparison tells a planned step; nothing is planned
+  // without a plan.
+  static_assert(static_cast<std::uint32_t>(Step::branch) == 0 && static_cast<std::uint32_t>(Step::leaf) == 1);
+  VisitPlan plan_;
+  std::uint32_t plan_limit_ = 0;
+  const accel::TopologyNode* topology_;
+  const std::uint32_t* entries_;
+  const std::uint32_t* rank_;  // null: records lie in the order of node numbers
+  std::uint32_t node_bytes_;
+  std::uint32_t entry_bytes_;
+  std::uint32_t line_bytes_;
+  unsigned unit_shift_;
+  StepTicks ticks_;
+  LocalMemory local_;
+  bool local_database_;
+  PrivateSecondLevel second_level_;
+  bool passes_misses_on_;                     ///< to the second level or the interconnect
+  std::vector<std::int64_t> own_read_bytes_;  // of each cluster; empty where the interconnect is asked
+  std::int64_t read_bytes_ = 0;               // since advance() was called
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,142 @@
+// The private caches of all nodes, as the node's inner loop sees them: one call that says hit or miss.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "memory/line_set.h"
+#include "memory/record_kind.h"
+#include "memory/tag_array.h"
+#include "processors/machine/machine_config.h"
+
+namespace marti::processors {
+
+/// Which of the split caches a record kind uses.
+inline constexpr std::array<std::uint8_t, memory::record_kinds> split_cache_of = {0, 1, 2, 3, 3, 3};
+
+/// One tag store, known when compiling, for a unified cache.
+template <class Tags>
+class UnifiedCaches {
+ public:
+  static constexpr bool present = true;
+  static constexpr bool by_kind = false;  ///< the record kind does not matter
+  UnifiedCaches(const MachineConfig& config, const memory::CacheShape& shape)
+      : tags_(shape, config.all_nodes(), config.cache.cache.seed) {}
+  class View {
+   public:
+    explicit View(typename Tags::View tags) : tags_(tags) {}
+    [[gnu::always_inline]] bool access(memory::RecordKind /*kind*/, std::uint32_t line) const {
+      return tags_.access(line);
+    }
+    /// The same, but a line that is not there is not brought in.
+    [[gnu::always_inline]] bool touch(memory::RecordKind /*kind*/, std::uint32_t line) const {
+      return tags_.touch(line);
+    }
+    /// Whether a line is there; changes nothing.
+    [[nodiscard]] bool holds(memory::RecordKind /*kind*/, std::uint32_t line) const {
+      return tags_.holds(line);
+    }
+    /// Takes a line out, whatever kinds of record it holds; how many copies there were.
+    [[nodiscard]] std::int64_t remove(std::uint32_t line) const { return tags_.remove(line) ? 1 : 0; }
+    static std::size_t cache_of(memory::RecordKind /*kind*/) { return 0; }
+
+   private:
+    typename Tags::View tags_;
+  };
+  [[nodiscard]] View view(std::uint32_t node) { return View(tags_.view(node)); }
+
+ private:
+  Tags tags_;
+};
+
+/// Caches of any kind, unified or split: a virtual call for each look-up.
+class AnyCaches {
+ public:
+  static constexpr bool present = true;
+  static constexpr bool by_kind = true;
+  explicit AnyCaches(const MachineConfig& config) : tags_(tags_of(config)) {}
+  class View {
+   public:
+    View(std::vector<memory::TagArray>& tags, std::uint32_t node) : tags_(tags), node_(node) {}
+    bool access(memory::RecordKind kind, std::uint32_t line) const {
+      return tags_[cache_of(kind)].access(node_, line);
+    }
+    bool touch(memory::RecordKind kind, std::uint32_t line) const {
+      return tags_[cache_of(kind)].touch(node_, line);
+    }
+    [[nodiscard]] bool holds(memory::RecordKind kind, std::uint32_t line) const {
+      return tags_[cache_of(kind)].holds(node_, line);
+    }
+    [[nodiscard]] std::int64_t remove(std::uint32_t line) const {
+      return std::count_if(tags_.begin(), tags_.end(),
+                           [&](memory::TagArray& tags) { return tags.remove(node_, line); });
+    }
+    /// Which of the node's caches a record kind uses: 0 of one, split_cache_of[kind] of four.
+    [[nodiscard]] std::size_t cache_of(memory::RecordKind kind) const {
+      return tags_.size() > 1 ? split_cache_of[static_cast<std::size_t>(kind)] : 0;
+    }
+
+   private:
+    std::vector<memory::TagArray>& tags_;
+    std::uint32_t node_;
+  };
+  [[nodiscard]] View view(std::uint32_t node) { return {tags_, node}; }
+
+ private:
+  static std::vector<memory::TagArray> tags_of(const MachineConfig& config) {
+    std::vector<memory::TagArray> tags;
+    if (config.cache.organisation == CacheOrganisation::unified) {
+      tags.emplace_back(config.cache.cache, config.all_nodes());
+    } else if (config.cache.organisation == CacheOrganisation::split) {
+      for (const std::uint64_t size : config.cache.split_sizes) {
+        memory::CacheConfig part = config.cache.cache;
+        part.size = size;
+        tags.emplace_back(part, config.all_nodes());
+      }
+    }
+    return tags;
+  }
+
+  std::vector<memory::TagArray> tags_;
+};
+
+/// Unified caches that never replace a line, as ReplayInput::line_set says.
+class RoomyCaches {
+ public:
+  static constexpr bool present = true;
+  static constexpr bool by_kind = false;
+  RoomyCaches(const MachineConfig& config, std::uint64_t lines) : lines_(lines, config.all_nodes()) {}
+  class View {
+   public:
+    View(memory::LineSet& lines, std::uint32_t node) : lines_(&lines), node_(node) {}
+    [[gnu::always_inline]] bool access(memory::RecordKind /*kind*/, std::uint32_t line) const {
+      return lines_->access(node_, line);
+    }
+
+   private:
+    memory::LineSet* lines_;
+    std::uint32_t node_;
+  };
+  [[nodiscard]] View view(std::uint32_t node) { return {lines_, node}; }
+
+ private:
+  memory::LineSet lines_;
+};
+
+/// Nodes without a cache: every reference misses, and only its own bytes are moved.
+struct NoCaches {
+  static constexpr bool present = false;
+  static constexpr bool by_kind = false;
+  struct View {
+    static bool access(memory::RecordKind /*kind*/, std::uint32_t /*line*/) { return false; }
+    static bool touch(memory::RecordKind /*kind*/, std::uint32_t /*line*/) { return false; }
+    static bool holds(memory::RecordKind /*kind*/, std::uint32_t /*line*/) { return false; }
+    static std::int64_t remove(std::uint32_t /*line*/) { return 0; }
+    static std::size_t cache_of(memory::RecordKind /*kind*/) { return 0; }
+  };
+  [[nodiscard]] static View view(std::uint32_t /*node*/) { return {}; }
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,23 @@
+// Where the records of the database lie.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "memory/layout.h"
+#include "processors/machine/machine_config.h"
+#include "processors/program/work_log.h"
+#include "processors/walk/tree_plan.h"
+
+namespace marti::processors {
+
+/// Where the database's records lie; places what is built during the frame behind them. Throws UserError for
+/// a database too large for line numbers.
+[[nodiscard]] memory::Layout layout_of(const WorkLog& log, const MachineConfig& config,
+                                       std::optional<TreePlan>& plan);
+
+/// The record number of each tree node; empty when that is its own number.
+[[nodiscard]] std::vector<std::uint32_t> node_ranks(const WorkLog& log, const MachineConfig& config);
+
+}  // namespace marti::processors

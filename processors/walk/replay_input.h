@@ -1,0 +1,42 @@
+// What all nodes of a replay share and none changes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "memory/layout.h"
+#include "processors/machine/machine_config.h"
+#include "processors/machine/packets.h"
+#include "processors/program/work_log.h"
+#include "processors/walk/packet_sample.h"
+#include "processors/walk/tree_plan.h"
+#include "sim/time.h"
+
+namespace marti::processors {
+
+class Observer;
+class StrippedLog;
+
+/// References to objects that outlive the replay.
+struct ReplayInput {
+  const WorkLog& log;
+  const MachineConfig& config;
+  const memory::Layout& layout;
+  const PacketList& packets;
+  std::span<const std::uint32_t> node_rank;  ///< record number of each tree node; empty: its own number
+  bool step_by_step = false;                 ///< an event for every reference
+  const TreePlan* tree = nullptr;            ///< how the tree is built; null when it is given
+  bool report_built = false;                 ///< say which branches are built at the end
+  Observer* observer = nullptr;              ///< who watches; null: nobody
+  const StrippedLog* stripped = nullptr;     ///< walked in the log's place; null: the log itself
+  bool with_contexts = false;                ///< nodes that can hold several contexts, even for one
+  const PacketSample* sample = nullptr;      ///< `packets` are these of all; null: they are all
+  const PacketList* all_packets = nullptr;   ///< with a sample
+  /// Caches never replace one of so many lines, and are asked for no other; 0: their tags are looked up.
+  std::uint64_t line_set = 0;
+  /// What every read takes, so that nodes make theirs by themselves; nothing: they ask the interconnect.
+  std::optional<sim::Ticks> own_reads{};
+};
+
+}  // namespace marti::processors

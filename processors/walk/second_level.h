@@ -1,0 +1,68 @@
+// The second-level caches as the rest of a machine sees them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "memory/bank.h"
+#include "memory/cache.h"
+#include "memory/tag_array.h"
+#include "processors/cost/accounting.h"
+#include "processors/machine/machine_config.h"
+#include "processors/machine/second_level_config.h"
+#include "sim/time.h"
+
+namespace marti::processors {
+
+/// The banks of a cluster, with the shared cache before them if the machine has one.
+[[nodiscard]] memory::BankConfig banks_of(const MachineConfig& config);
+
+/// What the second level counted: an entry for each node (private) or each cluster (shared).
+struct SecondLevelResult {
+  std::vector<memory::CacheCounters> caches;
+  std::vector<memory::WaitStatistics> waits;  ///< shared only
+
+  [[nodiscard]] memory::CacheCounters counters() const;
+};
+
+/// The private second-level caches of all nodes. It is looked up only where the first level missed, and
+/// brings the line in if it misses too; the first level brings it in as well. Neither level cares what the
+/// other holds: the second is neither inclusive nor exclusive.
+class PrivateSecondLevel {
+ public:
+  /// Not present unless the machine has private second-level caches.
+  explicit PrivateSecondLevel(const MachineConfig& config);
+
+  [[nodiscard]] bool present() const { return tags_.has_value(); }
+
+  /// A line that `node`'s first level has not got; true when it is here, false also where there is no second
+  /// level. Then the time of a hit is added to
+  /// `time` and to the division.
+  bool access(std::uint32_t node, std::uint32_t line, sim::Ticks& time, TimeDivision& division) {
+    if (!tags_) {
+      return false;
+    }
+    if (!tags_->access(node, line)) {
+      ++counters_[node].misses;
+      return false;
+    }
+    ++counters_[node].hits;
+    division[static_cast<std::size_t>(Activity::cache_access)] += hit_ticks_;
+    time = sim::add_ticks(time, hit_ticks_);
+    return true;
+  }
+  /// Takes a line out; how many copies there were.
+  std::int64_t remove(std::uint32_t node, std::uint32_t line) {
+    return tags_ && tags_->remove(node, line) ? 1 : 0;
+  }
+
+  [[nodiscard]] SecondLevelResult result() const { return {counters_, {}}; }
+
+ private:
+  sim::Ticks hit_ticks_ = 0;
+  std::optional<memory::TagArray> tags_;
+  std::vector<memory::CacheCounters> counters_;
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,101 @@
+// What a visit to each tree node touches, worked out once for a layout and a line size: the lines in order,
+// and how many steps and lines of each kind they are. A replay then walks a list of line numbers instead of
+// computing addresses record by record.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "accel/quadric_shape.h"
+#include "memory/layout.h"
+#include "processors/cost/step_time.h"
+#include "processors/program/work_log.h"
+
+namespace marti::processors {
+
+/// The counts of one visit (that it is a branch follows from its not being a leaf; `test` counts triangles,
+/// cone_test cylinders too). They are summed in 16-bit lanes, four to a word, which most_summed_visits visits
+/// cannot overflow.
+enum class VisitCount : std::uint8_t {
+  leaf,
+  list,
+  test,
+  sphere_test,
+  cone_test,
+  node_line,
+  list_line,
+  primitive_line
+};
+inline constexpr std::uint32_t most_of_a_count = 255;
+inline constexpr std::uint32_t most_summed_visits = 65535 / most_of_a_count;
+
+struct VisitCounts {
+  std::array<std::uint64_t, 2> lanes{};
+
+  [[nodiscard]] std::uint32_t of(VisitCount what) const {
+    const auto lane = static_cast<unsigned>(what);
+    return (lanes[lane / 4] >> (lane % 4 * 16)) & 0xffffU;
+  }
+  void add(VisitCount what) {
+    const auto lane = static_cast<unsigned>(what);
+    lanes[lane / 4] += std::uint64_t{1} << (lane % 4 * 16);
+  }
+  VisitCounts& operator+=(const VisitCounts& other) {
+    lanes[0] += other.lanes[0];
+    lanes[1] += other.lanes[1];
+    return *this;
+  }
+};
+
+/// Sums over planned visits that are not in the statistics yet.
+struct VisitTally {
+  VisitCounts counts;
+  std::uint32_t visits = 0;
+};
+
+/// A planned leaf tests all its entries, each after a look-up where there are mailboxes.
+/// A visit that does not fit (more than 255 of anything) has no lines and is taken record by record.
+struct alignas(32) Visit {
+  std::uint32_t begin = 0;  ///< first of its lines in VisitPlan::lines
+  std::uint32_t lines = 0;
+  sim::Ticks time = 0;  ///< of the whole visit when every line hits
+  VisitCounts counts;
+};
+
+/// How many tests of each kind have begun, eight bits each: triangles lowest, then spheres, then cones.
+[[nodiscard]] constexpr std::uint32_t tests_of_kind(std::uint32_t tests, accel::PrimitiveKind kind) {
+  return (tests >> (8U * static_cast<unsigned>(kind))) & 0xffU;
+}
+
+/// A line's label: its record kind above, which of the visit's tests have begun below.
+inline constexpr unsigned label_bits = 29;
+[[nodiscard]] constexpr memory::RecordKind kind_of_label(std::uint32_t label) {
+  return static_cast<memory::RecordKind>(label >> label_bits);
+}
+[[nodiscard]] constexpr std::uint32_t tests_of_label(std::uint32_t label) {
+  return label & ((1U << label_bits) - 1U);
+}
+
+struct VisitPlan {
+  std::vector<Visit> visits;          ///< one for each tree node
+  std::vector<std::uint32_t> lines;   ///< line numbers, visit by visit
+  std::vector<std::uint32_t> labels;  ///< one for each line
+
+  [[nodiscard]] bool empty() const { return visits.empty(); }
+};
+
+/// Most lines a plan may hold (8 bytes each).
+inline constexpr std::uint64_t most_planned_lines = std::uint64_t{1} << 28U;
+
+/// The plan, or an empty one when the tree has more than most_planned_lines lines. `rank` is as in
+/// ReplayInput::node_rank.
+[[nodiscard]] VisitPlan plan_visits(const WorkLog& log, const memory::Layout& layout,
+                                    std::span<const std::uint32_t> rank, unsigned line_shift,
+                                    const StepTicks& ticks);
+
+/// Adds to a node's statistics so many visits of which all lines have hit, with the sum of their counts.
+void add_visits(const VisitCounts& counts, std::uint32_t visits, bool mailboxes, NodeStatistics& statistics);
+
+}  // namespace marti::processors
