@@ -9,7 +9,6 @@
 #include "studies/record/observers.h"
 #include "studies/record_keys.h"
 #include "studies/run_result.h"
-#include "studies/sweep/sweep_keys.h"
 
 namespace marti::studies {
 
@@ -30,6 +29,15 @@ void refuse_several_frames(const sim::Config& config, const FrameRange& frames) 
 }
 
 namespace {
+
+// A sweep's sections as free ones: a machine's own commands pass over what they hold.
+void declare_sweep_sections(sim::Schema& schema) {
+  schema.free_section(
+      "sweep",
+      "only for `marti sweep`, which times many machines: [sweep.axes], [[sweep.zip]], [sweep.points.NAME], "
+      "[sweep.base] and [sweep.compare] say which (docs/sweep.md)");
+  schema.free_section("prices", "only for `marti sweep`: what a machine costs, in units of your own");
+}
 
 void refuse_maps_beyond_memory(const sim::Config& config, const RecordConfig& record,
                                const FrameConfig& frame) {

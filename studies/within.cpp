@@ -13,7 +13,6 @@
 #include "sim/units.h"
 #include "studies/error/measured_errors.h"
 #include "studies/error/simulator_analytic.h"
-#include "studies/error/simulator_errors.h"
 #include "studies/error/simulator_methods.h"
 #include "studies/machine_keys.h"
 #include "studies/record_keys.h"

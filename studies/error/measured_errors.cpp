@@ -8,7 +8,6 @@
 #include <string>
 
 #include "sim/error.h"
-#include "studies/error/simulator_errors.h"
 #include "studies/error/simulator_methods.h"
 
 namespace marti::studies {
@@ -74,6 +73,14 @@ std::uint32_t whole_number_of(std::string_view text) {
 }
 
 }  // namespace
+
+std::optional<std::size_t> node_class_of(std::uint32_t nodes) {
+  const auto* const found = std::lower_bound(node_classes.begin(), node_classes.end(), nodes);
+  if (found == node_classes.end()) {
+    return std::nullopt;
+  }
+  return static_cast<std::size_t>(found - node_classes.begin());
+}
 
 std::vector<MeasuredError> parse_measured_errors(std::string_view csv) {
   const std::array<std::string_view, column_count> header = cells_of(take_line(csv));

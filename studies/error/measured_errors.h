@@ -4,6 +4,9 @@
 // make it anew.
 #pragma once
 
+#include <optional>
+#include <cstddef>
+#include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -12,7 +15,15 @@
 
 namespace marti::studies {
 
-/// Of one method, on machines of up to so many nodes (node_classes in simulator_errors.h).
+/// Allowances are measured apart for machines of up to 16, 64 and 256 nodes: contention differs.
+inline constexpr std::array<std::uint32_t, 3> node_classes = {16, 64, 256};
+/// The class of a number of nodes; nothing beyond the last.
+[[nodiscard]] std::optional<std::size_t> node_class_of(std::uint32_t nodes);
+
+/// The share of cases that a stated interval is to cover.
+inline constexpr double stated_confidence = 0.95;
+
+/// Of one method, on machines of up to so many nodes (node_classes).
 struct MeasuredError {
   std::size_t method = 0;  ///< index into simulator_methods()
   std::uint32_t nodes_to = 0;

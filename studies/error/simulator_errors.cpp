@@ -139,14 +139,6 @@ void add_ranks(const SimulatorStudy& study, std::size_t method, MethodErrors& er
 
 }  // namespace
 
-std::optional<std::size_t> node_class_of(std::uint32_t nodes) {
-  const auto* const found = std::lower_bound(node_classes.begin(), node_classes.end(), nodes);
-  if (found == node_classes.end()) {
-    return std::nullopt;
-  }
-  return static_cast<std::size_t>(found - node_classes.begin());
-}
-
 std::vector<MethodErrors> errors_of(const SimulatorStudy& study) {
   std::vector<MethodErrors> all(simulator_methods().size());
   for (std::size_t method = 0; method < all.size(); ++method) {

@@ -7,17 +7,10 @@
 #include <vector>
 
 #include "studies/error/error_metrics.h"
+#include "studies/error/measured_errors.h"
 #include "studies/error/simulator_study.h"
 
 namespace marti::studies {
-
-/// Allowances are measured apart for machines of up to 16, 64 and 256 nodes: contention differs.
-inline constexpr std::array<std::uint32_t, 3> node_classes = {16, 64, 256};
-/// The class of a number of nodes; nothing beyond the last.
-[[nodiscard]] std::optional<std::size_t> node_class_of(std::uint32_t nodes);
-
-/// The share of cases that a stated interval is to cover.
-inline constexpr double stated_confidence = 0.95;
 
 /// One figure by one method, over all cases that it has an answer for.
 struct FigureErrors {

@@ -38,14 +38,6 @@ constexpr std::array<PriceKey, 8> price_keys = {{
 
 }  // namespace
 
-void declare_sweep_sections(sim::Schema& schema) {
-  schema.free_section(
-      "sweep",
-      "only for `marti sweep`, which times many machines: [sweep.axes], [[sweep.zip]], [sweep.points.NAME], "
-      "[sweep.base] and [sweep.compare] say which (docs/sweep.md)");
-  schema.free_section("prices", "only for `marti sweep`: what a machine costs, in units of your own");
-}
-
 void declare_sweep_keys(sim::Schema& schema) {
   schema.text("sweep.filter", "",
               "which points are timed: an expression over keys, as \"cache.size * machine.nodes <= 1 MiB and "

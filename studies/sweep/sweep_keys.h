@@ -7,8 +7,6 @@
 
 namespace marti::studies {
 
-/// The sections as free ones: a machine's own commands pass over what they hold.
-void declare_sweep_sections(sim::Schema& schema);
 /// The keys of both sections; what else [sweep] holds is read by read_sweep_table (sweep/sweep_table.h).
 void declare_sweep_keys(sim::Schema& schema);
 
