@@ -29,7 +29,7 @@
 #include "processors/program/render.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
-#include "studies/cpu_time.h"
+#include "studies/host/cpu_time.h"
 
 namespace {
 

@@ -15,7 +15,7 @@
 #include "bench/report.h"
 #include "scenes/procedural.h"
 #include "sim/config.h"
-#include "studies/run_result.h"
+#include "studies/run/run_result.h"
 
 namespace {
 

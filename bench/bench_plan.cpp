@@ -9,8 +9,8 @@
 
 #include "bench/report.h"
 #include "sim/config.h"
-#include "studies/sweep/sweep_keys.h"
-#include "studies/sweep/sweep_plan.h"
+#include "studies/sweep/plan/sweep_keys.h"
+#include "studies/sweep/plan/sweep_plan.h"
 
 namespace {
 

@@ -16,11 +16,11 @@
 #include "sim/config.h"
 #include "sim/error.h"
 #include "sim/files.h"
-#include "studies/frame_keys.h"
-#include "studies/functional_run.h"
-#include "studies/machine_keys.h"
-#include "studies/run_result.h"
-#include "studies/sweep/sweep_store.h"
+#include "studies/keys/frame_keys.h"
+#include "studies/keys/machine_keys.h"
+#include "studies/run/functional_run.h"
+#include "studies/run/run_result.h"
+#include "studies/sweep/store/sweep_store.h"
 
 namespace {
 

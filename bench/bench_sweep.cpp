@@ -18,9 +18,9 @@
 #include "bench/report.h"
 #include "sim/error.h"
 #include "sim/files.h"
-#include "studies/sweep/sweep_keys.h"
-#include "studies/sweep/sweep_plan.h"
-#include "studies/sweep/sweep_reader.h"
+#include "studies/sweep/plan/sweep_keys.h"
+#include "studies/sweep/plan/sweep_plan.h"
+#include "studies/sweep/store/sweep_reader.h"
 
 namespace {
 

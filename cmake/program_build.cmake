@@ -16,7 +16,7 @@ endforeach()
 string(SHA256 hash "${hashes}")
 string(SUBSTRING "${hash}" 0 16 digits)
 file(CONFIGURE OUTPUT "${OUTPUT}" @ONLY CONTENT [[
-#include "studies/program_build.h"
+#include "studies/host/program_build.h"
 
 namespace marti::studies {
 

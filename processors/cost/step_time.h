@@ -2,6 +2,7 @@
 #pragma once
 
 #include "processors/cost/accounting.h"
+#include "processors/cost/cost_model.h"
 #include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
 

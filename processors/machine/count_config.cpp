@@ -1,11 +1,16 @@
 #include "processors/machine/count_config.h"
 
 #include <string>
+#include <string_view>
 
 #include "processors/machine/machine_config.h"
 #include "sim/key_error.h"
 
 namespace marti::processors {
+
+std::string_view key_of(const CountConfig& count) {
+  return count.miss_classes ? "count.miss_classes" : count.sharing ? "count.sharing" : "count.attribution";
+}
 
 void check_counting(const MachineConfig& config) {
   if (!config.count.any()) {

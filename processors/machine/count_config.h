@@ -1,6 +1,8 @@
 // What is counted about caches beside hits and misses, as values; all of it only when asked.
 #pragma once
 
+#include <string_view>
+
 namespace marti::processors {
 
 struct CountConfig {
@@ -12,5 +14,8 @@ struct CountConfig {
   /// Of those that nodes count while they are timed; the working set is worked out afterwards.
   [[nodiscard]] bool any() const { return miss_classes || sharing || attribution; }
 };
+
+/// The key of the first that is asked for, which messages name. One must be.
+[[nodiscard]] std::string_view key_of(const CountConfig& count);
 
 }  // namespace marti::processors

@@ -24,10 +24,6 @@ std::vector<std::uint64_t> lines_of_caches(const MachineConfig& config) {
   return lines;
 }
 
-std::string_view key_of(const CountConfig& count) {
-  return count.miss_classes ? "count.miss_classes" : count.sharing ? "count.sharing" : "count.attribution";
-}
-
 }  // namespace
 
 CacheCounting::CacheCounting(const MachineConfig& config, std::uint64_t lines) {

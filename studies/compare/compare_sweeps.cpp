@@ -10,8 +10,8 @@
 
 #include "studies/compare/compare_text.h"
 #include "studies/compare/differences.h"
-#include "studies/results/json_table.h"
-#include "studies/sweep/sweep_reader.h"
+#include "studies/sweep/store/sweep_reader.h"
+#include "studies/tables/json_table.h"
 
 namespace marti::studies {
 

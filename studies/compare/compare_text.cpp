@@ -1,5 +1,5 @@
 #include "studies/compare/compare_text.h"
-#include "studies/results/json_table.h"
+#include "studies/tables/json_table.h"
 
 #include <fmt/format.h>
 

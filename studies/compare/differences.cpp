@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "studies/results/cell_number.h"
+#include "studies/tables/cell_number.h"
 
 namespace marti::studies {
 

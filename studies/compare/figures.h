@@ -6,8 +6,8 @@
 #include <map>
 #include <string>
 
-#include "studies/results/table.h"
-#include "studies/sweep/sweep_reader.h"
+#include "studies/sweep/store/sweep_reader.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

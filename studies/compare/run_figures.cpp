@@ -5,7 +5,7 @@
 
 #include "sim/error.h"
 #include "studies/compare/figures.h"
-#include "studies/results/run_json.h"
+#include "studies/tables/run_json.h"
 
 namespace marti::studies {
 

@@ -9,8 +9,8 @@
 #include "studies/error/error_keys.h"
 #include "studies/error/rendering.h"
 #include "studies/error/simulator_tables.h"
-#include "studies/results/provenance.h"
-#include "studies/results/text_table.h"
+#include "studies/tables/provenance.h"
+#include "studies/tables/text_table.h"
 
 namespace marti::studies {
 

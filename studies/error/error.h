@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/config.h"
-#include "studies/results/study_files.h"
+#include "studies/tables/study_files.h"
 
 namespace marti::studies {
 

@@ -8,11 +8,11 @@
 #include "scenes/open.h"
 #include "sim/key_error.h"
 #include "sim/units.h"
-#include "studies/error/simulator_methods.h"
-#include "studies/image_file.h"
-#include "studies/key_parts.h"
-#include "studies/machine_keys.h"
-#include "studies/run_result.h"
+#include "studies/estimate/simulator_methods.h"
+#include "studies/host/image_file.h"
+#include "studies/keys/key_parts.h"
+#include "studies/keys/machine_keys.h"
+#include "studies/run/run_result.h"
 
 namespace marti::studies {
 

@@ -9,7 +9,7 @@
 #include "sim/config.h"
 #include "sim/schema.h"
 #include "studies/error/rendering_keys.h"
-#include "studies/frame_keys.h"
+#include "studies/keys/frame_keys.h"
 
 namespace marti::studies {
 

@@ -12,10 +12,10 @@
 #include "processors/replay/replay.h"
 #include "scenes/open.h"
 #include "sim/error.h"
-#include "studies/cpu_time.h"
-#include "studies/functional_run.h"
-#include "studies/image_file.h"
-#include "studies/open_frame.h"
+#include "studies/host/cpu_time.h"
+#include "studies/host/image_file.h"
+#include "studies/run/functional_run.h"
+#include "studies/run/open_frame.h"
 
 namespace marti::studies {
 

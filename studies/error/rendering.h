@@ -10,7 +10,7 @@
 #include "studies/error/rendering_keys.h"
 #include "studies/error/rendering_metrics.h"
 #include "studies/error/rendering_settings.h"
-#include "studies/results/study_files.h"
+#include "studies/tables/study_files.h"
 
 namespace marti::studies {
 

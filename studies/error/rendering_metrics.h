@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "processors/program/image.h"
-#include "studies/voxel_report.h"
+#include "studies/run/voxel_report.h"
 
 namespace marti::studies {
 

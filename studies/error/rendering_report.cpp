@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "studies/error/rendering_tables.h"
-#include "studies/results/text_table.h"
+#include "studies/tables/text_table.h"
 
 namespace marti::studies {
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "studies/error/error_metrics.h"
 #include "studies/error/rendering.h"
-#include "studies/results/table.h"
+#include "studies/estimate/error_metrics.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

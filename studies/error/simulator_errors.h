@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "studies/error/error_metrics.h"
-#include "studies/error/measured_errors.h"
 #include "studies/error/simulator_study.h"
+#include "studies/estimate/error_metrics.h"
+#include "studies/estimate/measured_errors.h"
 
 namespace marti::studies {
 

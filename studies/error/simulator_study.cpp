@@ -4,10 +4,10 @@
 
 #include "memory/cache_config.h"
 #include "sim/units.h"
-#include "studies/cpu_time.h"
-#include "studies/error/simulator_analytic.h"
-#include "studies/functional_run.h"
+#include "studies/estimate/simulator_analytic.h"
+#include "studies/host/cpu_time.h"
 #include "studies/paper/level_counts.h"
+#include "studies/run/functional_run.h"
 
 namespace marti::studies {
 

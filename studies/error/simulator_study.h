@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "studies/error/error_keys.h"
-#include "studies/error/simulator_figures.h"
-#include "studies/error/simulator_methods.h"
+#include "studies/estimate/simulator_figures.h"
+#include "studies/estimate/simulator_methods.h"
 
 namespace marti::studies {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "studies/error/simulator_errors.h"
-#include "studies/results/table.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 
@@ -24,7 +24,8 @@ namespace marti::studies {
 [[nodiscard]] Table time_table(const SimulatorStudy& study, std::span<const MethodErrors> errors);
 /// "host_error_fastest": the fastest method for errors of 10, 3, 1, 0.3 and 0 %.
 [[nodiscard]] Table fastest_table(const SimulatorStudy& study, std::span<const MethodErrors> errors);
-/// "host_error_measured": the figures that `marti run --within` rests on (studies/error/measured_errors.h).
+/// "host_error_measured": the figures that `marti run --within` rests on
+/// (studies/estimate/measured_errors.h).
 [[nodiscard]] Table measured_table(const SimulatorStudy& study, std::span<const MethodErrors> errors);
 
 }  // namespace marti::studies

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "scenes/open.h"
-#include "studies/image_file.h"
-#include "studies/open_frame.h"
+#include "studies/host/image_file.h"
+#include "studies/run/open_frame.h"
 
 namespace marti::studies {
 

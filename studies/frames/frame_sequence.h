@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenes/animated.h"
-#include "studies/frame_keys.h"
+#include "studies/keys/frame_keys.h"
 
 namespace marti::studies {
 

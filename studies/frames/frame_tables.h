@@ -6,7 +6,7 @@
 
 #include "studies/frames/frame_tree.h"
 #include "studies/frames/frame_ways.h"
-#include "studies/results/table.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

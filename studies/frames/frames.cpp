@@ -16,9 +16,9 @@
 #include "studies/frames/frame_tree.h"
 #include "studies/frames/frame_ways.h"
 #include "studies/frames/frames_config.h"
-#include "studies/functional_run.h"
-#include "studies/results/provenance.h"
-#include "studies/results/text_table.h"
+#include "studies/run/functional_run.h"
+#include "studies/tables/provenance.h"
+#include "studies/tables/text_table.h"
 
 namespace marti::studies {
 

@@ -5,9 +5,9 @@
 
 #include "processors/replay/host_bytes.h"
 #include "processors/replay/replay.h"
-#include "studies/build_keys.h"
 #include "studies/frames/frame_ways.h"
-#include "studies/machine_keys.h"
+#include "studies/keys/build_keys.h"
+#include "studies/keys/machine_keys.h"
 
 namespace marti::studies {
 

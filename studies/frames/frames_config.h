@@ -3,7 +3,7 @@
 
 #include "processors/machine/machine_config.h"
 #include "sim/config.h"
-#include "studies/frame_keys.h"
+#include "studies/keys/frame_keys.h"
 
 namespace marti::studies {
 

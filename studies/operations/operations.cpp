@@ -6,11 +6,11 @@
 
 #include "accel/structure.h"
 #include "scenes/open.h"
-#include "studies/frame_keys.h"
-#include "studies/image_file.h"
-#include "studies/machine_keys.h"
-#include "studies/open_frame.h"
-#include "studies/results/provenance.h"
+#include "studies/host/image_file.h"
+#include "studies/keys/frame_keys.h"
+#include "studies/keys/machine_keys.h"
+#include "studies/run/open_frame.h"
+#include "studies/tables/provenance.h"
 
 namespace marti::studies {
 

@@ -8,7 +8,7 @@
 #include "processors/cost/operation_mix.h"
 #include "sim/config.h"
 #include "studies/operations/unit_length.h"
-#include "studies/results/study_files.h"
+#include "studies/tables/study_files.h"
 
 namespace marti::studies {
 

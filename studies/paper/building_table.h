@@ -12,7 +12,7 @@
 #include "sim/time.h"
 #include "studies/paper/level_counts.h"
 #include "studies/paper/paper_keys.h"
-#include "studies/results/table.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

@@ -7,7 +7,7 @@
 #include "studies/paper/building_table.h"
 #include "studies/paper/traced_run.h"
 #include "studies/paper/tree_table.h"
-#include "studies/results/claim.h"
+#include "studies/tables/claim.h"
 
 namespace marti::studies {
 

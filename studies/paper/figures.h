@@ -8,7 +8,7 @@
 #include "memory/layout.h"
 #include "processors/cost/accounting.h"
 #include "studies/paper/traced_run.h"
-#include "studies/results/table.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

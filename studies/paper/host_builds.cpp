@@ -9,8 +9,8 @@
 
 #include "accel/structure.h"
 #include "sim/error.h"
-#include "studies/image_file.h"
-#include "studies/open_frame.h"
+#include "studies/host/image_file.h"
+#include "studies/run/open_frame.h"
 
 namespace marti::studies {
 

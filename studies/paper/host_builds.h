@@ -7,7 +7,7 @@
 #include "studies/paper/building_table.h"
 #include "studies/paper/paper_keys.h"
 #include "studies/paper/traced_run.h"
-#include "studies/results/table.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

@@ -11,7 +11,7 @@
 
 #include "sim/error.h"
 #include "sim/units.h"
-#include "studies/image_file.h"
+#include "studies/host/image_file.h"
 #include "studies/paper/build_times.h"
 #include "studies/paper/building_table.h"
 #include "studies/paper/claims.h"
@@ -20,10 +20,10 @@
 #include "studies/paper/paper_keys.h"
 #include "studies/paper/traced_run.h"
 #include "studies/paper/tree_table.h"
-#include "studies/results/provenance.h"
-#include "studies/results/text_table.h"
-#include "studies/results/wide_table.h"
-#include "studies/scene_hash.h"
+#include "studies/run/scene_hash.h"
+#include "studies/tables/provenance.h"
+#include "studies/tables/text_table.h"
+#include "studies/tables/wide_table.h"
 
 namespace marti::studies {
 

@@ -4,8 +4,8 @@
 
 #include "processors/node/memory_system.h"
 #include "sim/shown.h"
-#include "studies/machine_keys.h"
-#include "studies/run_result.h"
+#include "studies/keys/machine_keys.h"
+#include "studies/run/run_result.h"
 
 namespace marti::studies {
 

@@ -1,6 +1,6 @@
 #include "studies/paper/traced_run.h"
 
-#include "studies/functional_run.h"
+#include "studies/run/functional_run.h"
 
 namespace marti::studies {
 

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <memory>
 
-#include "studies/scene_hash.h"
+#include "studies/run/scene_hash.h"
 
 namespace marti::studies {
 

@@ -11,7 +11,7 @@
 #include "memory/layout.h"
 #include "scenes/scene.h"
 #include "studies/paper/level_counts.h"
-#include "studies/results/table.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

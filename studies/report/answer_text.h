@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "studies/text_units.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "studies/results/cell_number.h"
+#include "studies/tables/cell_number.h"
 
 namespace marti::studies {
 

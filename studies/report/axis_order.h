@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/results/table.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/error.h"
-#include "studies/results/csv.h"
-#include "studies/results/json_table.h"
+#include "studies/tables/csv.h"
+#include "studies/tables/json_table.h"
 
 namespace marti::studies {
 

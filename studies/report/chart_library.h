@@ -6,8 +6,8 @@
 #include <string>
 
 #include "studies/report/report_charts.h"
-#include "studies/results/chart.h"
-#include "studies/results/table.h"
+#include "studies/tables/chart.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

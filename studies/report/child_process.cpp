@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "sim/error.h"
-#include "studies/signals_held.h"
+#include "studies/host/signals_held.h"
 
 namespace marti::studies {
 

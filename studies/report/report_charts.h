@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "studies/results/table.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

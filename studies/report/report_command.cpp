@@ -9,12 +9,12 @@
 
 #include "sim/error.h"
 #include "sim/files.h"
+#include "studies/host/signals_held.h"
 #include "studies/report/plots.h"
 #include "studies/report/report_charts.h"
 #include "studies/report/report_page.h"
 #include "studies/report/vega_bundle.h"
-#include "studies/results/pending_files.h"
-#include "studies/signals_held.h"
+#include "studies/tables/pending_files.h"
 
 namespace marti::studies {
 

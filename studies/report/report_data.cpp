@@ -4,8 +4,8 @@
 #include "studies/report/report_charts.h"
 #include "studies/report/report_files.h"
 #include "studies/report/report_kinds.h"
-#include "studies/results/sqlite_connection.h"
-#include "studies/sweep/store_schema.h"
+#include "studies/sweep/store/store_schema.h"
+#include "studies/tables/sqlite_connection.h"
 
 namespace marti::studies {
 

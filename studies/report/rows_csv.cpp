@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-#include "studies/results/csv.h"
+#include "studies/tables/csv.h"
 
 namespace marti::studies {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/results/run_json.h"
+#include "studies/tables/run_json.h"
 
 namespace marti::studies {
 

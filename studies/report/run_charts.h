@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "studies/report/report_charts.h"
-#include "studies/results/run_json.h"
+#include "studies/tables/run_json.h"
 
 namespace marti::studies {
 

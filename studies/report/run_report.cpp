@@ -9,8 +9,8 @@
 #include "studies/report/report_kinds.h"
 #include "studies/report/run_answer.h"
 #include "studies/report/run_charts.h"
-#include "studies/results/run_files.h"
-#include "studies/results/run_json.h"
+#include "studies/tables/run_files.h"
+#include "studies/tables/run_json.h"
 
 namespace marti::studies {
 

@@ -10,7 +10,7 @@
 #include "sim/files.h"
 #include "studies/report/report_files.h"
 #include "studies/report/report_kinds.h"
-#include "studies/results/sqlite_connection.h"
+#include "studies/tables/sqlite_connection.h"
 
 namespace marti::studies {
 
@@ -112,7 +112,7 @@ Table read_table(SqliteConnection& connection, const fs::path& file, const std::
   return table;
 }
 
-// "setting", "value" and "given", as studies/results/provenance.h makes it.
+// "setting", "value" and "given", as studies/tables/provenance.h makes it.
 void take_settings(const Table& table, ReportData& report) {
   for (const std::vector<Cell>& row : table.rows()) {
     const auto text = [&](std::size_t i) {
@@ -139,7 +139,7 @@ void take_text(const fs::path& file, ReportData& report) {
   }
 }
 
-// What a study has found, claim by claim (studies/results/claim.h): its answer.
+// What a study has found, claim by claim (studies/tables/claim.h): its answer.
 void take_claims(const Table& table, ReportData& report) {
   constexpr std::size_t most = 12;
   const auto index_of = [&](std::string_view name) {

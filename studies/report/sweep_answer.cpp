@@ -8,9 +8,9 @@
 #include <set>
 
 #include "processors/cost/accounting.h"
+#include "studies/figures/scaling.h"
 #include "studies/report/answer_text.h"
-#include "studies/scaling.h"
-#include "studies/sweep/sweep_best.h"
+#include "studies/sweep/store/sweep_best.h"
 
 namespace marti::studies {
 

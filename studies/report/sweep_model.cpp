@@ -10,7 +10,7 @@
 #include "processors/cost/accounting.h"
 #include "sim/schema.h"
 #include "studies/report/rounded.h"
-#include "studies/sweep/sweep_keys.h"
+#include "studies/sweep/plan/sweep_keys.h"
 
 namespace marti::studies {
 

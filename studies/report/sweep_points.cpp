@@ -11,9 +11,9 @@
 #include "sim/schema.h"
 #include "studies/report/axis_order.h"
 #include "studies/report/cycle_groups.h"
-#include "studies/results/cell_number.h"
-#include "studies/sweep/sweep_keys.h"
-#include "studies/sweep/sweep_reader.h"
+#include "studies/sweep/plan/sweep_keys.h"
+#include "studies/sweep/store/sweep_reader.h"
+#include "studies/tables/cell_number.h"
 
 namespace marti::studies {
 

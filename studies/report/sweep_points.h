@@ -14,7 +14,7 @@
 #include "memory/network.h"
 #include "processors/machine/build_config.h"
 #include "processors/machine/machine_config.h"
-#include "studies/results/table.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

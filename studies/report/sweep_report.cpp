@@ -13,7 +13,7 @@
 #include "studies/report/sweep_answer.h"
 #include "studies/report/sweep_model.h"
 #include "studies/report/sweep_points.h"
-#include "studies/text_units.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 

@@ -2,7 +2,7 @@
 
 #include "processors/replay/replay.h"
 #include "sim/statistics.h"
-#include "studies/functional_run.h"
+#include "studies/run/functional_run.h"
 
 namespace marti::studies {
 

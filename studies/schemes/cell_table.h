@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "processors/cost/accounting.h"
-#include "studies/results/table.h"
 #include "studies/schemes/schemes_keys.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

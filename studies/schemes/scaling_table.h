@@ -9,10 +9,10 @@
 
 #include "processors/program/work_log.h"
 #include "processors/replay/replay.h"
-#include "studies/results/table.h"
-#include "studies/scaling.h"
+#include "studies/figures/scaling.h"
 #include "studies/schemes/schemes_keys.h"
 #include "studies/schemes/stage_table.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

@@ -4,15 +4,15 @@
 
 #include <string>
 
-#include "studies/functional_run.h"
-#include "studies/results/claim.h"
-#include "studies/results/provenance.h"
-#include "studies/results/text_table.h"
+#include "studies/run/functional_run.h"
 #include "studies/schemes/arguments.h"
 #include "studies/schemes/cell_table.h"
 #include "studies/schemes/scaling_table.h"
 #include "studies/schemes/schemes_keys.h"
 #include "studies/schemes/stage_table.h"
+#include "studies/tables/claim.h"
+#include "studies/tables/provenance.h"
+#include "studies/tables/text_table.h"
 
 namespace marti::studies {
 

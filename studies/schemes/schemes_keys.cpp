@@ -6,9 +6,9 @@
 #include "sim/config_errors.h"
 #include "sim/shown.h"
 #include "sim/units.h"
-#include "studies/key_parts.h"
-#include "studies/machine_keys.h"
-#include "studies/run_result.h"
+#include "studies/keys/key_parts.h"
+#include "studies/keys/machine_keys.h"
+#include "studies/run/run_result.h"
 
 namespace marti::studies {
 

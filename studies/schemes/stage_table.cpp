@@ -5,7 +5,7 @@
 #include <string>
 
 #include "processors/replay/replay.h"
-#include "studies/flow_figures.h"
+#include "studies/figures/flow_figures.h"
 
 namespace marti::studies {
 

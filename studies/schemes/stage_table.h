@@ -8,8 +8,8 @@
 
 #include "processors/flow/pipeline/stages.h"
 #include "processors/program/work_log.h"
-#include "studies/results/table.h"
 #include "studies/schemes/schemes_keys.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "accel/precision.h"
-#include "studies/results/table.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 

@@ -10,8 +10,8 @@
 
 #include "processors/cost/step_time.h"
 #include "processors/replay/bounds.h"
-#include "studies/output.h"
-#include "studies/run_result.h"
+#include "studies/run/run_result.h"
+#include "studies/show/output.h"
 #include "studies/stability/machines.h"
 
 namespace marti::studies {

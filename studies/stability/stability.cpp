@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "studies/cpu_time.h"
-#include "studies/results/provenance.h"
-#include "studies/results/text_table.h"
+#include "studies/host/cpu_time.h"
 #include "studies/stability/precision_table.h"
 #include "studies/stability/stability_keys.h"
+#include "studies/tables/provenance.h"
+#include "studies/tables/text_table.h"
 
 namespace marti::studies {
 

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "sim/config.h"
-#include "studies/results/study_files.h"
 #include "studies/stability/stability_case.h"
+#include "studies/tables/study_files.h"
 
 namespace marti::studies {
 

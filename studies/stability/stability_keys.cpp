@@ -5,7 +5,7 @@
 
 #include "sim/nearest.h"
 #include "sim/shown.h"
-#include "studies/key_parts.h"
+#include "studies/keys/key_parts.h"
 
 namespace marti::studies {
 

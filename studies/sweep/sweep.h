@@ -7,7 +7,7 @@
 #include <string>
 
 #include "sim/config.h"
-#include "studies/sweep/sweep_plan.h"
+#include "studies/sweep/plan/sweep_plan.h"
 
 namespace marti::studies {
 

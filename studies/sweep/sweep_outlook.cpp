@@ -9,8 +9,8 @@
 #include "processors/replay/host_bytes.h"
 #include "processors/replay/replay.h"
 #include "processors/walk/stripped_log.h"
-#include "studies/functional_run.h"
-#include "studies/sweep/strip_shelf.h"
+#include "studies/run/functional_run.h"
+#include "studies/sweep/work/strip_shelf.h"
 
 namespace marti::studies {
 

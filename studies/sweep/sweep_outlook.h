@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "studies/sweep/sweep_plan.h"
+#include "studies/sweep/plan/sweep_plan.h"
 
 namespace marti::studies {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/results/sqlite_connection.h"
+#include "studies/tables/sqlite_connection.h"
 #include "tests/cli/sweep_files.h"
 #include "tests/support/temporary_directory.h"
 

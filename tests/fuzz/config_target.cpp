@@ -5,12 +5,12 @@
 #include "refusal.h"
 #include "sim/error.h"
 #include "studies/error/error_keys.h"
-#include "studies/frame_keys.h"
-#include "studies/machine_keys.h"
-#include "studies/record_keys.h"
-#include "studies/run_result.h"
-#include "studies/sweep/sweep_keys.h"
-#include "studies/sweep/sweep_table.h"
+#include "studies/keys/frame_keys.h"
+#include "studies/keys/machine_keys.h"
+#include "studies/keys/record_keys.h"
+#include "studies/run/run_result.h"
+#include "studies/sweep/plan/sweep_keys.h"
+#include "studies/sweep/plan/sweep_table.h"
 #include "target.h"
 
 namespace marti::fuzz {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/config.h"
-#include "studies/functional_run.h"
+#include "studies/run/functional_run.h"
 #include "studies/schemes/arguments.h"
 #include "studies/schemes/schemes_keys.h"
 

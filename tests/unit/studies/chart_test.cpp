@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "studies/results/chart.h"
+#include "studies/tables/chart.h"
 
 namespace marti::tests {
 namespace {

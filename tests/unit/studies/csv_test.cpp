@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/results/csv.h"
+#include "studies/tables/csv.h"
 
 namespace marti::tests {
 namespace {

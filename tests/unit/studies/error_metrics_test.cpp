@@ -1,5 +1,5 @@
 // Rank correlation, regret, Pareto fronts, quantiles and curves against brute force and known values.
-#include "studies/error/error_metrics.h"
+#include "studies/estimate/error_metrics.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -10,7 +10,7 @@
 #include <random>
 
 #include "sim/error.h"
-#include "studies/error/simulator_interpolation.h"
+#include "studies/estimate/simulator_interpolation.h"
 
 namespace marti::studies {
 namespace {

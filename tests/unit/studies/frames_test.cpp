@@ -12,9 +12,9 @@
 #include "sim/config.h"
 #include "sim/error.h"
 #include "studies/frames/frames_config.h"
-#include "studies/functional_run.h"
-#include "studies/results/csv.h"
-#include "studies/run_result.h"
+#include "studies/run/functional_run.h"
+#include "studies/run/run_result.h"
+#include "studies/tables/csv.h"
 #include "tests/support/user_error.h"
 
 namespace marti::studies {

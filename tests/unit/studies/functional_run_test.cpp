@@ -1,5 +1,5 @@
 // What a functional run says of its structure.
-#include "studies/functional_run.h"
+#include "studies/run/functional_run.h"
 
 #include <gtest/gtest.h>
 

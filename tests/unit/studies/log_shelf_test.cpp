@@ -1,6 +1,6 @@
 // The shelf: whatever its limit, a log that is taken is the one its frame has, and memory stays within
 // bounds.
-#include "studies/sweep/log_shelf.h"
+#include "studies/sweep/work/log_shelf.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

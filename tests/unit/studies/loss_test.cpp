@@ -1,5 +1,5 @@
 // The lost speed-up adds up, and each part is what it says.
-#include "studies/loss.h"
+#include "studies/figures/loss.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

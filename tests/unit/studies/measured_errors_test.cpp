@@ -1,5 +1,5 @@
 // The measured errors that the program carries, and what is made of them.
-#include "studies/error/measured_errors.h"
+#include "studies/estimate/measured_errors.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "studies/error/simulator_errors.h"
-#include "studies/error/simulator_methods.h"
-#include "studies/within.h"
+#include "studies/estimate/simulator_methods.h"
+#include "studies/estimate/within.h"
 #include "tests/support/random_machine.h"
 
 namespace marti::studies {

@@ -1,4 +1,4 @@
-#include "studies/trace/node_list.h"
+#include "studies/run/trace/node_list.h"
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@
 #include "studies/paper/paper.h"
 #include "studies/paper/paper_keys.h"
 #include "studies/paper/traced_run.h"
-#include "studies/results/csv.h"
+#include "studies/tables/csv.h"
 #include "tests/support/user_error.h"
 
 namespace marti::tests {

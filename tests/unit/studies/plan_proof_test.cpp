@@ -11,9 +11,9 @@
 
 #include "processors/program/shading.h"
 #include "scenes/procedural.h"
-#include "studies/image_file.h"
-#include "studies/plan/make_plan.h"
-#include "studies/plan/verify_plan.h"
+#include "studies/host/image_file.h"
+#include "studies/run/plan/make_plan.h"
+#include "studies/run/verify_plan.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 #include "tests/unit/scenes/gltf_file.h"

@@ -11,7 +11,7 @@
 
 #include "processors/program/vector.h"
 #include "scenes/scene.h"
-#include "studies/functional_run.h"
+#include "studies/run/functional_run.h"
 
 namespace marti::studies::testing {
 

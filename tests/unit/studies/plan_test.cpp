@@ -1,12 +1,12 @@
 // What the plan decides, and above all what it must not leave out.
-#include "studies/plan/make_plan.h"
+#include "studies/run/plan/make_plan.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-#include "studies/plan/view.h"
+#include "studies/run/plan/view.h"
 #include "tests/support/user_error.h"
 #include "tests/unit/studies/plan_scenes.h"
 

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "studies/ranks/launch.h"
-#include "studies/ranks/ranks.h"
+#include "studies/sweep/ranks/launch.h"
+#include "studies/sweep/ranks/ranks.h"
 #include "tests/support/user_error.h"
 
 namespace marti::studies {

@@ -13,9 +13,9 @@
 #include "studies/error/error_keys.h"
 #include "studies/error/rendering.h"
 #include "studies/error/rendering_tables.h"
-#include "studies/machine_keys.h"
-#include "studies/results/csv.h"
-#include "studies/results/text_table.h"
+#include "studies/keys/machine_keys.h"
+#include "studies/tables/csv.h"
+#include "studies/tables/text_table.h"
 
 namespace marti::studies {
 namespace {

@@ -14,7 +14,7 @@
 #include "studies/report/rows_csv.h"
 #include "studies/report/run_charts.h"
 #include "studies/report/sweep_answer.h"
-#include "studies/results/run_json.h"
+#include "studies/tables/run_json.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "studies/report/sweep_points.h"
-#include "studies/results/sqlite_connection.h"
-#include "studies/sweep/sweep_store.h"
+#include "studies/sweep/store/sweep_store.h"
+#include "studies/tables/sqlite_connection.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 #include "tests/unit/studies/sweep_parts.h"

@@ -1,5 +1,5 @@
 // The cheaper methods at their exact limits, and whether their intervals hold.
-#include "studies/error/simulator_methods.h"
+#include "studies/estimate/simulator_methods.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -12,10 +12,10 @@
 #include "processors/passes/one_pass.h"
 #include "processors/replay/replay.h"
 #include "sim/error.h"
-#include "studies/error/error_metrics.h"
-#include "studies/error/packet_schedule.h"
-#include "studies/error/simulator_analytic.h"
-#include "studies/error/simulator_sample.h"
+#include "studies/estimate/error_metrics.h"
+#include "studies/estimate/packet_schedule.h"
+#include "studies/estimate/simulator_analytic.h"
+#include "studies/estimate/simulator_sample.h"
 #include "tests/support/random_machine.h"
 
 namespace marti::studies {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "sim/error.h"
-#include "studies/results/sqlite.h"
+#include "studies/tables/sqlite.h"
 #include "tests/support/temporary_directory.h"
 
 namespace marti::tests {

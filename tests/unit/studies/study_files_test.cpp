@@ -9,7 +9,7 @@
 #include <string>
 
 #include "sim/error.h"
-#include "studies/results/study_files.h"
+#include "studies/tables/study_files.h"
 #include "tests/support/temporary_directory.h"
 
 namespace marti::tests {

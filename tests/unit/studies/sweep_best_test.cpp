@@ -1,13 +1,13 @@
 // Prices, the best machine, the Pareto front, metrics.
-#include "studies/sweep/sweep_best.h"
+#include "studies/sweep/store/sweep_best.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <map>
 
-#include "studies/sweep/sweep_cost.h"
-#include "studies/sweep/sweep_metrics.h"
+#include "studies/sweep/plan/sweep_cost.h"
+#include "studies/sweep/store/sweep_metrics.h"
 #include "tests/support/user_error.h"
 
 namespace marti::studies {

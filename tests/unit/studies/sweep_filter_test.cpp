@@ -1,10 +1,10 @@
 // The filter of a sweep against C++.
-#include "studies/sweep/sweep_filter.h"
+#include "studies/sweep/plan/sweep_filter.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "studies/sweep/sweep_keys.h"
+#include "studies/sweep/plan/sweep_keys.h"
 #include "tests/support/user_error.h"
 
 namespace marti::studies {

@@ -1,5 +1,5 @@
 // Messages between ranks.
-#include "studies/ranks/sweep_message.h"
+#include "studies/sweep/ranks/sweep_message.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

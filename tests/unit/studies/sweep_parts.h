@@ -5,8 +5,8 @@
 #include <string>
 
 #include "sim/statistics.h"
-#include "studies/sweep/sweep_plan.h"
-#include "studies/sweep/sweep_row.h"
+#include "studies/sweep/plan/sweep_plan.h"
+#include "studies/sweep/plan/sweep_row.h"
 #include "tests/support/store_dump.h"
 
 namespace marti::test {

@@ -1,5 +1,5 @@
 // The plan of a sweep against naive expansions of the same axes.
-#include "studies/sweep/sweep_plan.h"
+#include "studies/sweep/plan/sweep_plan.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -16,12 +16,12 @@
 #include "scenes/procedural.h"
 #include "scenes/tessellate.h"
 #include "sim/files.h"
-#include "studies/functional_run.h"
-#include "studies/image_file.h"
-#include "studies/machine_keys.h"
-#include "studies/run_result.h"
-#include "studies/sweep/digest.h"
-#include "studies/sweep/read_point.h"
+#include "studies/host/image_file.h"
+#include "studies/keys/machine_keys.h"
+#include "studies/run/functional_run.h"
+#include "studies/run/run_result.h"
+#include "studies/sweep/plan/digest.h"
+#include "studies/sweep/plan/read_point.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 #include "tests/unit/studies/sweep_tables.h"

@@ -1,5 +1,5 @@
 // What a reader sees of a store.
-#include "studies/sweep/sweep_reader.h"
+#include "studies/sweep/store/sweep_reader.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "sim/error.h"
-#include "studies/sweep/sweep_store.h"
+#include "studies/sweep/store/sweep_store.h"
 #include "studies/version.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"

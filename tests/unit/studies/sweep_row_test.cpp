@@ -1,5 +1,5 @@
 // A row holds what its machine counted, and survives being sent.
-#include "studies/sweep/sweep_row.h"
+#include "studies/sweep/plan/sweep_row.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

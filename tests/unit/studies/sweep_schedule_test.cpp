@@ -1,6 +1,6 @@
 // Who does what next in a sweep: random plans, workers that end in random orders, and a plain account of what
 // each of them was given.
-#include "studies/sweep/schedule.h"
+#include "studies/sweep/work/schedule.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

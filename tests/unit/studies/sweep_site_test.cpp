@@ -13,10 +13,10 @@
 #include <thread>
 #include <vector>
 
-#include "studies/sweep/memory_gate.h"
-#include "studies/sweep/progress.h"
-#include "studies/sweep/strip_shelf.h"
-#include "studies/text_units.h"
+#include "studies/sweep/work/memory_gate.h"
+#include "studies/sweep/work/progress.h"
+#include "studies/sweep/work/strip_shelf.h"
+#include "studies/tables/text_units.h"
 #include "tests/support/random_machine.h"
 
 namespace marti::studies {

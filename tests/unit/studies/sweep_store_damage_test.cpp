@@ -4,9 +4,9 @@
 #include <sys/stat.h>
 
 #include "sim/files.h"
-#include "studies/results/sqlite_connection.h"
-#include "studies/sweep/sweep_reader.h"
-#include "studies/sweep/sweep_store.h"
+#include "studies/sweep/store/sweep_reader.h"
+#include "studies/sweep/store/sweep_store.h"
+#include "studies/tables/sqlite_connection.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"

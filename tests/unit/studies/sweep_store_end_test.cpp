@@ -8,7 +8,7 @@
 #include <random>
 
 #include "sim/error.h"
-#include "studies/sweep/sweep_store.h"
+#include "studies/sweep/store/sweep_store.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/unit/studies/sweep_parts.h"
 

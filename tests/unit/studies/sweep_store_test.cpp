@@ -1,5 +1,5 @@
 // The store of a sweep: what is entered stays, whatever the order, and what is no store is refused.
-#include "studies/sweep/sweep_store.h"
+#include "studies/sweep/store/sweep_store.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -10,7 +10,7 @@
 #include <random>
 
 #include "sim/error.h"
-#include "studies/results/sqlite_connection.h"
+#include "studies/tables/sqlite_connection.h"
 #include "studies/version.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"

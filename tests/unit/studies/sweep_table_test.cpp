@@ -1,5 +1,5 @@
 // Reading [sweep]: axes, ranges, zipped keys, named points, and what is refused.
-#include "studies/sweep/sweep_table.h"
+#include "studies/sweep/plan/sweep_table.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

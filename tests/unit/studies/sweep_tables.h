@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "sim/config.h"
-#include "studies/sweep/sweep_keys.h"
-#include "studies/sweep/sweep_plan.h"
+#include "studies/sweep/plan/sweep_keys.h"
+#include "studies/sweep/plan/sweep_plan.h"
 
 namespace marti::test {
 

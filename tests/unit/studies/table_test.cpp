@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "sim/error.h"
-#include "studies/results/table.h"
-#include "studies/results/text_table.h"
-#include "studies/results/wide_table.h"
+#include "studies/tables/table.h"
+#include "studies/tables/text_table.h"
+#include "studies/tables/wide_table.h"
 
 namespace marti::tests {
 namespace {

@@ -1,0 +1,500 @@
+// The command line. Exit status: 0 done, 2 the user's input is wrong, 1 a fault of ours.
+#include <CLI/CLI.hpp>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "accel/precision.h"
+#include "accel/triangles.h"
+#include "scenes/gltf_export.h"
+#include "scenes/open.h"
+#include "scenes/procedural.h"
+#include "scenes/tessellate.h"
+#include "sim/config_errors.h"
+#include "sim/error.h"
+#include "sim/files.h"
+#include "sim/memory_budget.h"
+#include "sim/shown.h"
+#include "sim/units.h"
+#include "studies/cli/command_error.h"
+#include "studies/cli/reference_commands.h"
+#include "studies/cli/shell_completion.h"
+#include "studies/cli/sweep_command.h"
+#include "studies/compare/compare.h"
+#include "studies/error/error.h"
+#include "studies/error/error_keys.h"
+#include "studies/estimate/within.h"
+#include "studies/frames/frames.h"
+#include "studies/host/host_threads.h"
+#include "studies/host/image_file.h"
+#include "studies/host/signals_held.h"
+#include "studies/keys/config_file.h"
+#include "studies/operations/operations.h"
+#include "studies/paper/paper.h"
+#include "studies/paper/paper_keys.h"
+#include "studies/report/report_command.h"
+#include "studies/run/run_result.h"
+#include "studies/run/trace/trace.h"
+#include "studies/run/verify_plan.h"
+#include "studies/schemes/schemes.h"
+#include "studies/schemes/schemes_keys.h"
+#include "studies/show/output.h"
+#include "studies/stability/stability.h"
+#include "studies/stability/stability_keys.h"
+#include "studies/sweep/ranks/ranks.h"
+#include "studies/version.h"
+
+namespace {
+
+using namespace marti;
+
+constexpr int done = 0;
+constexpr int our_fault = 1;
+constexpr int wrong_input = 2;
+
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw sim::UserError("standard output cannot be written");
+  }
+}
+
+struct RunArguments {
+  std::string config;
+  std::vector<std::string> assignments;
+  std::string directory;
+  bool json = false;
+  std::string within;
+  std::vector<std::string> keep;
+  bool verify_plan = false;
+};
+
+void run_within_command(const RunArguments& arguments, sim::Config& config) {
+  if (!arguments.keep.empty() || arguments.verify_plan) {
+    throw sim::UserError("--keep and --verify-plan are for exact runs; leave --within out");
+  }
+  if (!arguments.directory.empty()) {
+    throw sim::UserError(
+        "--within gives estimates of some figures: result.json and what else --output gives are for "
+        "exact runs; leave --within out, or take --json");
+  }
+  double tolerance = 0.0;
+  try {
+    tolerance = studies::parse_tolerance(arguments.within);
+  } catch (const sim::UserError& error) {
+    throw sim::UserError("--within: " + std::string(error.what()));
+  }
+  print(studies::run_within(config, tolerance, arguments.json));
+}
+
+void run_command(const RunArguments& arguments) {
+  const studies::KeptItems keep(arguments.keep);
+  studies::require_config_file(arguments.config);
+  sim::Config config = sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
+  if (!arguments.within.empty()) {
+    run_within_command(arguments, config);
+    return;
+  }
+  if (!arguments.directory.empty()) {
+    studies::prepare_output(arguments.directory);
+  }
+  const studies::RunResult result = studies::run(config, arguments.directory, keep);
+  const studies::PlanVerdict verdict =
+      arguments.verify_plan ? studies::verify_plan(result) : studies::PlanVerdict();
+  if (!verdict.holds) {
+    throw sim::InternalError("the plan is wrong\n" + verdict.text);
+  }
+  studies::WrittenRun written;
+  if (!arguments.directory.empty()) {
+    written = studies::write_output(result, arguments.directory);
+  }
+  if (arguments.json) {
+    print(written.json.empty() ? studies::json_of(result) : written.json);
+    return;
+  }
+  std::string text = studies::summary_of(result) + verdict.text;
+  for (const std::filesystem::path& file : written.files) {
+    text += "wrote         " + file.string() + "\n";
+  }
+  print(text);
+}
+
+// What every study takes.
+struct StudyArguments {
+  std::string config;
+  std::vector<std::string> assignments;
+  std::string directory;
+};
+
+std::string no_empty_directory(const std::string& name) {
+  return name.empty() ? "the name of a directory must not be empty" : "";
+}
+
+// Runs a study; without a directory it only prints. What it finds wrong with the program is our fault, once
+// everything is written.
+template <class Study>
+void run_study(const StudyArguments& arguments, const sim::Schema& schema, const Study& study) {
+  if (!arguments.config.empty()) {
+    studies::require_config_file(arguments.config);
+  }
+  sim::Config config = arguments.config.empty()
+                           ? sim::Config::from_text(schema, "", "defaults", arguments.assignments)
+                           : sim::Config::from_file(schema, arguments.config, arguments.assignments);
+  if (!arguments.directory.empty()) {
+    studies::prepare_output(arguments.directory);
+  }
+  const studies::StudyOutput output = sim::placed(config, [&] { return study(config); });
+  std::string text = output.report;
+  if (!output.host_report.empty()) {
+    text += "\n" + output.host_report;
+  }
+  for (const studies::StudyImage& image : output.images) {
+    if (const std::string note = studies::note_of_infinities(image.image); !note.empty()) {
+      text += "note: " + image.name + ": " + note + "\n";
+    }
+  }
+  if (!arguments.directory.empty()) {
+    text += "\n";
+    for (const std::filesystem::path& file : studies::write_study(output, arguments.directory)) {
+      text += "wrote " + file.string() + "\n";
+    }
+  }
+  print(text);
+  if (!output.fault.empty()) {
+    throw sim::InternalError(output.fault);
+  }
+}
+
+void add_study_commands(CLI::App& app, StudyArguments& arguments) {
+  CLI::App* study = app.add_subcommand("study", "Runs a study: many machines, tables and charts");
+  study->require_subcommand(1);
+  CLI::App* operations =
+      study->add_subcommand("operations", "Counts the operations of every walk, a step and a ray");
+  CLI::App* paper = study->add_subcommand("paper", "The tables and figures of the paper of 1992");
+  CLI::App* frames =
+      study->add_subcommand("frames", "The cycle \"build, render\" of each frame of an animated scene");
+  CLI::App* schemes =
+      study->add_subcommand("schemes", "Parallel schemes on one scene: how they grow, and what limits them");
+  CLI::App* error = study->add_subcommand(
+      "error", "Cheaper answers than exact ones: how wrong they are, and how much cheaper");
+  CLI::App* stability = study->add_subcommand(
+      "stability", "Stiff and extreme cases, each against an oracle; exit 1 if one fails");
+  for (CLI::App* command : {operations, paper, frames, schemes, error, stability}) {
+    CLI::Option* config =
+        command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->type_name("FILE.toml");
+    CLI::Option* directory =
+        command->add_option("-o,--output", arguments.directory, "directory for tables, charts and report")
+            ->type_name("DIR")
+            ->check(no_empty_directory);
+    config->required(command != operations && command != stability);
+    directory->required(command != operations && command != stability);
+    command->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+  }
+  operations->callback([&] { run_study(arguments, studies::run_schema(), studies::run_operations); });
+  paper->callback([&] { run_study(arguments, studies::paper_schema(), studies::run_paper); });
+  frames->callback([&] { run_study(arguments, studies::run_schema(), studies::run_frames); });
+  schemes->callback([&] { run_study(arguments, studies::schemes_schema(), studies::run_schemes); });
+  error->callback([&] { run_study(arguments, studies::error_schema(), studies::run_error); });
+  stability->callback([&] {
+    run_study(arguments, studies::stability_schema(),
+              [](sim::Config& config) { return studies::run_stability(config); });
+  });
+}
+
+void add_sweep_command(CLI::App& app, studies::SweepArguments& arguments) {
+  CLI::App* sweep =
+      app.add_subcommand("sweep", "Times every machine of a configuration's [sweep]; goes on where it was");
+  sweep->add_option("CONFIG", arguments.config, "configuration file (TOML)")
+      ->type_name("FILE.toml")
+      ->required();
+  sweep->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  sweep->add_option("-o,--output", arguments.directory, "directory for results.sqlite and points.csv")
+      ->type_name("DIR")
+      ->check(no_empty_directory);
+  sweep->add_option("--threads", arguments.threads, "machines timed at a time; 0: as many as there are cores")
+      ->type_name("N")
+      ->check(CLI::Range(0, 4096));
+  sweep
+      ->add_option("--best", arguments.best,
+                   "the best machines by this metric and their cost: end, speed_up, efficiency, ...")
+      ->type_name("METRIC");
+  sweep->add_option("--within", arguments.within, "the cost that the best machine may have, by [prices]")
+      ->type_name("COST");
+  sweep->add_flag("--plan", arguments.plan_only, "only say what would be run");
+  sweep->add_flag("--quiet", arguments.quiet, "no progress");
+  sweep->add_flag("--json", arguments.json, "print the points, or the best ones, as JSON");
+  sweep->callback([&] { studies::sweep_command(arguments, print); });
+}
+
+struct TraceArguments {
+  std::string config;
+  std::vector<std::string> assignments;
+  std::string directory;
+  std::string format = "din";
+  std::string limit = "4 GiB";
+  studies::TraceOptions options;
+};
+
+void add_trace_command(CLI::App& app, TraceArguments& arguments) {
+  CLI::App* trace = app.add_subcommand("trace", "Writes each node's references, for other cache simulators");
+  trace->add_option("CONFIG", arguments.config, "configuration file (TOML)")
+      ->type_name("FILE.toml")
+      ->required();
+  trace->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  trace->add_option("-o,--output", arguments.directory, "directory for node-00000.din and so on")
+      ->type_name("DIR")
+      ->check(no_empty_directory)
+      ->required();
+  trace->add_option("--format", arguments.format, "din: label and address, as Dinero reads them")
+      ->check(CLI::IsMember({"din"}));
+  trace->add_option("--nodes", arguments.options.nodes, "which nodes, as 0-3 or 0,2,8-9; all if not given")
+      ->type_name("NODES");
+  trace->add_option("--limit", arguments.limit, "refuse to write more than this, as \"4 GiB\"")
+      ->type_name("SIZE");
+  trace->callback([&] {
+    try {
+      arguments.options.most_bytes = static_cast<std::uint64_t>(sim::parse_size(arguments.limit));
+    } catch (const sim::UserError& error) {
+      throw sim::UserError("--limit: " + std::string(error.what()));
+    }
+    studies::require_config_file(arguments.config);
+    sim::Config config =
+        sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
+    studies::prepare_output(arguments.directory);
+    print(sim::placed(config,
+                      [&] { return studies::write_traces(config, arguments.options, arguments.directory); }));
+  });
+}
+
+struct CompareArguments {
+  std::string a;
+  std::string b;
+  studies::CompareOptions options;
+};
+
+void add_compare_command(CLI::App& app, CompareArguments& arguments) {
+  CLI::App* compare = app.add_subcommand("compare", "What differs between two runs, points or sweeps");
+  compare->add_option("A", arguments.a, "directory of a run or sweep; DIR:N is point N of a sweep")
+      ->type_name("RESULT")
+      ->required();
+  compare->add_option("B", arguments.b, "what A is compared with, likewise")->type_name("RESULT")->required();
+  compare->add_flag("--json", arguments.options.json, "print the differences as JSON");
+  compare->add_flag("--all", arguments.options.all, "everything, what is equal too");
+  compare->callback([&] { print(studies::compare_results(arguments.a, arguments.b, arguments.options)); });
+}
+
+void add_report_command(CLI::App& app, studies::ReportArguments& arguments) {
+  CLI::App* report = app.add_subcommand(
+      "report", "One HTML page from a run, a sweep or a study: the answer, charts, a what-if");
+  report->add_option("DIR", arguments.directory, "directory of a run, a sweep or a study")
+      ->type_name("DIR")
+      ->required();
+  report->add_option("-o,--output", arguments.output, "the page; DIR/report.html if not given")
+      ->type_name("FILE.html")
+      ->check([](const std::string& name) {
+        return name.empty() ? std::string("the name of a file must not be empty") : std::string();
+      });
+  report->add_option("--plots", arguments.plots, "directory for every chart as SVG and CSV")
+      ->type_name("DIR")
+      ->check(no_empty_directory);
+  report->add_flag("--pdf", arguments.pdf, "the plots also as PDF");
+  report->callback([&] { studies::report_command(arguments, print); });
+}
+
+void list_scenes() {
+  std::string text;
+  for (const scenes::ProceduralScene& scene : scenes::procedural_scenes()) {
+    text += std::string(scene.name) + ":" + std::to_string(scene.default_size) + "  (" +
+            std::to_string(scene.minimum_size) + " to " + std::to_string(scene.maximum_size) + ")  " +
+            std::string(scene.meaning) + "\n";
+    for (const scenes::ProceduralVariant& variant : scene.variants) {
+      text += "  :" + std::string(variant.name) + "  " + std::string(variant.meaning) + "\n";
+    }
+  }
+  print(text);
+}
+
+struct SceneArguments {
+  std::string source;
+  std::string target;
+  scenes::GltfOptions gltf;
+};
+
+// Without a configuration, the limit is the host's.
+scenes::OpenOptions options_of(const SceneArguments& arguments) {
+  scenes::OpenOptions options{{}, arguments.gltf};
+  options.gltf.size_first = studies::size_of_image;
+  options.gltf.memory = sim::MemoryBudget(sim::default_memory_limit());
+  return options;
+}
+
+scenes::Scene open(const SceneArguments& arguments) {
+  return scenes::open_scene(arguments.source, options_of(arguments), studies::decode_image);
+}
+
+std::string scene_info(const SceneArguments& arguments) {
+  const scenes::AnimatedScene scene =
+      scenes::open_animated(arguments.source, options_of(arguments), studies::decode_image);
+  const scenes::Scene pose = scene.asked_for(arguments.gltf.time, arguments.source);
+  const std::string need = accel::describe_need(accel::precision_need(accel::TriangleSet(pose)));
+  return scenes::describe(pose) + (need.empty() ? "" : "note: " + need + "\n") +
+         scenes::describe(scene.facts());
+}
+
+void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
+  CLI::App* scene = app.add_subcommand("scene", "Lists, describes and exports scenes");
+  scene->require_subcommand(1);
+  scene->add_subcommand("list", "Lists the procedural scenes")->callback(list_scenes);
+  CLI::App* info = scene->add_subcommand("info", "Describes a scene");
+  CLI::App* save = scene->add_subcommand("export", "Writes a scene, in one pose, as binary glTF");
+  for (CLI::App* command : {info, save}) {
+    command->add_option("SOURCE", arguments.source, "name:size, or a .gltf or .glb file")
+        ->type_name("SCENE")
+        ->required();
+    command->add_option("--scene", arguments.gltf.scene, "scene of the file, by index or name")
+        ->type_name("NAME");
+    command->add_option("--camera", arguments.gltf.camera, "camera of the file, by index or name")
+        ->type_name("NAME");
+    command
+        ->add_option("--animation", arguments.gltf.animation,
+                     "animation of the file, by index or name; none: the static pose")
+        ->type_name("NAME");
+    command->add_option("--time", arguments.gltf.time, "the pose at this many seconds of the animation")
+        ->type_name("SECONDS");
+  }
+  save->add_option("FILE", arguments.target, "the .glb file to write")->type_name("FILE.glb")->required();
+  info->callback([&] { print(scene_info(arguments)); });
+  save->callback([&] {
+    if (!arguments.target.ends_with(".glb")) {
+      throw sim::UserError(arguments.target + ": the name of a binary glTF file must end in .glb");
+    }
+    scenes::Scene source = open(arguments);
+    scenes::tessellate(source);
+    scenes::export_glb(source, arguments.target, studies::encode_png);
+    std::string text = "wrote " + arguments.target + "\n";
+    for (const std::string& note : source.notes) {
+      text += "note: " + note + "\n";
+    }
+    print(text);
+  });
+}
+
+int parse_and_run(int argc, char** argv) {
+  CLI::App app("marti: simulates multiprocessor ray-tracing machines");
+  app.set_version_flag("--version", std::string(studies::version));
+  app.require_subcommand(1);
+
+  RunArguments run_arguments;
+  CLI::App* run = app.add_subcommand("run", "Runs one machine: image, statistics, summary");
+  run->add_option("CONFIG", run_arguments.config, "configuration file (TOML)")
+      ->type_name("FILE.toml")
+      ->required();
+  run->add_option("--set", run_arguments.assignments, "key=value, overrides the file; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  run->add_option("-o,--output", run_arguments.directory,
+                  "directory for image.exr, image.png, result.json and what is recorded")
+      ->type_name("DIR")
+      ->check(no_empty_directory);
+  run->add_flag("--json", run_arguments.json, "print the result as JSON instead of the summary");
+  run->add_option("--within", run_arguments.within,
+                  "an estimate is enough whose measured error is at most so much, as \"2 %\"")
+      ->type_name("PERCENTAGE")
+      ->check([](const std::string& text) {
+        return text.empty() ? std::string("must be a percentage, such as \"2 %\"") : std::string();
+      });
+  run->add_option("--keep", run_arguments.keep,
+                  "does not leave this item of the plan out, or \"all\"; may be repeated")
+      ->type_name("ITEM")
+      ->allow_extra_args(false);
+  run->add_flag("--verify-plan", run_arguments.verify_plan,
+                "runs once more for each item that is left out, and proves that nothing else differs");
+  run->callback([&] { run_command(run_arguments); });
+
+  StudyArguments study_arguments;
+  add_study_commands(app, study_arguments);
+
+  studies::SweepArguments sweep_arguments;
+  add_sweep_command(app, sweep_arguments);
+
+  TraceArguments trace_arguments;
+  add_trace_command(app, trace_arguments);
+
+  CompareArguments compare_arguments;
+  add_compare_command(app, compare_arguments);
+
+  studies::ReportArguments report_arguments;
+  add_report_command(app, report_arguments);
+
+  bool markdown = false;
+  studies::add_reference_commands(app, markdown, print);
+
+  SceneArguments scene_arguments;
+  add_scene_commands(app, scene_arguments);
+
+  // The scripts of the shells ask so; an option among their words must not be taken for one of this call.
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (!words.empty() && words.front() == "__complete") {
+    print(studies::completions(app, studies::all_keys(), std::span(words).subspan(1)));
+    return done;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // CLI11 prints help and version; a complaint is the user's input being wrong.
+    if (error.get_exit_code() == 0) {
+      return app.exit(error);
+    }
+    throw sim::UserError(studies::command_error(app, error, words));
+  }
+  return done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // A reader that goes away is an error of writing like a full disk.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is refused like one on a full disk
+  // One of several processes takes the others with it.
+  const auto end = [](int status) {
+    marti::studies::end_all_ranks(status);
+    return status;
+  };
+  try {
+    marti::studies::end_cleanly_on_signals();
+    marti::studies::take_only_threads_there_are();
+    return parse_and_run(argc, argv);
+  } catch (const marti::sim::UserError& error) {
+    // Whatever a message quotes, it must not steer the terminal.
+    std::fprintf(stderr, "marti: %s\n", marti::sim::shown(error.what(), marti::sim::all_shown).c_str());
+    return end(wrong_input);
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "marti: not enough memory for this scene or machine\n");
+    return end(wrong_input);
+  } catch (const std::system_error& error) {
+    // What std::thread throws where there can be no more of them.
+    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+    std::fprintf(stderr,
+                 no_thread ? "marti: the system lets this process have no more threads: %s\n"
+                           : "marti: internal error: %s\n",
+                 error.what());
+    return end(no_thread ? wrong_input : our_fault);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "marti: internal error: %s\n", error.what());
+    return end(our_fault);
+  }
+}

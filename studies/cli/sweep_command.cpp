@@ -1,0 +1,130 @@
+#include "studies/cli/sweep_command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "sim/error.h"
+#include "sim/files.h"
+#include "studies/keys/config_file.h"
+#include "studies/keys/frame_keys.h"
+#include "studies/sweep/join_sweep.h"
+#include "studies/sweep/plan/sweep_keys.h"
+#include "studies/sweep/plan/sweep_row.h"
+#include "studies/sweep/ranks/launch.h"
+#include "studies/sweep/ranks/ranks.h"
+#include "studies/sweep/store/points_table.h"
+#include "studies/sweep/store/sweep_metrics.h"
+#include "studies/sweep/sweep.h"
+#include "studies/tables/json_table.h"
+#include "studies/tables/text_units.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr std::int64_t longest_file = 1 << 20;  // as sim::Config::from_file
+
+std::string said(const SweepReport& report) {
+  if (report.timed == 0 && report.traced == 0) {
+    return "all of it was there already\n";
+  }
+  return fmt::format("timed         {} machine{} on {} frame{} in {}\n", report.timed,
+                     report.timed == 1 ? "" : "s", report.traced, report.traced == 1 ? "" : "s",
+                     duration_text(report.seconds));
+}
+
+SweepOptions options_of(const SweepArguments& arguments) {
+  SweepOptions options;
+  options.directory = arguments.directory;
+  options.threads = arguments.threads;
+  options.terminal = isatty(STDERR_FILENO) == 1;
+  options.quiet = arguments.quiet;
+  return options;
+}
+
+// The ranks of one computer share what it has; a limit that the user gives is each rank's.
+sim::MemoryBudget memory_of(const sim::Config& config, const Ranks* ranks) {
+  return read_memory(config, ranks == nullptr ? 1 : ranks->on_this_computer());
+}
+
+// A rank that was started beside rank 0. The file may not be there: rank 0 sends its text. What is wrong with
+// the arguments rank 0 says.
+void join(Ranks& ranks, const SweepArguments& arguments) {
+  if (arguments.plan_only) {
+    return;
+  }
+  join_sweep(ranks, options_of(arguments), [&](const std::string& text) {
+    sim::Config config =
+        sim::Config::from_text(sweep_schema(), text, arguments.config, arguments.assignments);
+    SweepPlan plan = plan_sweep(config);
+    return JoinedSweep{std::move(plan), memory_of(config, &ranks).limit()};
+  });
+}
+
+}  // namespace
+
+void sweep_command(const SweepArguments& arguments, void (*print)(const std::string&)) {
+  std::optional<Ranks> ranks;
+  if (launched_processes() > 1) {
+    ranks.emplace();
+    if (ranks->rank() != 0) {
+      join(*ranks, arguments);
+      return;
+    }
+  }
+  require_config_file(arguments.config);
+  SweepOptions options = options_of(arguments);
+  options.ranks = ranks ? &*ranks : nullptr;
+  if (ranks) {
+    options.configuration = sim::read_file(arguments.config, longest_file);
+  }
+  sim::Config config = ranks
+                           ? sim::Config::from_text(sweep_schema(), options.configuration, arguments.config,
+                                                    arguments.assignments)
+                           : sim::Config::from_file(sweep_schema(), arguments.config, arguments.assignments);
+  if (arguments.within && (!std::isfinite(*arguments.within) || *arguments.within < 0.0)) {
+    throw sim::UserError("--within: must be a cost of at least 0");
+  }
+  if (arguments.within && arguments.best.empty()) {
+    throw sim::UserError("--within: is the budget for --best METRIC, which is missing");
+  }
+  if (arguments.plan_only && (arguments.json || !arguments.best.empty())) {
+    throw sim::UserError("--plan: prints the plan, as text; leave out --json and --best");
+  }
+  if (!arguments.best.empty()) {
+    (void)find_metric(arguments.best, sweep_columns());
+  }
+  const SweepPlan plan = plan_sweep(config);
+  if (arguments.plan_only) {
+    print(describe(plan, look_ahead(plan, options)));
+    return;
+  }
+  if (arguments.directory.empty()) {
+    throw sim::UserError("-o DIR is missing: the directory of the sweep's results (--plan needs none)");
+  }
+  const SweepReport report =
+      run_sweep(plan, options, memory_of(config, options.ranks), [&](const std::string& text) {
+        if (!arguments.json) {
+          print(text);
+        }
+      });
+  if (arguments.json) {
+    print(json_of(arguments.best.empty()
+                      ? points_table(report.store)
+                      : best_points(report.store, arguments.best, arguments.within).front));
+    return;
+  }
+  std::string text = said(report);
+  text += "wrote         " + report.store.string() + "\n";
+  text += "wrote         " + report.points.string() + "\n";
+  if (!arguments.best.empty()) {
+    text += "\n" + best_points(report.store, arguments.best, arguments.within).text;
+  }
+  print(text);
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,236 @@
+#include "studies/estimate/simulator_analytic.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <queue>
+#include <random>
+
+#include "memory/link.h"
+#include "processors/cost/step_time.h"
+#include "processors/passes/one_pass.h"
+#include "processors/replay/replay.h"
+#include "sim/key_error.h"
+
+namespace marti::studies {
+
+using processors::MachineConfig;
+
+namespace {
+
+// What one read or write of the interconnect takes, in ticks.
+struct Tenures {
+  bool bus = false;
+  double read = 0.0;      // of the bus
+  double write = 0.0;     // of the bus
+  double per_read = 1.0;  // times a read asks for the bus
+  double miss = 0.0;      // a read that meets nobody
+  double bank_busy = 0.0;
+  sim::Ticks last_write = 0;  // from a write to when it is done
+};
+
+Tenures tenures_of(const MachineConfig& machine, std::uint32_t pixel_bytes) {
+  const memory::InterconnectConfig& config = machine.interconnect;
+  Tenures tenures;
+  if (config.kind == memory::InterconnectKind::ideal) {
+    tenures.last_write = config.clock.cycles(config.latency_cycles);
+    tenures.miss = static_cast<double>(tenures.last_write);
+    return tenures;
+  }
+  const memory::BeatTime beats(config);
+  const auto address = static_cast<double>(config.clock.cycles(config.address_cycles));
+  const auto line = static_cast<double>(beats(machine.cache.cache.line));
+  const auto pixel = static_cast<double>(beats(pixel_bytes));
+  const auto bank = static_cast<double>(machine.banks.clock.cycles(machine.banks.access_cycles));
+  const bool held = config.mode == memory::BusMode::held;
+  tenures.bus = true;
+  tenures.read = address + line + (held ? bank : 0.0);
+  tenures.write = address + pixel;
+  tenures.per_read = held ? 1.0 : 2.0;
+  tenures.miss = address + bank + line;
+  tenures.bank_busy = held ? 0.0 : static_cast<double>(machine.banks.clock.cycles(machine.banks.busy_cycles));
+  tenures.last_write = std::llround(address + pixel + bank);
+  return tenures;
+}
+
+// The frame as far as it does not depend on the cache.
+struct Work {
+  double scale = 1.0;  // all of the frame over what was walked
+  std::vector<std::uint64_t> words;
+  double packets = 0.0;
+  double writes = 0.0;
+  double dispatch = 0.0;  // of a packet
+};
+
+sim::Ticks compute_ticks(const MachineConfig& machine, const processors::WorkLog& log,
+                         const processors::StepCounts& steps, std::int64_t hits) {
+  processors::TimeDivision time{};
+  processors::add_counted_time(processors::step_ticks(machine, log), steps, hits, time);
+  return processors::sum_of(time);
+}
+
+// The nodes as customers of a closed network: how fast they go when so many of them work.
+struct Contention {
+  double interconnect = 0.0;   // busy time of the bus
+  double wait = 0.0;           // of a tenure, when all nodes work
+  std::vector<double> speeds;  // [n - 1]: of each of n nodes, 1 for one that meets nobody
+};
+
+Contention contention_of(const MachineConfig& machine, const Tenures& tenures, const Work& work, double alone,
+                         double misses) {
+  Contention contention;
+  contention.interconnect = misses * tenures.read + work.writes * tenures.write;
+  const auto nodes =
+      static_cast<std::size_t>(std::min(static_cast<double>(machine.all_nodes()), work.packets));
+  contention.speeds.assign(nodes, 1.0);
+  if (!tenures.bus || misses == 0.0) {
+    return contention;
+  }
+  // A cycle is a miss; what posted writes take of the queues counts to the cycle that they belong to, and as
+  // much less is thought (as in processors::predict).
+  std::vector<double> demands = {contention.interconnect / misses};
+  if (tenures.bank_busy > 0.0) {
+    const double each = (misses + work.writes) * tenures.bank_busy / machine.banks.count / misses;
+    demands.insert(demands.end(), machine.banks.count, each);
+  }
+  const double demand = std::accumulate(demands.begin(), demands.end(), 0.0);
+  const double cycle = (alone + work.packets * work.dispatch) / misses;
+  const double think = std::max(0.0, cycle - demand);
+  // Exact mean values, one customer more at a time (Reiser and Lavenberg 1980); throughputs of all numbers of
+  // customers are needed, which processors::mean_values() does not give.
+  std::vector<double> queues(demands.size(), 0.0);
+  for (std::size_t n = 1; n <= nodes; ++n) {
+    double around = think;
+    for (std::size_t k = 0; k < demands.size(); ++k) {
+      queues[k] = demands[k] * (1.0 + queues[k]);
+      around += queues[k];
+    }
+    contention.wait = queues[0] - demands[0];
+    for (double& queue : queues) {
+      queue *= static_cast<double>(n) / around;
+    }
+    contention.speeds[n - 1] = std::min(1.0, (think + demand) / around);
+  }
+  contention.wait *= misses / (misses * tenures.per_read + work.writes);
+  return contention;
+}
+
+// When the frame ends: `alone`, the time of all packets where nobody waits, is dealt out to them by their
+// words, and nodes that are busy at the same time all go at the speed that so many of them have.
+double frame_end(const MachineConfig& machine, const Work& work, double alone, const Contention& contention) {
+  const auto words = static_cast<double>(std::accumulate(work.words.begin(), work.words.end(), 0ULL));
+  const auto time_of = [&](std::size_t packet) {
+    return work.dispatch + (words > 0.0 ? alone * static_cast<double>(work.words[packet]) / words : 0.0);
+  };
+  // Times of a clock that goes at the nodes' common speed; as many nodes as have packets.
+  std::priority_queue<double, std::vector<double>, std::greater<>> free;
+  std::size_t packet = 0;
+  while (packet < std::min<std::size_t>(machine.all_nodes(), work.words.size())) {
+    free.push(time_of(packet++));
+  }
+  double clock = 0.0;
+  double end = 0.0;
+  while (!free.empty()) {
+    const double next = free.top();
+    end += (next - clock) / contention.speeds[free.size() - 1];
+    clock = next;
+    free.pop();
+    if (packet < work.words.size()) {
+      free.push(clock + time_of(packet++));
+    }
+  }
+  return end;
+}
+
+// The packets that each of `walked` nodes of `nodes` has: of every `nodes` packets in a row, one each. With
+// all nodes, node i has every nodes-th from i on; with fewer, they are drawn, because packets that are so far
+// apart often lie below each other in the image.
+std::vector<std::vector<std::uint64_t>> packets_to_walk(std::uint64_t packets, std::uint64_t nodes,
+                                                        std::uint64_t walked) {
+  std::mt19937_64 random(1);
+  std::vector<std::vector<std::uint64_t>> of_node(walked);
+  for (std::uint64_t first = 0; first < packets; first += nodes) {
+    std::uint64_t left = walked;
+    for (std::uint64_t i = 0; i < nodes && left > 0; ++i) {
+      // Selection sampling (Knuth 3.4.2 S). A row that the frame ends in is drawn from as if it were whole.
+      if (random() % (nodes - i) < left) {
+        --left;
+        if (first + i < packets) {
+          of_node[walked - 1 - left].push_back(first + i);
+        }
+      }
+    }
+  }
+  return of_node;
+}
+
+}  // namespace
+
+void check_analytic(const MachineConfig& machine) {
+  processors::check_sampled(machine);
+  const auto refuse = [](const char* key, const std::string& reason) {
+    throw sim::KeyError(key, "the analytic model is for " + reason + " only");
+  };
+  if (machine.clusters > 1) {
+    refuse("machine.clusters", "one cluster");
+  }
+  if (machine.placement != processors::Placement::shared) {
+    refuse("database.placement", "database.placement = \"shared\"");
+  }
+  if (machine.cache.organisation != processors::CacheOrganisation::unified ||
+      machine.cache.cache.replacement != memory::Replacement::lru) {
+    refuse(machine.cache.organisation != processors::CacheOrganisation::unified ? "cache.organisation"
+                                                                                : "cache.replacement",
+           "unified LRU caches");
+  }
+  if (machine.interconnect.kind == memory::InterconnectKind::crossbar ||
+      (machine.interconnect.kind == memory::InterconnectKind::bus &&
+       machine.interconnect.arbitration != memory::Arbitration::fifo)) {
+    refuse("interconnect.kind", "an ideal interconnect or a bus that serves first come, first served");
+  }
+}
+
+std::vector<Estimate> estimate_analytically(const processors::WorkLog& log, const MachineConfig& machine,
+                                            std::span<const memory::CacheShape> caches,
+                                            const AnalyticOptions& options) {
+  check_analytic(machine);
+  Work work;
+  work.words = processors::words_of_packets(log, machine.packets);
+  work.packets = static_cast<double>(work.words.size());
+  work.writes = static_cast<double>(log.width) * static_cast<double>(log.height);
+  work.dispatch = static_cast<double>(machine.host.clock.cycles(machine.host.latency_cycles));
+  const std::uint64_t nodes = std::min<std::uint64_t>(machine.all_nodes(), work.words.size());
+  const std::uint64_t walked = std::min<std::uint64_t>(std::max(options.walked_nodes, 1U), nodes);
+  const std::vector<std::vector<std::uint64_t>> packets = packets_to_walk(work.words.size(), nodes, walked);
+  const processors::OnePass pass = processors::one_pass(log, machine, caches, packets);
+  const auto all_words = static_cast<double>(std::accumulate(work.words.begin(), work.words.end(), 0ULL));
+  work.scale = pass.words > 0 ? all_words / static_cast<double>(pass.words) : 1.0;
+
+  const Tenures tenures = tenures_of(machine, machine.layout.pixel_bytes);
+  std::vector<Estimate> estimates;
+  for (const std::int64_t missed : pass.misses) {
+    const double misses = work.scale * static_cast<double>(missed);
+    const double compute =
+        work.scale * static_cast<double>(compute_ticks(machine, log, pass.steps, pass.references - missed));
+    const double alone = compute + misses * tenures.miss;
+    const Contention contention = contention_of(machine, tenures, work, alone, misses);
+    // One node's packets follow one another, so its time needs no dealing out.
+    const double end = machine.all_nodes() == 1 ? alone + work.packets * work.dispatch
+                                                : frame_end(machine, work, alone, contention);
+    Estimate estimate;
+    // The last pixel is written while its node asks for another packet in vain.
+    estimate.value[Figure::end] = end + static_cast<double>(work.packets > 0 ? tenures.last_write : 0);
+    estimate.value[Figure::misses] = misses;
+    estimate.value[Figure::use] = estimate.value[Figure::end] > 0.0
+                                      ? std::min(1.0, contention.interconnect / estimate.value[Figure::end])
+                                      : 0.0;
+    estimate.value[Figure::wait] = contention.wait;
+    estimate.references = work.scale * static_cast<double>(pass.references);
+    estimate.words = pass.words;
+    estimates.push_back(estimate);
+  }
+  return estimates;
+}
+
+}  // namespace marti::studies

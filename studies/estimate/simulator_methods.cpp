@@ -1,0 +1,150 @@
+#include "studies/estimate/simulator_methods.h"
+
+#include <limits>
+#include <memory>
+
+#include "processors/node/memory_system.h"
+#include "processors/replay/replay.h"
+#include "sim/error.h"
+#include "studies/estimate/simulator_analytic.h"
+#include "studies/estimate/simulator_sample.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr std::uint64_t full = processors::PacketSample::all_before;
+constexpr std::uint32_t all_nodes = std::numeric_limits<std::uint32_t>::max();
+
+// Nobody asks, so nobody is told.
+class NoClient final : public memory::InterconnectClient {
+  void read_done(std::uint32_t /*port*/, const memory::Service& /*service*/) override {}
+  void write_done(std::uint32_t /*port*/, sim::Ticks /*done*/) override {}
+};
+
+// What a miss takes that meets no other transaction.
+sim::Ticks unloaded_miss(const processors::MachineConfig& machine) {
+  sim::Engine engine;
+  NoClient client;
+  const std::unique_ptr<memory::Interconnect> interconnect =
+      processors::make_memory_system(machine, {engine, client, 0, 0, 1, 1});
+  return interconnect->unloaded_read(machine.reference_bytes());
+}
+
+std::vector<Method> make_methods() {
+  std::vector<Method> methods = {{}};
+  for (const std::uint64_t warm_up : {std::uint64_t{0}, std::uint64_t{1}, full}) {
+    for (const std::uint64_t one_in : {2, 4, 8, 16, 32}) {
+      methods.push_back({.kind = MethodKind::sampled, .one_in = one_in, .warm_up = warm_up});
+    }
+  }
+  for (const std::uint32_t quantum : {1, 10, 100}) {
+    methods.push_back({.kind = MethodKind::relaxed, .quantum = quantum});
+  }
+  for (const std::uint32_t nodes : {std::uint32_t{1}, std::uint32_t{4}, all_nodes}) {
+    methods.push_back({.kind = MethodKind::analytic, .walked_nodes = nodes});
+  }
+  methods.push_back({.kind = MethodKind::analytic, .walked_nodes = all_nodes, .all_caches = true});
+  for (const bool over_caches : {false, true}) {
+    for (const Curve curve : {Curve::linear, Curve::cubic}) {
+      methods.push_back({.kind = MethodKind::interpolated, .over_caches = over_caches, .curve = curve});
+    }
+  }
+  return methods;
+}
+
+}  // namespace
+
+std::string Method::name() const {
+  switch (kind) {
+    case MethodKind::exact:
+      return "exact";
+    case MethodKind::sampled:
+      return "sampled";
+    case MethodKind::relaxed:
+      return "relaxed";
+    case MethodKind::analytic:
+      return "analytic";
+    case MethodKind::interpolated:
+      return "interpolated";
+  }
+  return {};
+}
+
+std::string Method::knob() const {
+  switch (kind) {
+    case MethodKind::exact:
+      return "replay";
+    case MethodKind::sampled:
+      return "1/" + std::to_string(one_in) + ", " +
+             (warm_up == full ? "full warming"
+              : warm_up == 0  ? "cold"
+                              : "one packet of warming");
+    case MethodKind::relaxed:
+      return "quantum of " + std::to_string(quantum) + (quantum == 1 ? " miss" : " misses");
+    case MethodKind::analytic:
+      return all_caches ? "all nodes walked, all caches at once"
+             : walked_nodes == all_nodes
+                 ? "all nodes walked"
+                 : std::to_string(walked_nodes) + (walked_nodes == 1 ? " node" : " nodes") + " walked";
+    case MethodKind::interpolated:
+      return std::string(over_caches ? "cache sizes" : "node counts") +
+             (curve == Curve::linear ? ", linear" : ", cubic");
+  }
+  return {};
+}
+
+std::span<const Method> simulator_methods() {
+  static const std::vector<Method> methods = make_methods();
+  return methods;
+}
+
+void check_method(const Method& method, const processors::MachineConfig& machine) {
+  switch (method.kind) {
+    case MethodKind::exact:
+    case MethodKind::interpolated:
+      break;
+    case MethodKind::sampled:
+      processors::check_sampled(machine);
+      break;
+    case MethodKind::relaxed:
+      processors::check_relaxed(machine);
+      break;
+    case MethodKind::analytic:
+      check_analytic(machine);
+      break;
+  }
+}
+
+Estimate estimate(const Method& method, const processors::WorkLog& log,
+                  const processors::MachineConfig& machine, std::uint64_t seed) {
+  sim::ensure(answers_alone(method), "a method that does not answer for one machine alone");
+  switch (method.kind) {
+    case MethodKind::sampled:
+      return estimate_by_sample(log, machine, {method.one_in, method.warm_up, seed});
+    case MethodKind::analytic: {
+      check_analytic(machine);
+      const memory::CacheShape shape = memory::shape_of(machine.cache.cache);
+      return estimate_analytically(log, machine, {&shape, 1}, {method.walked_nodes})[0];
+    }
+    case MethodKind::interpolated:
+    case MethodKind::exact:
+    case MethodKind::relaxed:
+      break;
+  }
+  processors::ReplayOptions options;
+  if (method.kind == MethodKind::relaxed) {
+    options.quantum = sim::multiply_ticks(unloaded_miss(machine), method.quantum);
+  }
+  const processors::MachineResult result = processors::replay(log, machine, options);
+  Estimate estimate;
+  estimate.value = figures_of(machine, result);
+  estimate.references = static_cast<double>(result.references().references());
+  estimate.events = result.events;
+  for (const processors::LogRow& row : log.rows) {
+    estimate.words += row.words.size();
+  }
+  return estimate;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,59 @@
+// The cheaper methods and their knobs.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "processors/machine/machine_config.h"
+#include "processors/program/work_log.h"
+#include "studies/estimate/simulator_figures.h"
+#include "studies/estimate/simulator_interpolation.h"
+
+namespace marti::studies {
+
+/// Changes whenever a method answers differently or the list below is another: measured errors
+/// (measured_errors.h) are those of one version.
+inline constexpr int methods_version = 1;
+
+enum class MethodKind : std::uint8_t {
+  exact,         ///< replay of everything
+  sampled,       ///< a sample of packets (simulator_sample.h)
+  relaxed,       ///< events out of order within a quantum (sim::Engine::relax)
+  analytic,      ///< one pass and mean values (simulator_analytic.h)
+  interpolated,  ///< between machines timed exactly (simulator_interpolation.h)
+};
+
+struct Method {
+  MethodKind kind = MethodKind::exact;
+  std::uint64_t one_in = 1;        ///< sampled
+  std::uint64_t warm_up = 0;       ///< sampled
+  std::uint32_t quantum = 0;       ///< relaxed: in times of a read that meets nobody
+  std::uint32_t walked_nodes = 0;  ///< analytic
+  bool all_caches = false;         ///< analytic: one pass for all sizes of caches
+  bool over_caches = false;        ///< interpolated: over sizes of caches, else over numbers of nodes
+  Curve curve = Curve::linear;     ///< interpolated
+
+  [[nodiscard]] std::string name() const;  ///< "sampled"
+  [[nodiscard]] std::string knob() const;  ///< "1/8, full warming"
+};
+
+/// All of them, the exact one first.
+[[nodiscard]] std::span<const Method> simulator_methods();
+
+/// Whether the method answers for a machine alone: not by interpolation, nor for many caches at once.
+[[nodiscard]] constexpr bool answers_alone(const Method& method) {
+  return method.kind != MethodKind::interpolated && !method.all_caches;
+}
+
+/// What a method that answers alone says of a machine, without the speed-up. `seed` draws the
+/// sample. Throws UserError for a machine that the method cannot answer for.
+[[nodiscard]] Estimate estimate(const Method& method, const processors::WorkLog& log,
+                                const processors::MachineConfig& machine, std::uint64_t seed);
+
+/// Throws UserError with the reason when a method cannot answer for the machine.
+void check_method(const Method& method, const processors::MachineConfig& machine);
+
+}  // namespace marti::studies

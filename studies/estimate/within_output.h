@@ -1,0 +1,17 @@
+// What `marti run --within` says when it has estimated: for people, and for programs.
+#pragma once
+
+#include <string>
+
+#include "studies/estimate/within.h"
+#include "studies/run/run_result.h"
+
+namespace marti::studies {
+
+/// What scene_summary_of() says, and every figure with its error bar.
+[[nodiscard]] std::string estimate_text(const RunResult& result, const EstimatedRun& run, double tolerance);
+
+/// The figures as docs/error.md describes them.
+[[nodiscard]] std::string estimate_json(const RunResult& result, const EstimatedRun& run, double tolerance);
+
+}  // namespace marti::studies

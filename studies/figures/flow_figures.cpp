@@ -1,0 +1,150 @@
+#include "studies/figures/flow_figures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "processors/flow/pipeline/stages.h"
+
+namespace marti::studies {
+
+using processors::Activity;
+using processors::MachineConfig;
+using processors::MachineResult;
+using processors::Scheme;
+
+namespace {
+
+double share(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
+
+// Adds a node's part of the frame to a load; means are sums until the end.
+void add_node(const MachineResult& result, std::size_t node, StageLoad& load) {
+  const processors::TimeDivision& time = result.nodes[node].time;
+  const auto of = [&](Activity activity) { return time[static_cast<std::size_t>(activity)]; };
+  const auto end = static_cast<double>(result.end);
+  const sim::Ticks waits = of(Activity::message_wait) + of(Activity::queue_full_wait) +
+                           of(Activity::dispatch_wait) + of(Activity::idle);
+  const double busy = share(static_cast<double>(result.end - waits), end);
+  ++load.nodes;
+  load.busy += busy;
+  load.busiest = std::max(load.busiest, busy);
+  load.queue_full += share(static_cast<double>(of(Activity::queue_full_wait)), end);
+  load.longest_queue = std::max(load.longest_queue, result.flow.nodes[node].longest_queue);
+}
+
+void divide(StageLoad& load) {
+  load.busy = share(load.busy, static_cast<double>(load.nodes));
+  load.queue_full = share(load.queue_full, static_cast<double>(load.nodes));
+}
+
+void add_networks(const MachineConfig& machine, const MachineResult& result, FlowFigures& figures) {
+  std::int64_t hops = 0;
+  for (const memory::NetworkStatistics& network : result.flow.networks) {
+    figures.messages += network.messages;
+    figures.bytes += network.bytes;
+    hops += network.hops;
+    if (machine.network.kind != memory::NetworkKind::ideal) {
+      const double capacity = static_cast<double>(result.end) * static_cast<double>(network.links);
+      figures.network =
+          std::max(figures.network.value_or(0.0), share(static_cast<double>(network.busy), capacity));
+    }
+  }
+  figures.hops_a_message = share(static_cast<double>(hops), static_cast<double>(figures.messages));
+}
+
+}  // namespace
+
+const StageLoad& FlowFigures::slowest() const {
+  if (stages.empty()) {
+    return all;
+  }
+  return *std::max_element(stages.begin(), stages.end(),
+                           [](const StageLoad& a, const StageLoad& b) { return a.busy < b.busy; });
+}
+
+namespace {
+
+// What contributions take of the link into the host, of a network that has one for it alone.
+double host_link(const MachineConfig& machine, const MachineResult& result) {
+  const memory::NetworkConfig& network = machine.network;
+  if (network.kind == memory::NetworkKind::ideal || network.kind == memory::NetworkKind::bus) {
+    return 0.0;
+  }
+  const double beats = std::ceil(static_cast<double>(machine.messages.contribution_bytes) / network.width);
+  const auto beat = static_cast<double>(network.clock.cycles(network.cycles_per_beat));
+  return static_cast<double>(result.flow.collected) * beats * beat;
+}
+
+}  // namespace
+
+FlowFigures flow_figures(const MachineConfig& machine, const MachineResult& result) {
+  FlowFigures figures;
+  figures.all.name = "nodes";
+  const bool pipeline = machine.scheme == Scheme::pipeline;
+  if (pipeline) {
+    for (const std::string_view name : processors::stage_names) {
+      figures.stages.emplace_back().name = name;
+    }
+  }
+  for (std::size_t node = 0; node < result.nodes.size(); ++node) {
+    add_node(result, node, figures.all);
+    if (pipeline) {
+      const std::size_t port = node % machine.nodes;
+      const processors::PipelineConfig& split = machine.pipeline;
+      const std::size_t stage = port < split.search ? 0 : (port < split.search + split.nearest ? 1 : 2);
+      add_node(result, node, figures.stages[stage]);
+    }
+  }
+  divide(figures.all);
+  for (StageLoad& stage : figures.stages) {
+    divide(stage);
+  }
+  add_networks(machine, result, figures);
+  const std::vector<std::uint64_t>& memory = result.flow.memory_bytes;
+  if (!memory.empty()) {
+    const auto [least, most] = std::minmax_element(memory.begin(), memory.end());
+    figures.least_memory = *least;
+    figures.most_memory = *most;
+    for (const std::uint64_t bytes : memory) {
+      figures.mean_memory += static_cast<double>(bytes) / static_cast<double>(memory.size());
+    }
+  }
+  const double ways = static_cast<double>(result.end) * machine.clusters;
+  if (ways > 0.0) {
+    // The last ray sent may keep the host beyond the end.
+    figures.host = std::min(1.0, static_cast<double>(result.host.busy) / ways);
+    figures.host_link = host_link(machine, result) / ways;
+  }
+  return figures;
+}
+
+Bottleneck bottleneck_of(const MachineConfig& machine, const MachineResult& result) {
+  const FlowFigures figures = flow_figures(machine, result);
+  if (figures.host >= full) {
+    return Bottleneck::host;
+  }
+  return std::max(figures.host_link, figures.network.value_or(0.0)) >= full ? Bottleneck::network
+                                                                            : Bottleneck::none;
+}
+
+FlowWaits flow_waits(const MachineConfig& machine, const MachineResult& result) {
+  FlowWaits waits;
+  if (machine.scheme == Scheme::image) {
+    return waits;
+  }
+  const processors::TimeDivision time = result.time();
+  const auto of = [&](Activity activity) {
+    return static_cast<double>(time[static_cast<std::size_t>(activity)]);
+  };
+  const FlowFigures figures = flow_figures(machine, result);
+  const bool busy =
+      figures.stages.empty() ? figures.all.busiest >= always_busy : figures.slowest().busy >= always_busy;
+  if (busy) {
+    waits.slowest = of(Activity::queue_full_wait) + of(Activity::message_wait);
+  } else {
+    waits.queues = of(Activity::queue_full_wait);
+    waits.messages = of(Activity::message_wait);
+  }
+  return waits;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,80 @@
+#include "studies/host/host_threads.h"
+
+#include <sys/resource.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <latch>
+#include <memory>
+#include <new>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace marti::studies {
+
+namespace {
+
+// Beside the pools: one that waits for signals, and one that talks to other ranks.
+constexpr std::size_t others = 2;
+
+// As many as can be there at a time, of those that are wanted.
+std::size_t started_at_once(std::size_t wanted) {
+  std::latch over(1);
+  std::vector<std::jthread> threads;
+  threads.reserve(wanted);
+  try {
+    while (threads.size() < wanted) {
+      threads.emplace_back([&over] { over.wait(); });
+    }
+  } catch (const std::system_error&) {
+  } catch (const std::bad_alloc&) {
+  }
+  over.count_down();
+  return threads.size();
+}
+
+// Address space that is free now may be taken when oneTBB starts its threads at its leisure: let it do so.
+void start_pool(std::size_t threads) {
+  rlimit space{};
+  if (threads < 2 || getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur == RLIM_INFINITY) {
+    return;
+  }
+  const auto longest = std::chrono::steady_clock::now() + std::chrono::milliseconds(100);
+  std::atomic<std::size_t> here = 0;
+  tbb::task_arena arena(static_cast<int>(threads));
+  arena.execute([&] {
+    tbb::parallel_for(
+        std::size_t{0}, threads,
+        [&](std::size_t) {
+          for (++here; here < threads && std::chrono::steady_clock::now() < longest;) {
+            std::this_thread::yield();
+          }
+        },
+        tbb::simple_partitioner());
+  });
+}
+
+}  // namespace
+
+void take_only_threads_there_are() {
+  const auto processors = static_cast<std::size_t>(std::max(1, tbb::info::default_concurrency()));
+  const std::size_t wanted = 2 * processors + others;
+  const std::size_t there = started_at_once(wanted);
+  std::size_t threads = processors;
+  if (there < wanted) {
+    threads = there < others + 2 ? 1 : (there - others) / 2;
+    // For as long as the program runs.
+    static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  }
+  start_pool(threads);
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,80 @@
+#include "studies/host/signals_held.h"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <thread>
+#include <utility>
+
+#include "sim/files.h"
+
+namespace marti::studies {
+
+namespace {
+
+// Never destroyed: the watching thread outlives main().
+std::recursive_mutex& held() {
+  static auto& mutex = *new std::recursive_mutex;  // NOLINT(cppcoreguidelines-owning-memory)
+  return mutex;
+}
+
+std::function<void(int)>& action() {
+  static auto& function = *new std::function<void(int)>;  // NOLINT(cppcoreguidelines-owning-memory)
+  return function;
+}
+
+// Every thread blocks the signals, because each inherits the mask of the one that starts it; so they come
+// here.
+void watch(const sigset_t& signals) {
+  int signal = 0;
+  if (sigwait(&signals, &signal) != 0) {
+    return;
+  }
+  held().lock();  // for good: nothing else is to begin
+  sim::abandon_pending_files();
+  if (action()) {
+    action()(signal);
+    _exit(128 + signal);  // as a shell would say it
+  }
+  std::signal(signal, SIG_DFL);
+  sigset_t mine;
+  sigemptyset(&mine);
+  sigaddset(&mine, signal);
+  pthread_sigmask(SIG_UNBLOCK, &mine, nullptr);
+  std::raise(signal);
+}
+
+}  // namespace
+
+void end_cleanly_on_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  bool any = false;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    // One that is ignored, as by nohup, would come to sigwait all the same.
+    struct sigaction now {};
+    if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) {
+      sigaddset(&signals, signal);
+      any = true;
+    }
+  }
+  if (!any) {
+    return;
+  }
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::thread(watch, signals).detach();
+}
+
+SignalsHeld::SignalsHeld() : lock_(held()) {}
+
+AtSignal::AtSignal(std::function<void(int signal)> what) {
+  const SignalsHeld hold;
+  action() = std::move(what);
+}
+
+AtSignal::~AtSignal() {
+  const SignalsHeld hold;
+  action() = nullptr;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,73 @@
+#include "studies/keys/cache_detail_keys.h"
+
+#include <limits>
+
+#include "processors/passes/working_set.h"
+#include "processors/walk/cache_counting.h"
+#include "processors/walk/second_level.h"
+#include "sim/config_errors.h"
+#include "studies/keys/key_parts.h"
+
+namespace marti::studies {
+
+void declare_second_level_keys(sim::Schema& schema) {
+  schema.section("l2", "a second level of caches; its line is the first level's");
+  schema.choice("l2.sharing", "none",
+                {processors::second_level_names.begin(), processors::second_level_names.end()},
+                "none; private: one behind the first-level cache of each node; shared: one for each cluster, "
+                "before the "
+                "banks of its memory");
+  schema.size("l2.size", "256 KiB", {"1 B", "4 GiB"}, "size of each second-level cache");
+  schema.integer("l2.ways", 8, {0, std::numeric_limits<std::int32_t>::max()}, "",
+                 "lines of a set; 0: fully associative");
+  schema.choice("l2.replacement", "lru", {memory::replacement_names.begin(), memory::replacement_names.end()},
+                "which line of a full set makes room");
+  schema.integer("l2.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
+                 "seed of random replacement");
+  cycles(schema, "l2.hit_cycles", 4,
+         "cycles of a look-up that hits: private: of the node's clock; shared: of the banks' clock");
+}
+
+void read_second_level(sim::Config& config, processors::MachineConfig& machine) {
+  using processors::SecondLevel;
+  processors::SecondLevelConfig& l2 = machine.l2;
+  l2.sharing = config.choice_as<SecondLevel>("l2.sharing");
+  if (l2.sharing == SecondLevel::none) {
+    config.mark_unused_reason("l2", "it has no effect with l2.sharing = \"none\"", "l2.sharing");
+    return;
+  }
+  l2.cache.size = static_cast<std::uint64_t>(config.size("l2.size"));
+  l2.cache.ways = static_cast<std::uint32_t>(config.integer("l2.ways"));
+  l2.cache.replacement = config.choice_as<memory::Replacement>("l2.replacement");
+  l2.hit_cycles = config.integer("l2.hit_cycles");
+  if (l2.cache.replacement == memory::Replacement::random) {
+    l2.cache.seed = static_cast<std::uint64_t>(config.integer("l2.seed"));
+  }
+  config.mark_unused_reason("l2.seed", "only l2.replacement = \"random\" draws numbers", "l2.replacement");
+  sim::placed(config, [&] { processors::check_second_level(machine); });
+}
+
+void declare_count_keys(sim::Schema& schema) {
+  schema.section("count",
+                 "what is counted about the image scheme's caches beside hits and misses; it makes "
+                 "runs slower, and changes nothing else");
+  schema.boolean("count.miss_classes", false,
+                 "why first-level caches missed: compulsory, capacity, conflict, invalidation");
+  schema.boolean("count.sharing", false, "how many nodes of a cluster fetched each line");
+  schema.boolean("count.attribution", false,
+                 "references, misses and waits by record kind, tree level, ray kind and bounce");
+  schema.boolean("count.working_set", false,
+                 "what first-level LRU caches of every size, and of all ways, would have missed, from one "
+                 "pass over the references of each node");
+}
+
+void read_count(sim::Config& config, processors::MachineConfig& machine) {
+  machine.count = {config.boolean("count.miss_classes"), config.boolean("count.sharing"),
+                   config.boolean("count.attribution"), config.boolean("count.working_set")};
+  sim::placed(config, [&] {
+    processors::check_counting(machine);
+    processors::check_working_set(machine);
+  });
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,77 @@
+#include "studies/keys/config_file.h"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "sim/error.h"
+#include "sim/nearest.h"
+
+namespace marti::studies {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Names in `directory` of that kind, in alphabetical order; nothing where it cannot be read.
+std::vector<std::string> names_in(const fs::path& directory, bool directories) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator at(directory.empty() ? "." : directory, error), end; !error && at != end;
+       at.increment(error)) {
+    std::error_code ignored;
+    if (directories ? at->is_directory(ignored) : at->path().extension() == ".toml") {
+      names.push_back(at->path().filename().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// The file that was probably meant, or an empty path.
+fs::path nearest_file(const fs::path& file) {
+  std::error_code error;
+  const fs::path parent = file.parent_path();
+  if (!parent.empty() && !fs::is_directory(parent, error)) {
+    const std::vector<std::string> names = names_in(parent.parent_path(), true);
+    const fs::path near = parent.parent_path() / sim::nearest_name(parent.filename().string(), names);
+    if (fs::is_regular_file(near / file.filename(), error)) {
+      return near / file.filename();
+    }
+  }
+  // Called from a directory below the one that the name is relative to, or without the directory's name.
+  if (file.is_relative()) {
+    for (const fs::path above : {"configs", "..", "../..", "../configs", "../../.."}) {
+      if (fs::is_regular_file(above / file, error)) {
+        return above / file;
+      }
+    }
+  }
+  const std::vector<std::string> names = names_in(parent, false);
+  const std::string_view near = sim::nearest_name(file.filename().string(), names);
+  return near.empty() ? fs::path() : parent / near;
+}
+
+}  // namespace
+
+void require_config_file(const fs::path& file) {
+  std::error_code error;
+  if (fs::is_directory(file, error)) {
+    const std::vector<std::string> names = names_in(file, false);
+    throw sim::UserError(
+        file.string() + ": is a directory; name a configuration" +
+        (names.empty() ? " (a .toml file)" : " in it, such as " + (file / names.front()).string()));
+  }
+  if (fs::exists(file, error) || (error && error != std::errc::not_a_directory)) {
+    return;
+  }
+  const fs::path near = nearest_file(file);
+  throw sim::UserError(
+      file.string() + ": there is no such file" +
+      (near.empty() ? "" : " (did you mean \"" + near.string() + "\"?)") +
+      (file.is_relative() ? "; the current directory is " + fs::current_path(error).string() : ""));
+}
+
+}  // namespace marti::studies

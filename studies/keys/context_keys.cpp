@@ -1,0 +1,81 @@
+#include "studies/keys/context_keys.h"
+
+#include <string>
+
+#include "studies/keys/key_parts.h"
+
+namespace marti::studies {
+
+namespace {
+
+void read_prefetch(sim::Config& config, processors::MachineConfig& machine) {
+  const bool given = machine.build.sharing == processors::Sharing::given;
+  if (machine.cache.organisation == processors::CacheOrganisation::none) {
+    config.mark_unused_reason("prefetch", "without a cache there is nowhere to put a line",
+                              "cache.organisation");
+  } else if (machine.placement != processors::Placement::shared) {
+    config.mark_unused_reason("prefetch", "only lines of a shared database are prefetched",
+                              "database.placement");
+  } else if (!given) {
+    config.mark_unused_reason("prefetch", "nodes that build the tree do not prefetch", "build.sharing");
+  } else {
+    processors::PrefetchConfig& prefetch = machine.prefetch;
+    prefetch.next_line = config.boolean("prefetch.next_line");
+    prefetch.children = config.boolean("prefetch.children");
+    const std::string& structure = config.choice_name("structure.kind");
+    if (prefetch.children && structure != "octree" && structure != "bsp") {
+      config.fail("prefetch.children", "must be false with structure.kind = \"" + structure +
+                                           "\": only an octree or a bsp tree has branches with children");
+    }
+    if (prefetch.on()) {
+      prefetch.outstanding = static_cast<std::uint32_t>(config.integer("prefetch.outstanding"));
+    }
+    config.mark_unused_reason("prefetch.outstanding",
+                              "nothing is prefetched without prefetch.next_line or prefetch.children",
+                              "prefetch.next_line");
+  }
+}
+
+}  // namespace
+
+void declare_context_keys(sim::Schema& schema) {
+  schema.integer("node.contexts", 1, {1, processors::most_contexts}, "",
+                 "packets a node works on by turns: on a miss it takes up the next one that can go on");
+  cycles(schema, "node.switch_cycles", 1, "cycles to take up another context");
+}
+
+void declare_prefetch_keys(sim::Schema& schema) {
+  schema.section("prefetch", "lines that a node's cache fetches from a shared database before they are used");
+  schema.boolean("prefetch.next_line", false,
+                 "a miss also fetches the next line of the same kind of record, if it is not there");
+  schema.boolean("prefetch.children", false,
+                 "a visit to a branch also fetches the records of its children that are not there");
+  schema.integer("prefetch.outstanding", 4, {1, processors::most_contexts}, "",
+                 "most prefetches a node has under way; further ones are dropped");
+}
+
+void read_contexts(sim::Config& config, processors::MachineConfig& machine) {
+  if (machine.scheme != processors::Scheme::image) {
+    const std::string reason = "only the image scheme's nodes have contexts and prefetch";
+    for (const char* const key : {"node.contexts", "node.switch_cycles", "prefetch"}) {
+      config.mark_unused_reason(key, reason, "machine.scheme");
+    }
+    return;
+  }
+  machine.contexts = static_cast<std::uint32_t>(config.integer("node.contexts"));
+  if (machine.contexts > 1) {
+    if (machine.build.sharing != processors::Sharing::given) {
+      config.fail("node.contexts", "must be 1 with build.sharing = \"" + config.choice_name("build.sharing") +
+                                       "\": a node that builds the tree works on one packet at a time");
+    }
+    machine.switch_cycles = config.integer("node.switch_cycles");
+  }
+  config.mark_unused_reason("node.switch_cycles", "a node with one context has no other to take up",
+                            "node.contexts");
+  read_prefetch(config, machine);
+  if (std::uint64_t{machine.all_nodes()} * machine.ports_of_node() > processors::most_ports) {
+    config.fail("node.contexts", "nodes times contexts and prefetches under way must be at most 2^28");
+  }
+}
+
+}  // namespace marti::studies

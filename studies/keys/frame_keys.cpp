@@ -1,0 +1,213 @@
+#include "studies/keys/frame_keys.h"
+
+#include "sim/shown.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "sim/units.h"
+#include "studies/host/image_file.h"
+
+namespace marti::studies {
+
+namespace {
+
+template <std::size_t N>
+std::vector<std::string> names_of(const std::array<std::string_view, N>& names) {
+  return {names.begin(), names.end()};
+}
+
+void read_tree_limits(const sim::Config& config, accel::StructureOptions& options) {
+  options.octree.max_objects = static_cast<std::uint32_t>(config.integer("structure.max_objects"));
+  options.octree.max_level = static_cast<std::uint32_t>(config.integer("structure.max_level"));
+  options.bsp.max_objects = options.octree.max_objects;
+  options.bsp.max_level = options.octree.max_level;
+}
+
+void read_structure(sim::Config& config, FrameConfig& frame) {
+  accel::StructureOptions& options = frame.structure_options;
+  frame.structure = config.choice_name("structure.kind");
+  frame.render.mailboxes = config.boolean("structure.mailboxes");
+  std::string how = "structure.kind = \"" + frame.structure + "\"";
+  if (frame.structure == "octree") {
+    read_tree_limits(config, options);
+  } else if (frame.structure == "bsp") {
+    read_tree_limits(config, options);
+    options.bsp.walk = config.choice_as<accel::BspWalk>("structure.bsp_walk");
+  } else if (frame.structure == "grid") {
+    options.grid_match = config.choice_as<accel::GridMatch>("structure.grid_resolution");
+    if (options.grid_match == accel::GridMatch::density) {
+      options.grid.density = config.real("structure.grid_density");
+    } else {
+      read_tree_limits(config, options);
+    }
+    how += " and structure.grid_resolution = \"" + config.choice_name("structure.grid_resolution") + "\"";
+  }
+  config.mark_unused_reason("structure", "it has no effect with " + how, "structure.kind");
+}
+
+}  // namespace
+
+processors::RenderOptions made_small(processors::RenderOptions options, double side) {
+  const double factor = std::min(1.0, side / std::max(options.width, options.height));
+  options.width = std::max(1U, static_cast<std::uint32_t>(options.width * factor));
+  options.height = std::max(1U, static_cast<std::uint32_t>(options.height * factor));
+  return options;
+}
+
+void declare_frame_keys(sim::Schema& schema) {
+  schema.section("scene", "what is rendered");
+  schema.text("scene.source", "teapot:12",
+              "a procedural scene as name:size (see `marti scene list`), or a .gltf or .glb file relative to "
+              "the configuration (with --set: to the current directory)");
+  schema.text("scene.scene", "", "scene of the file, by index or name; empty: the file's default");
+  schema.text("scene.camera", "", "camera of the file, by index or name; empty: the first");
+  schema.text("scene.animation", "",
+              "animation of the file that plays, by index or name; empty: the first, if there is one; none: "
+              "the file's static pose");
+  schema.section("frames", "the frames of an animated scene");
+  schema.integer("frames.count", 1, {1, 1'000'000}, "frames", "how many; `marti run` renders one");
+  schema.integer("frames.first", 0, {0, 1'000'000'000}, "",
+                 "number of the first; frame i shows the animation at i / rate seconds");
+  schema.real("frames.rate", 24.0, {1e-6, 1e6}, "frames a second", "frames of a second of the animation");
+  schema.boolean(
+      "frames.verify", true,
+      "`marti study frames` only: render every frame once more with a tree built from nothing, and "
+      "compare the images");
+  schema.section("image", "the image and the rays it takes");
+  schema.integer("image.width", 512, {1, 32768}, "pixels", "columns");
+  schema.integer("image.height", 512, {1, 32768}, "pixels", "rows");
+  schema.integer("image.max_depth", 5, {1, processors::max_ray_depth}, "rays",
+                 "longest chain of rays, the eye ray being 1; shadow rays do not count");
+  schema.real("image.min_weight", 0.0, {0.0, 1.0}, "",
+              "a ray that contributes less than this share of its sample is not traced");
+  schema.integer(
+      "image.samples", 1, {1, processors::max_samples}, "rays",
+      "camera rays of a pixel: one through its centre, or several through jittered points of a grid");
+  schema.integer("image.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
+                 "seed of the points of several samples");
+  schema.boolean("image.shadows", true, "trace shadow rays");
+  schema.real("image.voxel_cut", 0.0, {0.0, 1'000'000.0}, "pixels",
+              "octree: a cell that covers less than this many pixels on the screen is shaded as one voxel "
+              "with averaged material; 0 is off and exact");
+  schema.boolean("image.voxel_cut_reference", false,
+                 "with the voxel cut: render the exact image too and report the difference");
+  schema.section("structure", "the space subdivision");
+  std::vector<std::string> kinds;
+  for (const std::string_view kind : accel::structure_kinds()) {
+    kinds.emplace_back(kind);
+  }
+  schema.choice(
+      "structure.kind", "octree", kinds,
+      "octree; bsp, a binary tree with the octree's planes; grid of equal cells; or none: every ray tests "
+      "every primitive");
+  schema.integer("structure.max_objects", 8, {1, 1'000'000}, "primitives",
+                 "octree and bsp: a node with more than this many is split");
+  schema.integer(
+      "structure.max_level", 12, {1, 21}, "",
+      "octree and bsp: deepest level of the octree, whose root is level 1; three levels of the binary "
+      "tree make one of the octree");
+  schema.real("structure.grid_density", 4.0, {0.001, 1000.0}, "cells",
+              "grid: cells for each primitive, about");
+  schema.choice(
+      "structure.grid_resolution", "density", names_of(accel::grid_match_names),
+      "grid: from the density; as many cells as an octree of the same max_objects and max_level has "
+      "nodes, about; or cells as small as its smallest. At most 4 Mi cells");
+  schema.choice("structure.bsp_walk", "recursive", names_of(accel::bsp_walk_names),
+                "bsp: from the root down, or from leaf to leaf by a point pushed through their faces and "
+                "located from the root");
+  schema.boolean("structure.mailboxes", false,
+                 "no ray tests a primitive twice: each remembers the last ray, in a word of the node's own");
+  schema.section("host_machine", "the computer that runs the simulation");
+  schema.size(
+      "host_machine.memory_limit", "0 B", {"0 B", "1024 TiB"},
+      "refuse what would take more memory: scene, structure, work log, machine, plan of a sweep; 0: three "
+      "quarters of what the host, the container and `ulimit -v` allow; else at least 1 MiB");
+}
+
+void give_memory(const sim::MemoryBudget& memory, accel::StructureOptions& options) {
+  options.octree.memory = memory;
+  options.bsp.memory = memory;
+  options.grid.memory = memory;
+}
+
+sim::MemoryBudget read_memory(const sim::Config& config, std::uint64_t processes) {
+  constexpr std::int64_t least = std::int64_t{1} << 20U;
+  const std::int64_t limit = config.size("host_machine.memory_limit");
+  if (limit == 0) {
+    return sim::MemoryBudget(sim::default_memory_limit(processes));
+  }
+  if (limit < least) {
+    config.fail(
+        "host_machine.memory_limit",
+        sim::print_size(limit) + " is less than 1 MiB; 0 stands for three quarters of the host's memory");
+  }
+  return sim::MemoryBudget(static_cast<std::uint64_t>(limit), true);
+}
+
+FrameConfig read_frame(sim::Config& config) {
+  FrameConfig frame;
+  frame.scene = config.text("scene.source");
+  if (!config.where("scene.source").starts_with("--set")) {
+    frame.open.base_directory = std::filesystem::path(config.name()).parent_path();
+  }
+  if (scenes::names_a_file(frame.scene)) {
+    const std::filesystem::path file = frame.open.base_directory / frame.scene;
+    if (std::error_code error; !std::filesystem::exists(file, error)) {
+      config.fail("scene.source",
+                  "there is no file " + sim::shown(file.string()) +
+                      "; one that a configuration names is looked for beside it, one given with "
+                      "--set in the current directory");
+    }
+  }
+  frame.open.gltf.scene = config.text("scene.scene");
+  frame.open.gltf.camera = config.text("scene.camera");
+  frame.open.gltf.animation = config.text("scene.animation");
+  frame.frames.count = static_cast<std::uint32_t>(config.integer("frames.count"));
+  frame.frames.first = static_cast<std::uint32_t>(config.integer("frames.first"));
+  frame.frames.rate = config.real("frames.rate");
+  frame.open.gltf.time = frame.frames.time(0);
+  config.mark_unused_reason("frames.verify", "only `marti study frames` renders frames twice");
+  frame.render.width = static_cast<std::uint32_t>(config.integer("image.width"));
+  frame.render.height = static_cast<std::uint32_t>(config.integer("image.height"));
+  frame.render.max_depth = static_cast<std::uint32_t>(config.integer("image.max_depth"));
+  frame.render.min_weight = config.real("image.min_weight");
+  frame.render.samples = static_cast<std::uint32_t>(config.integer("image.samples"));
+  if (frame.render.samples > 1) {
+    frame.render.seed = static_cast<std::uint64_t>(config.integer("image.seed"));
+  }
+  config.mark_unused_reason("image.seed", "one sample lies in the pixel's centre", "image.samples");
+  frame.render.shadows = config.boolean("image.shadows");
+  frame.render.voxel_cut = config.real("image.voxel_cut");
+  if (frame.render.voxel_cut > 0.0) {
+    if (config.choice_name("structure.kind") != "octree") {
+      config.fail("image.voxel_cut", "only an octree can be cut, not structure.kind = \"" +
+                                         config.choice_name("structure.kind") + "\"");
+    }
+    frame.exact_too = config.boolean("image.voxel_cut_reference");
+  } else {
+    config.mark_unused_reason("image.voxel_cut_reference", "it has no effect with image.voxel_cut = 0",
+                              "image.voxel_cut");
+  }
+  read_structure(config, frame);
+  frame.memory = read_memory(config);
+  give_memory(frame.memory, frame.structure_options);
+  frame.open.gltf.memory = frame.memory;
+  frame.open.gltf.size_first = size_of_image;
+  return frame;
+}
+
+FrameConfig read_one_frame(sim::Config& config) {
+  FrameConfig frame = read_frame(config);
+  if (frame.frames.count > 1) {
+    config.fail("frames.count", "the study renders one frame, that of frames.first");
+  }
+  return frame;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,61 @@
+// The configuration keys of the functional world: scene, image, structure.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "accel/structure.h"
+#include "processors/program/render.h"
+#include "scenes/open.h"
+#include "sim/config.h"
+#include "sim/memory_budget.h"
+#include "sim/schema.h"
+#include "studies/run/plan/plan.h"
+
+namespace marti::studies {
+
+/// Which frames of an animated scene.
+struct FrameRange {
+  std::uint32_t count = 1;
+  std::uint32_t first = 0;
+  double rate = 24.0;  ///< frames a second
+
+  /// Seconds from the animation's beginning, of frame `first + i`.
+  [[nodiscard]] double time(std::uint32_t i) const {
+    return (static_cast<double>(first) + static_cast<double>(i)) / rate;
+  }
+};
+
+/// What is traced, and how. Equal values give the same image and the same work log.
+struct FrameConfig {
+  std::string scene;
+  scenes::OpenOptions open;  ///< its time is that of the first frame
+  FrameRange frames;
+  std::string structure;
+  accel::StructureOptions structure_options;
+  processors::RenderOptions render;
+  bool exact_too = false;    ///< with the voxel cut: render the exact image beside it
+  sim::MemoryBudget memory;  ///< of scene, structure, image and work log together
+  KeptItems keep;            ///< of the plan; not a key of the configuration: it decides no result
+};
+
+/// The options with the image made so small that its longer side has at most `side` pixels.
+[[nodiscard]] processors::RenderOptions made_small(processors::RenderOptions options, double side);
+
+void declare_frame_keys(sim::Schema& schema);
+
+/// By host_machine.memory_limit; where that is 0, this process' share of the host's memory, of which
+/// `processes` equal ones run there. Throws UserError naming file, line and key.
+[[nodiscard]] sim::MemoryBudget read_memory(const sim::Config& config, std::uint64_t processes = 1);
+
+/// Whichever structure is built may take what is left of it.
+void give_memory(const sim::MemoryBudget& memory, accel::StructureOptions& options);
+
+/// Throws UserError naming file, line and key.
+[[nodiscard]] FrameConfig read_frame(sim::Config& config);
+
+/// The same for a study of one frame: refuses several.
+[[nodiscard]] FrameConfig read_one_frame(sim::Config& config);
+
+}  // namespace marti::studies

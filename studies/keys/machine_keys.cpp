@@ -1,0 +1,413 @@
+#include "studies/keys/machine_keys.h"
+
+#include <array>
+#include <bit>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/config_errors.h"
+#include "sim/error.h"
+#include "studies/keys/build_keys.h"
+#include "studies/keys/cache_detail_keys.h"
+#include "studies/keys/context_keys.h"
+#include "studies/keys/flow_keys.h"
+#include "studies/keys/key_parts.h"
+#include "studies/keys/network_keys.h"
+#include "studies/keys/space_keys.h"
+
+namespace marti::studies {
+
+namespace {
+
+using sim::Schema;
+
+constexpr std::array<std::pair<std::string_view, std::int64_t processors::OperationCycles::*>, 8> operations =
+    {{
+        {"costs.add", &processors::OperationCycles::add},
+        {"costs.multiply", &processors::OperationCycles::multiply},
+        {"costs.divide", &processors::OperationCycles::divide},
+        {"costs.square_root", &processors::OperationCycles::square_root},
+        {"costs.compare", &processors::OperationCycles::compare},
+        {"costs.integer", &processors::OperationCycles::integer},
+        {"costs.load", &processors::OperationCycles::load},
+        {"costs.store", &processors::OperationCycles::store},
+    }};
+
+constexpr std::array<std::pair<std::string_view, std::uint32_t memory::LayoutConfig::*>, 7> records = {{
+    {"layout.node", &memory::LayoutConfig::node_bytes},
+    {"layout.entry", &memory::LayoutConfig::entry_bytes},
+    {"layout.primitive", &memory::LayoutConfig::primitive_bytes},
+    {"layout.quadric", &memory::LayoutConfig::quadric_bytes},
+    {"layout.material", &memory::LayoutConfig::material_bytes},
+    {"layout.texel", &memory::LayoutConfig::texel_bytes},
+    {"layout.pixel", &memory::LayoutConfig::pixel_bytes},
+}};
+
+constexpr std::array<std::string_view, processors::split_caches> split_keys = {
+    "cache.node_size", "cache.list_size", "cache.primitive_size", "cache.shading_size"};
+
+void declare_node(Schema& schema) {
+  schema.section("machine", "how many processors work on a frame, and how they share it");
+  schema.choice("machine.scheme", "image", names(processors::scheme_names),
+                "the parallel scheme; image: a node takes a packet of neighbouring pixels and traces it "
+                "whole; pipeline: nodes search, test or shade, and rays go round between them; space: a node "
+                "holds a part of space, and rays go to the node whose part they enter");
+  schema.integer("machine.clusters", 1, {1, processors::most_nodes}, "",
+                 "clusters, each with a copy of the database in its own shared memory");
+  schema.integer("machine.nodes", 16, {1, processors::most_nodes}, "", "processor nodes in each cluster");
+  schema.section("node",
+                 "one processor node; it works in order and stalls on a miss, unless it has other contexts");
+  clock(schema, "node.clock", "clock of the node and its cache");
+  schema.size("node.word", "4 B", {"1 B", "64 B"}, "what one load or store moves");
+  schema.integer("node.write_buffer", 4, {1, 4096}, "",
+                 "posted pixel writes a node may have outstanding before it stalls");
+  declare_context_keys(schema);
+  schema.section("costs", "cycles of one operation; steps are priced by counted operation mixes");
+  std::vector<std::string> presets;
+  for (const std::string_view preset : processors::cost_presets()) {
+    presets.emplace_back(preset);
+  }
+  schema.choice("costs.preset", presets.back(), presets, "the processor whose operation timings are taken");
+  for (const auto& [name, member] : operations) {
+    schema.integer(name, -1, {-1, 1'000'000}, "cycles", "cycles of one such operation; -1: the preset's");
+  }
+}
+
+void declare_memory(Schema& schema) {
+  schema.section("layout", "sizes of the database's records and where they lie");
+  const std::array<std::pair<std::string_view, std::string_view>, records.size()> sizes_of_records = {{
+      {"8 B", "bytes of one node record"},
+      {"4 B", "bytes of one entry record"},
+      {"48 B", "bytes of one primitive record that is a triangle"},
+      {"40 B", "bytes of one sphere, cylinder or cone: two points, two radii, kind and material"},
+      {"64 B", "bytes of one material record"},
+      {"4 B", "bytes of one texel record"},
+      {"4 B", "bytes of one pixel record"},
+  }};
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    schema.size(records[i].first, sizes_of_records[i].first, {"1 B", "64 KiB"}, sizes_of_records[i].second);
+  }
+  schema.size("layout.record_alignment", "4 B", {"1 B", "4 KiB"}, "alignment of records; a power of two");
+  schema.size("layout.section_alignment", "4 KiB", {"1 B", "1 GiB"},
+              "alignment of the sections (nodes, lists, primitives, ...); a power of two");
+  schema.choice("layout.node_order", "breadth_first", {"breadth_first", "depth_first"},
+                "order of the tree's nodes in memory");
+  schema.section("cache", "the private cache of a node; it holds what is read of the database");
+  schema.choice("cache.organisation", "unified", names(processors::cache_organisation_names),
+                "no cache, one for all records, or one each for nodes, lists, primitives and shading data");
+  schema.size("cache.size", "16 KiB", {"1 B", "4 GiB"}, "size of the unified cache");
+  const std::array<std::string_view, processors::split_caches> sizes = {"4 KiB", "2 KiB", "8 KiB", "2 KiB"};
+  for (std::size_t i = 0; i < split_keys.size(); ++i) {
+    schema.size(
+        split_keys[i], sizes[i], {"1 B", "4 GiB"},
+        "size of the split organisation's " + std::string(processors::split_cache_names[i]) + " cache");
+  }
+  schema.size("cache.line", "32 B", {"1 B", "1 GiB"}, "bytes of a line; a power of two");
+  schema.integer("cache.ways", 4, {0, std::numeric_limits<std::int32_t>::max()}, "",
+                 "lines of a set; 0: fully associative");
+  schema.choice("cache.replacement", "lru", names(memory::replacement_names),
+                "which line of a full set makes room");
+  schema.integer("cache.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
+                 "seed of random replacement");
+  cycles(schema, "cache.hit_cycles", 1, "cycles of a reference that hits");
+  declare_second_level_keys(schema);
+  declare_prefetch_keys(schema);
+  schema.section("database", "where the scene database is");
+  schema.choice("database.placement", "shared", names(processors::placement_names),
+                "shared: one copy in each cluster's memory; replicated: a copy in every node's own memory; "
+                "distributed: one copy in each cluster, spread with the frame buffer over its nodes' own "
+                "memories and reached over their network");
+  schema.size("database.interleave", "0 B", {"0 B", "1 GiB"},
+              "distributed: bytes in a row at one node, a power of two, at least a line; 0: a cache line, or "
+              "32 B without a cache");
+  schema.size(
+      "database.header", "8 B", {"1 B", "64 KiB"},
+      "distributed: bytes of a request to another node; data and writes carry as many beside their own");
+  schema.section("local",
+                 "a node's own memory, for a replicated or distributed database, private trees or a part of "
+                 "space; only a distributed database's serves others");
+  clock(schema, "local.clock", "clock of the local memory");
+  schema.size("local.width", "8 B", {"1 B", "64 KiB"}, "bytes of a beat");
+  cycles(schema, "local.access_cycles", 4, "cycles until the first beat");
+  cycles(schema, "local.cycles_per_beat", 1, "cycles of each beat");
+}
+
+void declare_interconnect(Schema& schema) {
+  schema.section("interconnect", "between the nodes of a cluster and its shared memory");
+  schema.choice(
+      "interconnect.kind", "bus", {"ideal", "bus", "crossbar"},
+      "ideal: fixed latency, no queue; bus: one transaction at a time; crossbar: a queue for each bank");
+  schema.choice("interconnect.mode", "split", {"held", "split"},
+                "whether a read holds the bus while its bank works or asks for it again");
+  schema.choice("interconnect.arbitration", "fifo", names(memory::arbitration_names),
+                "bus: whom it is granted to; fifo: who asked first; round_robin: nodes by turns; "
+                "fixed_priority: data before requests, then the lowest node");
+  clock(schema, "interconnect.clock", "clock of the interconnect");
+  schema.size("interconnect.width", "8 B", {"1 B", "64 KiB"}, "bytes of a beat");
+  cycles(schema, "interconnect.cycles_per_beat", 1, "cycles of each beat of data");
+  cycles(schema, "interconnect.address_cycles", 1, "cycles to send an address over the bus");
+  cycles(schema, "interconnect.latency_cycles", 10,
+         "ideal: cycles of a whole read or write; crossbar: cycles one way");
+  schema.section("memory", "the banks of a cluster's shared memory");
+  schema.integer("memory.banks", 4, {1, 65536}, "", "number of banks");
+  schema.size("memory.interleave", "0 B", {"0 B", "1 GiB"},
+              "bytes in a row that share a bank, a power of two, and without a cache the most that one "
+              "reference reads; 0: a cache line, or 32 B without a cache");
+  clock(schema, "memory.clock", "clock of the banks");
+  cycles(schema, "memory.access_cycles", 4, "cycles from the start of an access to its data");
+  cycles(schema, "memory.busy_cycles", 6, "cycles from the start of an access to the next");
+}
+
+void declare_host(Schema& schema) {
+  schema.section("packets", "the rectangles of pixels that are handed out");
+  schema.integer("packets.width", 8, {1, 65536}, "pixels", "columns of a packet");
+  schema.integer("packets.height", 8, {1, 65536}, "pixels", "rows of a packet");
+  schema.choice("packets.order", "scanline", names(processors::packet_order_names), "order of handing out");
+  schema.section("host", "who hands the packets out");
+  schema.choice(
+      "host.assignment", "dynamic", names(processors::assignment_names),
+      "dynamic: a free node asks for the next packet; interleaved: node i of n has packets i, i + n, "
+      "...; blocks: each node has a run of packets");
+  clock(schema, "host.clock", "clock of the host");
+  cycles(schema, "host.latency_cycles", 100,
+         "cycles from a node's request to its packet; nodes ask when they are free, not before; where rays "
+         "move, cycles until the first ray");
+  cycles(schema, "host.occupancy_cycles", 0,
+         "cycles that one request, or one camera ray, keeps the host from the next");
+}
+
+// A size that only a power of two can be.
+std::uint32_t power_of_two(const sim::Config& config, std::string_view key) {
+  const std::int64_t bytes = config.size(key);
+  if (!std::has_single_bit(static_cast<std::uint64_t>(bytes))) {
+    config.fail(key, "must be a power of two, not " + std::to_string(bytes) + " bytes");
+  }
+  return static_cast<std::uint32_t>(bytes);
+}
+
+std::uint32_t count(const sim::Config& config, std::string_view key) {
+  return static_cast<std::uint32_t>(config.integer(key));
+}
+
+sim::Clock clock(const sim::Config& config, std::string_view key) {
+  return sim::Clock::from_hertz(config.frequency(key));
+}
+
+void read_costs(const sim::Config& config, processors::MachineConfig& machine) {
+  machine.operations = processors::cost_preset(config.choice_name("costs.preset"));
+  for (const auto& [name, member] : operations) {
+    const std::int64_t given = config.integer(name);
+    if (given >= 0) {
+      machine.operations.*member = given;
+    }
+  }
+}
+
+void read_layout(const sim::Config& config, memory::LayoutConfig& layout) {
+  for (const auto& [name, member] : records) {
+    layout.*member = static_cast<std::uint32_t>(config.size(name));
+  }
+  layout.record_alignment = power_of_two(config, "layout.record_alignment");
+  layout.section_alignment = power_of_two(config, "layout.section_alignment");
+  layout.node_order = config.choice_as<memory::NodeOrder>("layout.node_order");
+}
+
+// One cache of a checked shape; a shape that cannot be built is laid at the size's door.
+void read_cache_size(const sim::Config& config, std::string_view key, const memory::CacheConfig& rest,
+                     std::uint64_t& size) {
+  memory::CacheConfig cache = rest;
+  cache.size = static_cast<std::uint64_t>(config.size(key));
+  try {
+    (void)memory::shape_of(cache);
+  } catch (const sim::UserError& error) {
+    config.fail(key, error.what());
+  }
+  size = cache.size;
+}
+
+void read_cache(sim::Config& config, processors::NodeCacheConfig& cache) {
+  using processors::CacheOrganisation;
+  cache.organisation = config.choice_as<CacheOrganisation>("cache.organisation");
+  if (cache.organisation == CacheOrganisation::none) {
+    config.mark_unused_reason("cache", "it has no effect with cache.organisation = \"none\"",
+                              "cache.organisation");
+    return;
+  }
+  cache.cache.line = power_of_two(config, "cache.line");
+  cache.cache.ways = count(config, "cache.ways");
+  cache.cache.replacement = config.choice_as<memory::Replacement>("cache.replacement");
+  cache.hit_cycles = config.integer("cache.hit_cycles");
+  if (cache.cache.replacement == memory::Replacement::random) {
+    cache.cache.seed = static_cast<std::uint64_t>(config.integer("cache.seed"));
+  }
+  config.mark_unused_reason("cache.seed", "only cache.replacement = \"random\" draws numbers",
+                            "cache.replacement");
+  if (cache.organisation == CacheOrganisation::unified) {
+    read_cache_size(config, "cache.size", cache.cache, cache.cache.size);
+  } else {
+    config.mark_unused_reason("cache.size", "a split cache has cache.node_size, cache.list_size, ...",
+                              "cache.organisation");
+    for (std::size_t i = 0; i < split_keys.size(); ++i) {
+      read_cache_size(config, split_keys[i], cache.cache, cache.split_sizes[i]);
+    }
+  }
+  for (const std::string_view key : split_keys) {
+    config.mark_unused_reason(key, "it has no effect without cache.organisation = \"split\"",
+                              "cache.organisation");
+  }
+}
+
+void read_distribution(const sim::Config& config, processors::MachineConfig& machine) {
+  processors::DistributionConfig& distribution = machine.distribution;
+  const std::uint32_t unit = machine.reference_bytes();
+  distribution.interleave = unit;
+  if (config.size("database.interleave") != 0) {
+    distribution.interleave = power_of_two(config, "database.interleave");
+  }
+  if (distribution.interleave < unit) {
+    config.fail("database.interleave", "must be at least what one reference reads, " + std::to_string(unit) +
+                                           " bytes, so that no reference needs two nodes");
+  }
+  distribution.header_bytes = static_cast<std::uint32_t>(config.size("database.header"));
+}
+
+void read_local(sim::Config& config, processors::MachineConfig& machine) {
+  const bool space = machine.scheme == processors::Scheme::space;
+  if (!space) {
+    machine.placement = config.choice_as<processors::Placement>("database.placement");
+  }
+  if (space || machine.placement != processors::Placement::shared ||
+      machine.build.sharing == processors::Sharing::private_trees) {
+    machine.local.clock = clock(config, "local.clock");
+    machine.local.width = static_cast<std::uint32_t>(config.size("local.width"));
+    machine.local.access_cycles = config.integer("local.access_cycles");
+    machine.local.cycles_per_beat = config.integer("local.cycles_per_beat");
+  }
+  config.mark_unused_reason(
+      "local",
+      "it has no effect without database.placement = \"replicated\" or \"distributed\", build.sharing = "
+      "\"private\" or machine.scheme = \"space\"",
+      "database.placement");
+  if (machine.placement == processors::Placement::distributed) {
+    read_distribution(config, machine);
+  }
+  config.mark_unused_reason("database", "it has no effect without database.placement = \"distributed\"",
+                            "database.placement");
+}
+
+void read_interconnect(sim::Config& config, processors::MachineConfig& machine) {
+  memory::InterconnectConfig& interconnect = machine.interconnect;
+  machine.banks.interleave = machine.reference_bytes();
+  if (machine.placement == processors::Placement::distributed) {
+    const std::string_view reason =
+        "a distributed database is in the nodes' own memories ([local]) and reached over [network]";
+    config.mark_unused_reason("interconnect", reason, "database.placement");
+    config.mark_unused_reason("memory", reason, "database.placement");
+    return;
+  }
+  interconnect.kind = config.choice_as<memory::InterconnectKind>("interconnect.kind");
+  interconnect.clock = clock(config, "interconnect.clock");
+  const bool ideal = interconnect.kind == memory::InterconnectKind::ideal;
+  const bool bus = interconnect.kind == memory::InterconnectKind::bus;
+  if (bus) {
+    interconnect.mode = config.choice_as<memory::BusMode>("interconnect.mode");
+    interconnect.arbitration = config.choice_as<memory::Arbitration>("interconnect.arbitration");
+    interconnect.address_cycles = config.integer("interconnect.address_cycles");
+  } else {
+    interconnect.latency_cycles = config.integer("interconnect.latency_cycles");
+  }
+  if (!ideal) {
+    interconnect.width = static_cast<std::uint32_t>(config.size("interconnect.width"));
+    interconnect.cycles_per_beat = config.integer("interconnect.cycles_per_beat");
+    machine.banks.count = count(config, "memory.banks");
+    machine.banks.clock = clock(config, "memory.clock");
+    machine.banks.access_cycles = config.integer("memory.access_cycles");
+    machine.banks.busy_cycles = config.integer("memory.busy_cycles");
+    if (config.size("memory.interleave") != 0) {
+      machine.banks.interleave = power_of_two(config, "memory.interleave");
+    }
+  }
+  const std::string kind = "with interconnect.kind = \"" + config.choice_name("interconnect.kind") + "\"";
+  config.mark_unused_reason("interconnect", "it has no effect " + kind, "interconnect.kind");
+  config.mark_unused_reason("memory", "there are no banks " + kind, "interconnect.kind");
+}
+
+// Messages are sent where rays move from node to node, and for a distributed database.
+void read_network_if_used(sim::Config& config, processors::MachineConfig& machine) {
+  if (machine.scheme != processors::Scheme::image ||
+      machine.placement == processors::Placement::distributed) {
+    machine.network = read_network(config);
+    return;
+  }
+  config.mark_unused_reason(
+      "network",
+      "no messages are sent with machine.scheme = \"image\" and a database that is not distributed",
+      "database.placement");
+}
+
+}  // namespace
+
+void declare_machine_keys(sim::Schema& schema) {
+  declare_node(schema);
+  declare_memory(schema);
+  declare_interconnect(schema);
+  declare_network_keys(schema);
+  declare_host(schema);
+  declare_build_keys(schema);
+  declare_count_keys(schema);
+  declare_flow_keys(schema);
+  declare_space_keys(schema);
+}
+
+processors::MachineConfig read_machine(sim::Config& config) {
+  processors::MachineConfig machine;
+  machine.scheme = config.choice_as<processors::Scheme>("machine.scheme");
+  machine.clusters = count(config, "machine.clusters");
+  machine.nodes = count(config, "machine.nodes");
+  if (std::uint64_t{machine.clusters} * machine.nodes > processors::most_nodes) {
+    config.fail("machine.nodes", "clusters times nodes must be at most 2^24");
+  }
+  machine.clock = clock(config, "node.clock");
+  machine.word_bytes = static_cast<std::uint32_t>(config.size("node.word"));
+  const bool image = machine.scheme == processors::Scheme::image;
+  if (image) {
+    machine.write_buffer = count(config, "node.write_buffer");
+  }
+  read_costs(config, machine);
+  read_layout(config, machine.layout);
+  read_cache(config, machine.cache);
+  machine.build = read_build(config);
+  read_local(config, machine);
+  read_contexts(config, machine);
+  if (machine.scheme != processors::Scheme::space) {
+    read_interconnect(config, machine);
+  }
+  read_second_level(config, machine);
+  read_flow(config, machine);
+  read_network_if_used(config, machine);
+  read_space(config, machine);
+  read_count(config, machine);
+  machine.packets = {count(config, "packets.width"), count(config, "packets.height"),
+                     config.choice_as<processors::PacketOrder>("packets.order")};
+  if (image) {
+    machine.host.assignment = config.choice_as<processors::Assignment>("host.assignment");
+  }
+  if (machine.host.assignment == processors::Assignment::dynamic) {
+    machine.host.clock = clock(config, "host.clock");
+    machine.host.latency_cycles = config.integer("host.latency_cycles");
+    machine.host.occupancy_cycles = config.integer("host.occupancy_cycles");
+  }
+  config.mark_unused_reason("host", "nodes ask nobody without host.assignment = \"dynamic\"",
+                            "host.assignment");
+  check_machine(config, machine);
+  return machine;
+}
+
+void check_machine(const sim::Config& config, const processors::MachineConfig& machine) {
+  sim::placed(config, [&] { processors::check(machine); });
+}
+
+}  // namespace marti::studies

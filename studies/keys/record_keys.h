@@ -1,0 +1,23 @@
+// The configuration keys of what a run records beside its result.
+#pragma once
+
+#include "sim/config.h"
+#include "sim/schema.h"
+#include "studies/run/record/timeline.h"
+
+namespace marti::studies {
+
+/// What is recorded; all of it goes to files in the output directory.
+struct RecordConfig {
+  bool timeline = false;
+  TimelineOptions timeline_options;
+  bool heat_maps = false;
+};
+
+void declare_record_keys(sim::Schema& schema);
+
+/// Throws UserError naming file, line and key, also when something is to be recorded and there is no output
+/// directory to record it in.
+[[nodiscard]] RecordConfig read_record(sim::Config& config, bool has_directory);
+
+}  // namespace marti::studies

@@ -1,0 +1,11 @@
+#include "studies/run/open_frame.h"
+
+#include "studies/host/image_file.h"
+
+namespace marti::studies {
+
+scenes::Scene open_frame(const FrameConfig& frame, scenes::FileUse* use) {
+  return with_scene_keys([&] { return scenes::open_scene(frame.scene, frame.open, decode_image, use); });
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,27 @@
+// The scene of a frame, its faults laid at the key that asks for it.
+#pragma once
+
+#include "scenes/open.h"
+#include "scenes/part_error.h"
+#include "sim/key_error.h"
+#include "studies/keys/frame_keys.h"
+
+namespace marti::studies {
+
+/// Calls `work`; a UserError out of it that names no key becomes a sim::KeyError about the key that asks for
+/// the part that is not there, or about scene.source.
+template <class Work>
+decltype(auto) with_scene_keys(const Work& work) {
+  return sim::KeyError::laid_at("scene.source", [&]() -> decltype(auto) {
+    try {
+      return work();
+    } catch (const scenes::PartError& error) {
+      throw sim::KeyError(error.part() == "time" ? "frames.first" : "scene." + error.part(), error.what());
+    }
+  });
+}
+
+/// Opens the scene in its first pose. `use` is as in scenes::open_scene.
+[[nodiscard]] scenes::Scene open_frame(const FrameConfig& frame, scenes::FileUse* use = nullptr);
+
+}  // namespace marti::studies

@@ -1,0 +1,25 @@
+// What the timing of a machine may leave out: the plan's items "contention" and "cache".
+#pragma once
+
+#include <vector>
+
+#include "processors/machine/machine_config.h"
+#include "processors/program/work_log.h"
+#include "processors/replay/replay.h"
+#include "studies/run/plan/plan.h"
+
+namespace marti::studies {
+
+/// Sets of the replay what the user wants kept.
+void keep(const KeptItems& kept, processors::ReplayOptions& options);
+
+/// Both items for this machine, decided from its configuration and the size of its database, before it runs.
+/// Estimated are the records that the log refers to.
+[[nodiscard]] std::vector<PlanEntry> machine_plan(const KeptItems& kept,
+                                                  const processors::MachineConfig& machine,
+                                                  const processors::WorkLog& log, bool observed);
+
+/// After the run: enters what was counted.
+void count_machine_plan(const processors::MachineResult& result, std::vector<PlanEntry>& entries);
+
+}  // namespace marti::studies

@@ -1,0 +1,61 @@
+// The plan of a frame: decided from facts before the frame is rendered, counted afterwards.
+//
+// What only this computer's work and memory depend on is left out of these; the simulated machine's database
+// and its work log are those of the scene that the user describes, so that all its statistics are the same.
+// The one exception is a shadow ray whose light could add nothing: the ray tracer does not send it, on any
+// machine.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "accel/structure.h"
+#include "processors/program/render.h"
+#include "scenes/animated.h"
+#include "scenes/scene.h"
+#include "scenes/texture.h"
+#include "studies/run/plan/needs.h"
+#include "studies/run/plan/plan.h"
+
+namespace marti::studies {
+
+/// What the decisions rest on.
+struct PlanFacts {
+  SceneNeeds needs;
+  scenes::FileUse file;
+  processors::RenderOptions render;  ///< as the configuration has it
+  std::string structure;             ///< its kind
+  KeptItems keep;
+
+  // Of the scene as it was opened.
+  std::uint64_t texels = 0;
+  std::uint64_t texels_needed = 0;
+  std::uint64_t coordinates = 0;  ///< of how many vertices
+  std::uint64_t normals = 0;      ///< likewise
+};
+
+[[nodiscard]] PlanFacts facts_of_frame(const scenes::Scene& scene, const processors::RenderOptions& render,
+                                       const std::string& structure, const KeptItems& keep);
+
+/// The items of scene and frame. `further` are entries of other items.
+[[nodiscard]] Plan make_plan(const PlanFacts& facts, std::vector<PlanEntry> further = {});
+
+/// Adds what is known only when the structure is built, and before the frame is rendered.
+void plan_structure(Plan& plan, const PlanFacts& facts, const accel::Structure& structure);
+
+[[nodiscard]] bool is_left_out(const Plan& plan, PlanItem item);
+
+/// The options that render the frame by the plan.
+[[nodiscard]] processors::RenderOptions planned_options(const Plan& plan, const PlanFacts& facts);
+
+/// Takes out of the scene what the plan leaves out, and decodes the texels that are needed.
+void drop_parts(const Plan& plan, const SceneNeeds& needs, const scenes::ImageDecoder& decode,
+                scenes::Scene& scene);
+
+/// Fills in what the frame shows to have been saved. Throws InternalError where the frame has used what was
+/// left out.
+void count_saved(Plan& plan, const SceneNeeds& needs, const scenes::Scene& scene,
+                 const processors::Frame& frame);
+
+}  // namespace marti::studies

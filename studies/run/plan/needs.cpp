@@ -1,0 +1,140 @@
+#include "studies/run/plan/needs.h"
+
+#include <algorithm>
+
+#include "processors/program/shading.h"
+#include "studies/run/plan/view.h"
+
+namespace marti::studies {
+
+namespace {
+
+bool is_zero(const glm::dvec3& v) { return v.x == 0.0 && v.y == 0.0 && v.z == 0.0; }
+
+bool transmits(const scenes::Material& material) { return material.transmission > 0.0; }
+
+// Finds out step by step; a step may use what the ones before it have found.
+class Finder {
+ public:
+  Finder(const scenes::Scene& scene, const processors::RenderOptions& options)
+      : scene_(scene),
+        options_(options),
+        everything_(options.voxel_cut > 0.0),
+        in_view_(scene.triangles.size() + scene.quadrics.size()) {}
+
+  SceneNeeds find() {
+    find_materials();
+    find_rays();
+    find_textures();
+    find_normals();
+    return needs_;
+  }
+
+ private:
+  // An average may have what one of its materials lacks for being black and another for having no weight.
+  [[nodiscard]] bool reflects(const scenes::Material& material) const {
+    return material.reflection > 0.0 && (everything_ || !is_zero(material.specular_color));
+  }
+
+  void find_materials() {
+    const View view(scene_.camera.image_plane(options_.width, options_.height), options_.width,
+                    options_.height, options_.samples > 1);
+    std::vector<bool> listed(scene_.materials.size());
+    std::vector<bool> seen(scene_.materials.size());
+    needs_.primitives = in_view_.size();
+    for (std::uint32_t id = 0; id < in_view_.size(); ++id) {
+      const std::uint32_t material = scenes::material_of(scene_, id);
+      listed[material] = true;
+      if (everything_ || view.may_meet(scene_, id)) {
+        in_view_[id] = true;
+        ++needs_.in_view;
+        seen[material] = true;
+      }
+    }
+    const bool deep = options_.max_depth > 1;
+    const auto sends = [&](std::size_t i) {
+      return deep && seen[i] && (reflects(scene_.materials[i]) || transmits(scene_.materials[i]));
+    };
+    for (std::size_t i = 0; i < seen.size() && !secondary_; ++i) {
+      secondary_ = sends(i);
+    }
+    needs_.materials = secondary_ ? listed : seen;
+  }
+
+  void find_rays() {
+    for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
+      const scenes::Material& material = scene_.materials[i];
+      if (!needs_.materials[i]) {
+        needs_.reflecting_beside += reflects(material) ? 1U : 0U;
+        needs_.transmitting_beside += transmits(material) ? 1U : 0U;
+        continue;
+      }
+      ++needs_.shaded;
+      needs_.reflecting += reflects(material) ? 1U : 0U;
+      needs_.transmitting += transmits(material) ? 1U : 0U;
+      const bool asks = processors::asks_lights(material);
+      const bool shows = everything_ ? asks : processors::shows_light(material);
+      needs_.unlit += asks && !shows ? 1U : 0U;
+      shows_ = shows_ || shows;
+    }
+    const bool deep = options_.max_depth > 1;
+    needs_.refraction_rays = deep && needs_.transmitting > 0;
+    // At total internal reflection what would be refracted is reflected.
+    needs_.reflection_rays = deep && (needs_.reflecting > 0 || needs_.transmitting > 0);
+    needs_.lights = scene_.lights.size();
+    for (const scenes::Light& light : scene_.lights) {
+      needs_.shining_lights += is_zero(light.color) ? 0U : 1U;
+    }
+    needs_.shadow_rays = options_.shadows && shows_ && needs_.shining_lights > 0;
+  }
+
+  void find_textures() {
+    needs_.textures.resize(scene_.textures.size());
+    const bool any_light = needs_.shining_lights > 0 || !is_zero(scene_.ambient);
+    for (std::size_t i = 0; i < scene_.materials.size() && !scene_.uvs.empty(); ++i) {
+      const scenes::Material& material = scene_.materials[i];
+      if (!needs_.materials[i] || material.texture == scenes::no_texture) {
+        continue;
+      }
+      ++needs_.textured;
+      needs_.coordinates = true;
+      // The colour of a texel is multiplied by the material's and goes into diffuse and ambient light alone.
+      if (everything_ || (any_light && material.diffuse > 0.0 && !is_zero(material.color))) {
+        needs_.textures[material.texture] = true;
+      }
+    }
+  }
+
+  [[nodiscard]] bool uses_normal(const scenes::Material& material) const {
+    const bool lit = needs_.shining_lights > 0 && processors::asks_lights(material);
+    return lit || (options_.max_depth > 1 && (reflects(material) || transmits(material)));
+  }
+
+  void find_normals() {
+    for (std::uint32_t id = 0; id < scene_.triangles.size() && !scene_.normals.empty(); ++id) {
+      const scenes::Triangle& triangle = scene_.triangles[id];
+      if (!(in_view_[id] || secondary_) ||
+          !(everything_ || uses_normal(scene_.materials[triangle.material]))) {
+        continue;
+      }
+      ++needs_.smooth;
+    }
+    needs_.normals = needs_.smooth > 0;
+  }
+
+  const scenes::Scene& scene_;
+  const processors::RenderOptions& options_;
+  bool everything_;
+  std::vector<bool> in_view_;
+  bool secondary_ = false;
+  bool shows_ = false;
+  SceneNeeds needs_;
+};
+
+}  // namespace
+
+SceneNeeds needs_of(const scenes::Scene& scene, const processors::RenderOptions& options) {
+  return Finder(scene, options).find();
+}
+
+}  // namespace marti::studies

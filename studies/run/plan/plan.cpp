@@ -1,0 +1,58 @@
+#include "studies/run/plan/plan.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "sim/error.h"
+#include "sim/nearest.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr std::string_view everything = "all";
+
+}  // namespace
+
+KeptItems::KeptItems(std::span<const std::string> names) {
+  for (const std::string& name : names) {
+    if (name == everything) {
+      bits_.set();
+      continue;
+    }
+    const auto* const at = std::find(plan_item_names.begin(), plan_item_names.end(), name);
+    if (at == plan_item_names.end()) {
+      std::vector<std::string> known(plan_item_names.begin(), plan_item_names.end());
+      known.emplace_back(everything);
+      std::string message = "--keep: the plan has no item \"" + name + "\"" + sim::did_you_mean(name, known);
+      message += "; it has ";
+      for (std::size_t i = 0; i < known.size(); ++i) {
+        message += (i == 0 ? "" : i + 1 == known.size() ? " and " : ", ") + known[i];
+      }
+      throw sim::UserError(message);
+    }
+    bits_.set(static_cast<std::size_t>(at - plan_item_names.begin()));
+  }
+}
+
+KeptItems KeptItems::all() {
+  KeptItems kept;
+  kept.bits_.set();
+  return kept;
+}
+
+void add_entries(Plan& plan, std::vector<PlanEntry> entries) {
+  plan.entries.insert(plan.entries.end(), std::make_move_iterator(entries.begin()),
+                      std::make_move_iterator(entries.end()));
+  std::stable_sort(plan.entries.begin(), plan.entries.end(),
+                   [](const PlanEntry& a, const PlanEntry& b) { return a.item < b.item; });
+}
+
+PlanEntry* find_entry(Plan& plan, PlanItem item) {
+  const auto at = std::find_if(plan.entries.begin(), plan.entries.end(),
+                               [&](const PlanEntry& entry) { return entry.item == item; });
+  return at == plan.entries.end() ? nullptr : &*at;
+}
+
+}  // namespace marti::studies

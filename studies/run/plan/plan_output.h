@@ -1,0 +1,16 @@
+// The plan of a run in the summary and in `result.json`.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "studies/run/plan/plan.h"
+
+namespace marti::studies {
+
+/// A line for each item that is left out, one for those the user keeps, and one for those that are needed.
+[[nodiscard]] std::string plan_lines(const Plan& plan);
+
+[[nodiscard]] nlohmann::ordered_json plan_json(const Plan& plan);
+
+}  // namespace marti::studies

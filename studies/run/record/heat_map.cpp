@@ -1,0 +1,78 @@
+#include "studies/run/record/heat_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "studies/run/record/colour_scale.h"
+
+namespace marti::studies {
+
+using processors::NodeState;
+using processors::PixelPlace;
+
+void HeatMap::begin(const processors::ReplayInput& input) {
+  width_ = input.log.width;
+  height_ = input.log.height;
+  period_ = input.config.clock.period();
+  for (std::vector<std::int64_t>& values : values_) {
+    values.assign(std::size_t{width_} * height_, 0);
+  }
+}
+
+void HeatMap::spent(std::uint32_t /*node*/, NodeState state, sim::Ticks from, sim::Ticks to,
+                    PixelPlace pixel) {
+  if (pixel.none()) {
+    return;
+  }
+  values_[static_cast<std::size_t>(Heat::cycles)][index(pixel)] += to - from;
+  if (state != NodeState::working) {
+    values_[static_cast<std::size_t>(Heat::waits)][index(pixel)] += to - from;
+  }
+}
+
+void HeatMap::missed(std::uint32_t /*node*/, std::int64_t misses, PixelPlace pixel) {
+  if (!pixel.none()) {
+    values_[static_cast<std::size_t>(Heat::misses)][index(pixel)] += misses;
+  }
+}
+
+std::vector<float> HeatMap::figures(Heat heat) const {
+  const double unit = heat == Heat::misses ? 1.0 : static_cast<double>(period_);
+  std::vector<float> figures;
+  figures.reserve(values(heat).size());
+  for (const std::int64_t value : values(heat)) {
+    figures.push_back(static_cast<float>(static_cast<double>(value) / unit));
+  }
+  return figures;
+}
+
+Legend legend_of(const std::vector<float>& figures) {
+  Legend legend;
+  if (figures.empty()) {
+    return legend;
+  }
+  std::vector<float> sorted = figures;
+  const auto rank = static_cast<std::ptrdiff_t>((sorted.size() * 99 + 99) / 100 - 1);
+  std::nth_element(sorted.begin(), sorted.begin() + rank, sorted.end());
+  legend.brightest = static_cast<double>(sorted[static_cast<std::size_t>(rank)]);
+  legend.largest = static_cast<double>(*std::max_element(figures.begin(), figures.end()));
+  if (legend.brightest == 0.0) {
+    legend.brightest = legend.largest;
+  }
+  legend.mean = std::accumulate(figures.begin(), figures.end(), 0.0) / static_cast<double>(figures.size());
+  return legend;
+}
+
+processors::Image false_colour(const std::vector<float>& figures, std::uint32_t width, std::uint32_t height,
+                               const Legend& legend) {
+  processors::Image image{width, height, {}};
+  image.pixels.reserve(figures.size());
+  for (const float figure : figures) {
+    const double share = legend.brightest > 0.0 ? static_cast<double>(figure) / legend.brightest : 0.0;
+    image.pixels.push_back(colour_of(share));
+  }
+  return image;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,74 @@
+// What every node did when, for Perfetto (https://ui.perfetto.dev) and other readers of Chrome's trace event
+// format (Trace Event Format, Google, 2016: JSON, complete events "X", metadata "M").
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "processors/walk/observer.h"
+#include "studies/run/record/text_stream.h"
+
+namespace marti::studies {
+
+struct TimelineOptions {
+  sim::Ticks from = 0;                                     ///< what lies before is left out
+  sim::Ticks to = std::numeric_limits<sim::Ticks>::max();  ///< and what lies from here on
+  std::int64_t most_events = 1'000'000;                    ///< slices written at most
+};
+
+/// Writes while it watches. One track a node (tid is the node's number plus 1), one process a cluster (pid is
+/// its number plus 1). A slice is a node's time in one state for one pixel without a break; its name is that
+/// of the NodeState. Slices of a node follow each other, those of different nodes come in any order. Times
+/// are in microseconds with six digits, which is exact.
+class Timeline final : public processors::Observer {
+ public:
+  Timeline(const std::filesystem::path& file, const TimelineOptions& options);
+
+  void begin(const processors::ReplayInput& input) override;
+  void spent(std::uint32_t node, processors::NodeState state, sim::Ticks from, sim::Ticks to,
+             processors::PixelPlace pixel) override;
+  void began_packet(std::uint32_t node, std::uint64_t packet, sim::Ticks start) override;
+  void resumed_packet(std::uint32_t node, std::uint64_t packet) override;
+  /// Completes and closes the file, still under its temporary name.
+  void end(sim::Ticks time) override;
+  [[nodiscard]] const std::filesystem::path& temporary() const { return stream_.temporary(); }
+  void commit() { stream_.commit(); }
+
+  [[nodiscard]] std::int64_t events() const { return events_; }
+  /// When a slice was left out because there were too many: that of those left out that began first.
+  [[nodiscard]] std::optional<sim::Ticks> cut_at() const { return cut_at_; }
+
+ private:
+  static constexpr std::uint64_t no_packet = ~std::uint64_t{0};
+  // A node's last slice, which may still grow.
+  struct Slice {
+    sim::Ticks from = 0;
+    sim::Ticks to = 0;
+    std::uint64_t packet = no_packet;
+    processors::PixelPlace pixel;
+    processors::NodeState state = processors::NodeState::idle;
+  };
+  struct Track {
+    Slice slice;
+    std::uint64_t packet = no_packet;
+    bool named = false;
+  };
+
+  void put(std::uint32_t node);
+  void name(std::uint32_t node);
+
+  TimelineOptions options_;
+  TextStream stream_;
+  std::vector<Track> tracks_;
+  std::vector<bool> cluster_named_;
+  std::uint32_t nodes_a_cluster_ = 1;
+  std::int64_t events_ = 0;
+  std::optional<sim::Ticks> cut_at_;
+  bool first_ = true;
+};
+
+}  // namespace marti::studies

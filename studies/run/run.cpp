@@ -1,0 +1,159 @@
+#include <string>
+#include <utility>
+
+#include "processors/replay/host_bytes.h"
+#include "sim/config_errors.h"
+#include "studies/keys/key_parts.h"
+#include "studies/keys/machine_keys.h"
+#include "studies/keys/record_keys.h"
+#include "studies/run/plan/machine_plan.h"
+#include "studies/run/record/observers.h"
+#include "studies/run/run_result.h"
+
+namespace marti::studies {
+
+void refuse_beyond_memory(const sim::Config& config, const FrameConfig& frame,
+                          const processors::MachineConfig& machine) {
+  if (const std::string excess = frame.memory.excess(processors::host_bytes(machine)); !excess.empty()) {
+    config.fail("machine.nodes", "simulating these nodes and their caches takes" + excess);
+  }
+}
+
+void refuse_several_frames(const sim::Config& config, const FrameRange& frames) {
+  if (frames.count > 1) {
+    config.fail("frames.count", std::to_string(frames.count) +
+                                    " frames are asked for, but `marti run` renders one, that of "
+                                    "frames.first; set frames.count = 1, or "
+                                    "use `marti study frames`");
+  }
+}
+
+namespace {
+
+// A sweep's sections as free ones: a machine's own commands pass over what they hold.
+void declare_sweep_sections(sim::Schema& schema) {
+  schema.free_section(
+      "sweep",
+      "only for `marti sweep`, which times many machines: [sweep.axes], [[sweep.zip]], [sweep.points.NAME], "
+      "[sweep.base] and [sweep.compare] say which (docs/sweep.md)");
+  schema.free_section("prices", "only for `marti sweep`: what a machine costs, in units of your own");
+}
+
+void refuse_maps_beyond_memory(const sim::Config& config, const RecordConfig& record,
+                               const FrameConfig& frame) {
+  const std::string excess =
+      frame.memory.excess(HeatMap::host_bytes(std::uint64_t{frame.render.width} * frame.render.height));
+  if (record.heat_maps && !excess.empty()) {
+    config.fail("record.heat_maps", "maps of this image take" + excess);
+  }
+}
+
+// Times the machine, watched by what is asked for, and finds out afterwards what watching it makes known.
+processors::MachineResult watched_replay(const RecordConfig& record, const std::filesystem::path& directory,
+                                         RunResult& result) {
+  Observers observers;
+  if (record.timeline) {
+    result.timeline = std::make_unique<Timeline>(directory / "timeline.json", record.timeline_options);
+    observers.add(*result.timeline);
+  }
+  if (record.heat_maps) {
+    result.heat_map = std::make_unique<HeatMap>();
+    observers.add(*result.heat_map);
+  }
+  processors::HandedOut handed_out;
+  if (result.machine.count.working_set) {
+    observers.add(handed_out);
+  }
+  processors::ReplayOptions options;
+  options.observer = observers.empty() ? nullptr : &observers;
+  const KeptItems& kept = result.frame_config.keep;
+  keep(kept, options);
+  const processors::WorkLog& log = *result.functional.frame.log;
+  std::vector<PlanEntry> entries = machine_plan(kept, result.machine, log, options.observer != nullptr);
+  processors::MachineResult timed = processors::replay(log, result.machine, options);
+  count_machine_plan(timed, entries);
+  add_entries(result.plan, std::move(entries));
+  if (result.machine.count.working_set) {
+    result.working_set = processors::working_set(handed_out);
+    processors::check_working_set(*result.working_set, result.machine, timed);
+  }
+  return timed;
+}
+
+// Times the frame on the machine, and on one node; everything that follows from that.
+void time_frame(const RecordConfig& record, const std::filesystem::path& directory, RunResult& result) {
+  result.plan = result.functional.plan;
+  const processors::WorkLog& log = *result.functional.frame.log;
+  result.timed = watched_replay(record, directory, result);
+  if (result.machine.all_nodes() == 1 && result.machine.scheme == processors::Scheme::image) {
+    result.one_node = result.timed;
+  } else {
+    processors::ReplayOptions options;
+    keep(result.frame_config.keep, options);
+    result.one_node = processors::replay(log, processors::one_node_of(result.machine), options);
+  }
+  result.scaling = scaling_of(result.one_node.end, result.timed.end, result.machine.all_nodes());
+  result.loss = loss_of(result.one_node, result.timed);
+  result.finding = find_limit(result.machine, result.timed);
+  result.bounds = processors::frame_bounds(result.machine, result.timed);
+  result.prediction = processors::predict(result.machine, result.timed);
+}
+
+// The same configuration, of which nothing has been run.
+RunResult described_by(const RunResult& first, const KeptItems& keep) {
+  RunResult result;
+  result.config_name = first.config_name;
+  result.frame_config = first.frame_config;
+  result.frame_config.keep = keep;
+  result.machine = first.machine;
+  result.values = first.values;
+  return result;
+}
+
+}  // namespace
+
+sim::Schema run_schema() {
+  sim::Schema schema;
+  declare_frame_keys(schema);
+  declare_machine_keys(schema);
+  declare_record_keys(schema);
+  declare_sweep_sections(schema);
+  declare_sections_of_other_commands(schema);
+  return schema;
+}
+
+RunResult run(sim::Config& config, const std::filesystem::path& directory, const KeptItems& keep,
+              std::optional<FunctionalRun> functional) {
+  RunResult result;
+  result.config_name = config.name();
+  result.frame_config = read_frame(config);
+  result.frame_config.keep = keep;
+  refuse_several_frames(config, result.frame_config.frames);
+  result.machine = read_machine(config);
+  const RecordConfig record = read_record(config, !directory.empty());
+  config.refuse_unused();
+  refuse_beyond_memory(config, result.frame_config, result.machine);
+  refuse_maps_beyond_memory(config, record, result.frame_config);
+  result.values = config.effective_values();
+  sim::placed(config, [&] {
+    result.functional = functional ? std::move(*functional) : run_functional(result.frame_config);
+    time_frame(record, directory, result);
+  });
+  return result;
+}
+
+RunResult run_again(const RunResult& first, const KeptItems& keep) {
+  RunResult result = described_by(first, keep);
+  result.functional = run_functional(result.frame_config);
+  time_frame({}, {}, result);
+  return result;
+}
+
+RunResult time_again(const RunResult& first, const KeptItems& keep) {
+  RunResult result = described_by(first, keep);
+  result.functional = first.functional;
+  time_frame({}, {}, result);
+  return result;
+}
+
+}  // namespace marti::studies

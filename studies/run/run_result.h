@@ -1,0 +1,75 @@
+// Everything one `marti run` found out.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "processors/machine/machine_config.h"
+#include "processors/passes/working_set.h"
+#include "processors/replay/bounds.h"
+#include "processors/replay/replay.h"
+#include "sim/config.h"
+#include "studies/figures/loss.h"
+#include "studies/figures/scaling.h"
+#include "studies/run/functional_run.h"
+#include "studies/run/record/heat_map.h"
+#include "studies/run/record/timeline.h"
+
+namespace marti::studies {
+
+struct RunResult {
+  std::string config_name;
+  std::vector<sim::EffectiveValue> values;
+  FrameConfig frame_config;
+  Plan plan;  ///< what was left out of the frame and of the machine
+  processors::MachineConfig machine;
+  FunctionalRun functional;
+  processors::MachineResult timed;
+  processors::MachineResult one_node;  ///< the same machine with one cluster of one node
+  Scaling scaling;
+  SpeedUpLoss loss;
+  Finding finding;
+  processors::FrameBounds bounds;
+  std::optional<processors::Prediction> prediction;
+  std::optional<processors::WorkingSet> working_set;  ///< of the timed machine; empty: not asked for
+  std::unique_ptr<Timeline> timeline;  ///< written, but not under its own name yet; null: not asked for
+  std::unique_ptr<HeatMap> heat_map;   ///< null: not asked for
+};
+
+/// Runs a configuration: one functional run, the machine and the same machine with one node. Throws
+/// UserError for anything wrong with the input, before it has written anything. What is recorded while the
+/// machine runs goes to `directory`, which must exist; without one nothing may be recorded.
+/// `functional`, where it is given, is what the functional run of the frame that `config` describes has made.
+[[nodiscard]] RunResult run(sim::Config& config, const std::filesystem::path& directory = {},
+                            const KeptItems& keep = {}, std::optional<FunctionalRun> functional = {});
+
+/// The same frame on the same machine with these items of the plan kept. Nothing is recorded.
+[[nodiscard]] RunResult run_again(const RunResult& first, const KeptItems& keep);
+/// The same, but the frame is not rendered again.
+[[nodiscard]] RunResult time_again(const RunResult& first, const KeptItems& keep);
+
+/// Throws UserError when the simulated machine would take more of the computer's memory than the frame may.
+void refuse_beyond_memory(const sim::Config& config, const FrameConfig& frame,
+                          const processors::MachineConfig& machine);
+/// Throws UserError when more than one frame is asked for.
+void refuse_several_frames(const sim::Config& config, const FrameRange& frames);
+
+/// The schema of `marti run`.
+[[nodiscard]] sim::Schema run_schema();
+
+/// The summary's first part, which needs the frame's configuration and the functional run only.
+[[nodiscard]] std::string scene_summary_of(const RunResult& result);
+
+/// The printed summary.
+[[nodiscard]] std::string summary_of(const RunResult& result);
+
+/// The result for programs, as docs/result-schema.md describes it. The same run gives the same bytes.
+/// `files`: hashes (SHA-256, 64 hexadecimal digits) of the files that it belongs with, by name.
+[[nodiscard]] std::string json_of(const RunResult& result,
+                                  const std::map<std::string, std::string>& files = {});
+
+}  // namespace marti::studies

@@ -1,0 +1,124 @@
+#include "studies/run/trace/trace.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <memory>
+#include <vector>
+
+#include "processors/passes/reference_trace.h"
+#include "processors/replay/replay.h"
+#include "sim/error.h"
+#include "sim/units.h"
+#include "studies/host/signals_held.h"
+#include "studies/keys/machine_keys.h"
+#include "studies/keys/record_keys.h"
+#include "studies/run/functional_run.h"
+#include "studies/run/record/text_stream.h"
+#include "studies/run/run_result.h"
+#include "studies/run/trace/node_list.h"
+
+namespace marti::studies {
+
+namespace {
+
+void refuse_other_machines(const sim::Config& config, const processors::MachineConfig& machine) {
+  if (machine.scheme != processors::Scheme::image) {
+    config.fail("machine.scheme", "only nodes of the image scheme have references that a trace can hold");
+  }
+  if (machine.contexts > 1 || machine.prefetch.on()) {
+    config.fail(
+        machine.contexts > 1         ? "node.contexts"
+        : machine.prefetch.next_line ? "prefetch.next_line"
+                                     : "prefetch.children",
+        "a trace is in the order of the program, which is not that in which such a node refers to lines");
+  }
+  if (machine.build.sharing != processors::Sharing::given) {
+    config.fail("build.sharing",
+                "while the tree is built, other nodes decide what a node reads; a trace needs \"given\"");
+  }
+}
+
+struct TooLong {};
+
+struct Count {
+  std::uint64_t reads = 0;
+  std::uint64_t writes = 0;
+  std::uint64_t bytes = 0;
+};
+
+// One node's file; `most_bytes` may still be written.
+Count write_trace(const processors::ReferenceTrace& trace, std::uint32_t node, std::uint64_t most_bytes,
+                  TextStream& file) {
+  Count count;
+  std::array<char, 64> line{};
+  trace.for_each(node, [&](const processors::Reference& reference) {
+    char* at = line.data();
+    *at++ = reference.write ? '1' : '0';
+    *at++ = ' ';
+    at = std::to_chars(at, line.data() + 20, reference.address, 16).ptr;
+    *at++ = ' ';
+    const std::string_view kind = memory::record_kind_names[static_cast<std::size_t>(reference.kind)];
+    at = std::copy(kind.begin(), kind.end(), at);
+    *at++ = '\n';
+    const auto length = static_cast<std::size_t>(at - line.data());
+    ++(reference.write ? count.writes : count.reads);
+    count.bytes += length;
+    if (count.bytes > most_bytes) {
+      throw TooLong();
+    }
+    file.write({line.data(), length});
+  });
+  file.close();
+  return count;
+}
+
+std::string describe(const std::filesystem::path& file, const Count& count) {
+  return fmt::format("wrote {}: {} reads, {} writes, {:.1f} MiB\n", file.string(), count.reads, count.writes,
+                     static_cast<double>(count.bytes) / (1024.0 * 1024.0));
+}
+
+}  // namespace
+
+std::string write_traces(sim::Config& config, const TraceOptions& options,
+                         const std::filesystem::path& directory) {
+  const FrameConfig frame = read_frame(config);
+  refuse_several_frames(config, frame.frames);
+  const processors::MachineConfig machine = read_machine(config);
+  (void)read_record(config, true);  // what `marti run` would record is no error here
+  config.refuse_unused();
+  refuse_beyond_memory(config, frame, machine);
+  refuse_other_machines(config, machine);
+  const std::vector<std::uint32_t> nodes = parse_nodes(options.nodes, machine.all_nodes());
+  const FunctionalRun functional = run_functional(frame);
+  processors::ReferenceTrace trace;
+  processors::ReplayOptions watched;
+  watched.observer = &trace;
+  (void)processors::replay(*functional.frame.log, machine, watched);
+
+  std::string text;
+  std::uint64_t left = options.most_bytes;
+  std::vector<std::unique_ptr<TextStream>> files;
+  for (const std::uint32_t node : nodes) {
+    const std::filesystem::path file = directory / fmt::format("node-{:05}.din", node);
+    files.push_back(std::make_unique<TextStream>(file));
+    try {
+      const Count count = write_trace(trace, node, left, *files.back());
+      left -= count.bytes;
+      text += describe(file, count);
+    } catch (const TooLong&) {
+      throw sim::UserError("the traces take more than --limit = " +
+                           sim::print_size(static_cast<std::int64_t>(options.most_bytes)) +
+                           "; choose fewer nodes with --nodes, or raise it");
+    }
+  }
+  const SignalsHeld held;
+  for (const std::unique_ptr<TextStream>& file : files) {
+    file->commit();
+  }
+  return text;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,210 @@
+#include "studies/run/verify_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "processors/program/shading.h"
+#include "sim/error.h"
+#include "studies/host/image_file.h"
+#include "studies/run/plan/make_plan.h"
+
+namespace marti::studies {
+
+namespace {
+
+// The words of one row without what is to go, and where each pixel begins in them.
+processors::LogRow strip_row(const std::vector<bool>& materials, const processors::LogRow& row) {
+  using processors::Step;
+  processors::LogRow kept;
+  bool unlit = false;    // the point at hand is one of these materials
+  bool leaving = false;  // inside a ray that goes
+  std::size_t pixel = 0;
+  std::size_t at = 0;
+  for (; at < row.words.size(); at += processors::step_words(&row.words[at])) {
+    for (; row.begin[pixel] <= at && pixel + 1 < row.begin.size(); ++pixel) {
+      kept.begin.push_back(static_cast<std::uint32_t>(kept.words.size()));
+    }
+    const Step step = processors::step_of(row.words[at]);
+    const std::uint32_t operand = processors::operand_of(row.words[at]);
+    if (step == Step::shade) {
+      unlit = operand < materials.size() && materials[operand];
+    } else if (step == Step::ray) {
+      leaving = unlit && static_cast<processors::RayKind>(operand & 3U) == processors::RayKind::shadow;
+    }
+    const bool visit = processors::visits_node(step) || step == Step::pass || step == Step::ray;
+    if ((leaving && visit) || (unlit && step == Step::light)) {
+      continue;
+    }
+    for (std::size_t word = 0; word < processors::step_words(&row.words[at]); ++word) {
+      kept.words.push_back(row.words[at + word]);
+    }
+  }
+  kept.begin.resize(row.begin.size(), static_cast<std::uint32_t>(kept.words.size()));
+  return kept;
+}
+
+std::string difference_of_images(const processors::Image& a, const processors::Image& b) {
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    for (int channel = 0; channel < 3; ++channel) {
+      if (std::bit_cast<std::uint32_t>(a.pixels[i][channel]) !=
+          std::bit_cast<std::uint32_t>(b.pixels[i][channel])) {
+        ++different;
+        break;
+      }
+    }
+  }
+  return different == 0 ? "" : fmt::format("{} pixels differ", different);
+}
+
+// What differs between the planned frame and one with more kept; `unlit`: the shadow rays that only the
+// latter may have.
+std::string difference_of_frames(const FunctionalRun& planned, const FunctionalRun& kept,
+                                 const std::vector<bool>* unlit) {
+  if (std::string pixels = difference_of_images(planned.frame.image, kept.frame.image); !pixels.empty()) {
+    return pixels;
+  }
+  if (unlit == nullptr && planned.frame.hit_hash != kept.frame.hit_hash) {
+    return "hits of rays differ";
+  }
+  return unlit == nullptr ? difference_of(*planned.frame.log, *kept.frame.log)
+                          : difference_of(*planned.frame.log, without_shadows_at(*unlit, *kept.frame.log));
+}
+
+std::string machine_of(const RunResult& result) {
+  return nlohmann::ordered_json::parse(json_of(result))["machine"].dump();
+}
+
+class Verifier {
+ public:
+  explicit Verifier(const RunResult& result) : result_(result) {
+    const FrameConfig& frame = result.frame_config;
+    scenes::OpenOptions open = frame.open;
+    open.gltf.size_only = size_of_image;
+    unlit_ = unlit_materials(scenes::open_scene(frame.scene, open, decode_image));
+  }
+
+  PlanVerdict verdict() {
+    for (const PlanEntry& entry : result_.functional.plan.entries) {
+      if (entry.decision == PlanDecision::left_out) {
+        attempt(name_of(entry.item), [&] { check(entry.item); });
+      }
+    }
+    for (const PlanItem item : {PlanItem::contention, PlanItem::cache}) {
+      check_machine(item);
+    }
+    attempt("all kept", [&] { check_all(); });
+    return std::move(verdict_);
+  }
+
+ private:
+  void say(std::string_view what, const std::string& difference, std::string_view proof) {
+    verdict_.holds = verdict_.holds && difference.empty();
+    verdict_.text += fmt::format("{:<14}{}: {}\n", verdict_.text.empty() ? "verified" : "", what,
+                                 difference.empty() ? std::string(proof) : "DIFFERS: " + difference);
+  }
+
+  // What is kept may be a part of a file that cannot be read: then there is nothing to compare with.
+  template <class Check>
+  void attempt(std::string_view what, const Check& compare) {
+    try {
+      compare();
+    } catch (const sim::UserError& error) {
+      verdict_.text += fmt::format("{:<14}{}: not verified, it cannot be kept: {}\n",
+                                   verdict_.text.empty() ? "verified" : "", what, error.what());
+    }
+  }
+
+  void check(PlanItem item) {
+    FrameConfig config = result_.frame_config;
+    config.keep.keep(item);
+    const FunctionalRun kept = run_functional(config);
+    const bool shadows = item == PlanItem::shadow_rays;
+    const std::string difference =
+        difference_of_frames(result_.functional, kept, shadows ? &unlit_ : nullptr);
+    const std::uint64_t more = kept.frame.rays.all() - result_.functional.frame.rays.all();
+    say(name_of(item), difference,
+        more == 0 ? "same image, same hits, same work log"
+                  : fmt::format("same image; without the {} shadow rays more that are sent when it is kept, "
+                                "the same work log",
+                                more));
+  }
+
+  // Items of the machine change nothing of the frame, which need not be rendered again.
+  void check_machine(PlanItem item) {
+    const auto& entries = result_.plan.entries;
+    const bool left_out = std::any_of(entries.begin(), entries.end(), [&](const PlanEntry& entry) {
+      return entry.item == item && entry.decision == PlanDecision::left_out;
+    });
+    if (left_out) {
+      KeptItems keep = result_.frame_config.keep;
+      keep.keep(item);
+      const bool same = machine_of(result_) == machine_of(time_again(result_, keep));
+      say(name_of(item), same ? "" : "figures of the machine differ",
+          "every figure of the machine is the same");
+    }
+  }
+
+  void check_all() {
+    const RunResult all = run_again(result_, KeptItems::all());
+    const bool same_rays = all.functional.frame.hit_hash == result_.functional.frame.hit_hash;
+    std::string difference =
+        difference_of_frames(result_.functional, all.functional, same_rays ? nullptr : &unlit_);
+    if (difference.empty() && same_rays && machine_of(result_) != machine_of(all)) {
+      difference = "figures of the machine differ";
+    }
+    say("all kept", difference,
+        same_rays ? "same image, same hits, same work log, and every figure of the machine is the same"
+                  : "same image, the same work log but for these rays; the machine's figures are those of "
+                    "other rays and are not compared");
+  }
+
+  const RunResult& result_;
+  std::vector<bool> unlit_;
+  PlanVerdict verdict_;
+};
+
+}  // namespace
+
+processors::WorkLog without_shadows_at(const std::vector<bool>& materials, const processors::WorkLog& log) {
+  processors::WorkLog kept = log;
+  for (processors::LogRow& row : kept.rows) {
+    row = strip_row(materials, row);
+  }
+  return kept;
+}
+
+std::vector<bool> unlit_materials(const scenes::Scene& scene) {
+  std::vector<bool> unlit;
+  for (const scenes::Material& material : scene.materials) {
+    unlit.push_back(processors::asks_lights(material) && !processors::shows_light(material));
+  }
+  return unlit;
+}
+
+std::string difference_of(const processors::WorkLog& a, const processors::WorkLog& b) {
+  if (a.traversal != b.traversal || a.mailboxes != b.mailboxes || a.width != b.width ||
+      a.height != b.height || a.samples != b.samples || a.primitives != b.primitives ||
+      a.quadrics != b.quadrics || a.materials != b.materials || a.voxels != b.voxels ||
+      a.lights != b.lights || a.texture_begin != b.texture_begin || a.rows.size() != b.rows.size()) {
+    return "the work logs are of other databases";
+  }
+  if (a.topology.nodes != b.topology.nodes || a.topology.entries != b.topology.entries) {
+    return "the work logs are of other trees";
+  }
+  for (std::size_t y = 0; y < a.rows.size(); ++y) {
+    if (a.rows[y].words != b.rows[y].words || a.rows[y].begin != b.rows[y].begin) {
+      return fmt::format("the work logs differ in row {}", y);
+    }
+  }
+  return "";
+}
+
+PlanVerdict verify_plan(const RunResult& result) { return Verifier(result).verdict(); }
+
+}  // namespace marti::studies

@@ -1,0 +1,25 @@
+// What is said about classes of misses, sharing of lines and attribution: in the summary, in result.json and
+// as a table of its own.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "processors/machine/machine_config.h"
+#include "processors/replay/replay.h"
+#include "studies/tables/table.h"
+
+namespace marti::studies {
+
+/// The field machine.counts, as docs/result-schema.md describes it.
+[[nodiscard]] nlohmann::ordered_json counts_json(const processors::MachineConfig& machine,
+                                                 const processors::CacheCountResult& counts);
+
+/// Lines of the summary; empty when nothing was asked for.
+[[nodiscard]] std::string counts_lines(const processors::MachineConfig& machine,
+                                       const processors::CacheCountResult& counts);
+
+/// The table "attribution": a row for each cell that is not empty.
+[[nodiscard]] Table attribution_table(const std::vector<processors::AttributionRow>& rows);
+
+}  // namespace marti::studies

@@ -1,0 +1,78 @@
+#include "studies/show/output.h"
+
+#include <map>
+
+#include "sim/files.h"
+#include "sim/sha256.h"
+#include "studies/host/image_file.h"
+#include "studies/host/signals_held.h"
+#include "studies/run/record/heat_files.h"
+#include "studies/show/count_output.h"
+#include "studies/show/working_set_output.h"
+#include "studies/tables/csv.h"
+#include "studies/tables/pending_files.h"
+#include "studies/tables/run_files.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr const char* timeline_name = "timeline.json";
+
+void add_image(const processors::Image& image, const std::string& name, PendingFiles& files) {
+  write_exr(image, files.add(name + ".exr"));
+  write_png(image, files.add(name + ".png"));
+}
+
+void add_files(const RunResult& result, PendingFiles& files) {
+  add_image(result.functional.frame.image, "image", files);
+  if (result.functional.voxel_cut && result.functional.voxel_cut->exact) {
+    add_image(result.functional.voxel_cut->exact->image, "exact", files);
+  }
+  if (result.heat_map) {
+    add_heat_files(*result.heat_map, files);
+  }
+  if (result.timed.counts.attribution) {
+    files.write("attribution.csv", csv_of(attribution_table(*result.timed.counts.attribution)));
+  }
+  if (result.working_set) {
+    const Table table = working_set_table(*result.working_set);
+    files.write("working_set.csv", csv_of(table));
+    files.write("working_set.vl.json", working_set_chart(table));
+  }
+}
+
+}  // namespace
+
+void prepare_output(const std::filesystem::path& directory) {
+  sim::make_directory(directory);
+  const sim::PendingFile probe(directory / "probe");
+}
+
+WrittenRun write_output(const RunResult& result, const std::filesystem::path& directory) {
+  const SignalsHeld held;
+  const std::map<std::string, std::string> earlier = files_of_run_in(directory);
+  PendingFiles files(directory);
+  add_files(result, files);
+  std::map<std::string, std::string> hashes = files.hashes();
+  if (result.timeline) {
+    hashes[timeline_name] = sim::sha256_of_file(result.timeline->temporary());
+  }
+  WrittenRun written{{}, json_of(result, hashes)};
+  files.write("result.json", written.json);
+  if (result.timeline) {
+    result.timeline->commit();
+  }
+  written.files = files.commit();
+  if (result.timeline) {
+    written.files.push_back(directory / timeline_name);
+  }
+  for (const auto& [name, hash] : earlier) {
+    if (!hashes.contains(name)) {
+      remove_run_file(directory / name, hash);
+    }
+  }
+  return written;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,26 @@
+// Writing a run's files: all or, as far as a file system allows, none.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "studies/run/run_result.h"
+
+namespace marti::studies {
+
+/// Makes sure that `directory` exists and can be written to, so that a long run does not end in a refusal.
+void prepare_output(const std::filesystem::path& directory);
+
+struct WrittenRun {
+  std::vector<std::filesystem::path> files;
+  std::string json;  ///< of the result, as result.json has it
+};
+
+/// Writes image.exr, image.png and result.json, and exact.exr and exact.png of a run with
+/// image.voxel_cut_reference, and what the run has recorded, under temporary names and renames them together
+/// at the end; then files of an earlier run go that this one has not. Signals that end the program wait until
+/// that is done. Throws UserError with the reason; older results stay as they were then.
+WrittenRun write_output(const RunResult& result, const std::filesystem::path& directory);
+
+}  // namespace marti::studies

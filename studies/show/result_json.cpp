@@ -1,0 +1,266 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "studies/run/plan/plan_output.h"
+#include "studies/run/run_result.h"
+#include "studies/show/build_output.h"
+#include "studies/show/cache_output.h"
+#include "studies/show/context_output.h"
+#include "studies/show/count_output.h"
+#include "studies/show/flow_output.h"
+#include "studies/show/json_parts.h"
+#include "studies/show/scaling_output.h"
+#include "studies/show/working_set_output.h"
+#include "studies/tables/json_table.h"
+#include "studies/version.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int schema_version = 1;
+// Beyond this many nodes or clusters their own figures are left out: sums remain.
+constexpr std::size_t most_listed = 4096;
+
+Json hash(std::uint64_t value) { return fmt::format("{:016x}", value); }
+
+template <class Names, class Values>
+Json named(const Names& names, const Values& values) {
+  Json object = Json::object();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    object[std::string(names[i])] = values[i];
+  }
+  return object;
+}
+
+Json scene_json(const RunResult& r) {
+  const scenes::SceneFacts& s = r.functional.scene;
+  Json bounds = nullptr;
+  if (!s.bounds.empty()) {
+    bounds = {{"lo", {s.bounds.lo.x, s.bounds.lo.y, s.bounds.lo.z}},
+              {"hi", {s.bounds.hi.x, s.bounds.hi.y, s.bounds.hi.z}}};
+  }
+  return {{"source", r.frame_config.scene},
+          {"name", s.name},
+          {"polygons", s.polygons},
+          {"triangles", s.triangles},
+          {"spheres", s.spheres},
+          {"cylinders", s.cylinders},
+          {"cones", s.cones},
+          {"vertices", s.vertices},
+          {"materials", s.materials},
+          {"textures", s.textures},
+          {"lights", s.lights},
+          {"bounds", bounds},
+          {"notes", r.functional.notes}};
+}
+
+Json structure_json(const RunResult& r) {
+  const accel::Topology& topology = r.functional.frame.log->topology;
+  Json levels = Json::array();
+  for (const accel::LevelStatistics& level : r.functional.levels) {
+    levels.push_back({{"branches", level.branches},
+                      {"leaves", level.leaves},
+                      {"empty_leaves", level.empty_leaves},
+                      {"entries", level.entries},
+                      {"overfull_leaves", level.overfull_leaves}});
+  }
+  return {{"kind", r.frame_config.structure},
+          {"nodes", topology.nodes.size()},
+          {"entries", topology.entries.size()},
+          {"traversal", accel::traversal_names[static_cast<std::size_t>(r.functional.frame.log->traversal)]},
+          {"mailboxes", r.functional.frame.log->mailboxes},
+          {"notes", r.functional.structure_notes},
+          {"levels", levels}};
+}
+
+Json image_json(const RunResult& r) {
+  const processors::Frame& frame = r.functional.frame;
+  const auto& kinds = processors::ray_kind_names;
+  return {{"width", frame.image.width},
+          {"height", frame.image.height},
+          {"rays", named(kinds, frame.rays.traced)},
+          {"hits", named(kinds, frame.rays.hit)},
+          {"image_hash", hash(r.functional.image_hash)},
+          {"hit_hash", hash(frame.hit_hash)}};
+}
+
+Json log_json(const processors::LogTotals& t) {
+  return {{"bytes", t.bytes},     {"branches", t.branches}, {"leaves", t.leaves}, {"tests", t.tests},
+          {"lookups", t.lookups}, {"shades", t.shades},     {"lights", t.lights}, {"texels", t.texels},
+          {"cuts", t.cuts},       {"passes", t.passes}};
+}
+
+Json use_json(const DatabaseUse& use) {
+  return {{"nodes", use.nodes},
+          {"entries", use.entries},
+          {"primitives", use.primitives},
+          {"voxels", use.voxels},
+          {"level_nodes", use.level_nodes}};
+}
+
+Json voxel_json(const RunResult& r) {
+  if (!r.functional.voxel_cut) {
+    return nullptr;
+  }
+  const VoxelReport& report = *r.functional.voxel_cut;
+  Json exact = nullptr;
+  if (report.exact) {
+    const ImageError& error = report.exact->error;
+    exact = {{"rmse", error.rmse},
+             {"largest", error.largest},
+             {"changed_pixels", error.changed},
+             {"visible_pixels", error.visible},
+             {"work_log", log_json(report.exact->totals)},
+             {"rays", report.exact->totals.rays},
+             {"use", use_json(report.exact->use)}};
+  }
+  const processors::Frame& frame = r.functional.frame;
+  return {{"threshold_pixels", r.frame_config.render.voxel_cut},
+          {"voxels", frame.voxels},
+          {"first_level", frame.first_voxel_level},
+          {"rays", named(processors::ray_kind_names, frame.rays.voxels)},
+          {"use", use_json(report.use)},
+          {"exact", exact}};
+}
+
+Json wait_json(const memory::WaitStatistics& w) {
+  Json object = counters_json(w);
+  Json buckets = Json::array();
+  for (const auto& bucket : w.histogram.buckets()) {
+    buckets.push_back({bucket.lowest, bucket.highest, bucket.count});
+  }
+  object["histogram_ps"] = buckets;
+  return object;
+}
+
+Json reference_json(const processors::MachineResult& result) {
+  const processors::ReferenceCounts counts = result.references();
+  const auto records = processors::records_of(result.steps());
+  Json object = Json::object();
+  for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
+    object[std::string(memory::record_kind_names[kind])] = {
+        {"records", records[kind]}, {"hits", counts.hits[kind]}, {"misses", counts.misses[kind]}};
+  }
+  return object;
+}
+
+Json clusters_json(const processors::MachineResult& result) {
+  if (result.clusters.size() > most_listed) {
+    return nullptr;
+  }
+  Json clusters = Json::array();
+  for (const processors::ClusterResult& cluster : result.clusters) {
+    Json interconnect = counters_json(cluster.interconnect);
+    interconnect["waits"] = wait_json(cluster.interconnect.waits);
+    Json banks = nullptr;
+    if (cluster.banks.size() <= most_listed) {
+      banks = Json::array();
+      for (const memory::BankStatistics& bank : cluster.banks) {
+        banks.push_back(counters_json(bank));
+        banks.back()["waits"] = wait_json(bank.waits);
+      }
+    }
+    clusters.push_back({{"interconnect", interconnect}, {"banks", banks}});
+    if (cluster.distributed) {
+      Json network = counters_json(cluster.distributed->network);
+      network["waits"] = wait_json(cluster.distributed->network.waits);
+      clusters.back()["distributed"] = counters_json(cluster.distributed->accesses);
+      clusters.back()["distributed"]["network"] = network;
+    }
+  }
+  return clusters;
+}
+
+Json nodes_json(const processors::MachineResult& result) {
+  if (result.nodes.size() > most_listed) {
+    return nullptr;
+  }
+  Json nodes = Json::array();
+  for (const processors::NodeStatistics& node : result.nodes) {
+    Json object = counters_json(node);
+    object["hits"] = node.references.all_hits();
+    object["misses"] = node.references.all_misses();
+    object["steps"] = counters_json(node.steps);
+    object["time_ps"] = named(processors::activity_names, node.time);
+    nodes.push_back(object);
+  }
+  return nodes;
+}
+
+Json files_json(const std::map<std::string, std::string>& files) {
+  Json object = Json::object();
+  for (const auto& [name, hash] : files) {
+    object[name] = {{"sha256", hash}};
+  }
+  return object;
+}
+
+}  // namespace
+
+std::string json_of(const RunResult& r, const std::map<std::string, std::string>& files) {
+  const processors::MachineResult& timed = r.timed;
+  const Utilisation used = utilisation_of(r.machine, timed);
+  Json machine = {
+      {"scheme", processors::scheme_names[static_cast<std::size_t>(r.machine.scheme)]},
+      {"clusters", r.machine.clusters},
+      {"nodes", r.machine.nodes},
+      {"frame_time_ps", timed.end},
+      {"node_clock_period_ps", r.machine.clock.period()},
+      {"one_node_time_ps", r.scaling.one_node_end},
+      {"speed_up", optional_json(r.scaling.speed_up)},
+      {"efficiency", optional_json(r.scaling.efficiency)},
+      {"karp_flatt_serial_fraction", optional_json(r.scaling.serial_fraction)},
+      {"speed_up_loss", loss_json(r)},
+      {"bounds", bounds_json(r)},
+      {"limit",
+       {{"what", name_of(r.finding.limit)}, {"share", r.finding.share}, {"sentence", r.finding.sentence}}},
+      {"interconnect_utilisation", optional_json(used.interconnect)},
+      {"busiest_bank_utilisation", used.bank},
+      {"mean_bank_utilisation", used.mean_bank},
+      {"packets", timed.packets},
+      {"host", counters_json(timed.host)},
+      {"database_bytes", timed.database_bytes},
+      {"database_copies", timed.copies},
+      {"unloaded_miss_ps", timed.unloaded_miss},
+      {"time_ps", named(processors::activity_names, timed.time())},
+      {"steps", counters_json(timed.steps())},
+      {"references", reference_json(timed)},
+      {"per_cluster", clusters_json(timed)},
+      {"per_node", nodes_json(timed)}};
+  if (timed.build.sharing != processors::Sharing::given) {
+    machine["build"] = build_json(timed.build, timed.nodes.size() <= most_listed);
+  }
+  if (r.machine.scheme != processors::Scheme::image) {
+    machine["flow"] = flow_json(r.machine, timed, timed.nodes.size() <= most_listed);
+  }
+  if (r.machine.l2.sharing != processors::SecondLevel::none) {
+    machine["l2"] = second_level_json(r.machine, timed, timed.l2.caches.size() <= most_listed);
+  }
+  if (r.machine.count.any()) {
+    machine["counts"] = counts_json(r.machine, timed.counts);
+  }
+  if (r.working_set) {
+    machine["working_set"] = working_set_json(*r.working_set);
+  }
+  if (!timed.contexts.nodes.empty()) {
+    machine["contexts"] = context_json(r.machine, timed.contexts, timed.nodes.size() <= most_listed);
+  }
+  const Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
+                       {"config", config_json(r.config_name, r.values)},
+                       {"scene", scene_json(r)},
+                       {"structure", structure_json(r)},
+                       {"image", image_json(r)},
+                       {"work_log", log_json(r.functional.totals)},
+                       {"voxel_cut", voxel_json(r)},
+                       {"plan", plan_json(r.plan)},
+                       {"machine", machine},
+                       {"files", files_json(files)}};
+  return json_text(result);
+}
+
+}  // namespace marti::studies

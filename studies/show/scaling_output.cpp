@@ -1,0 +1,145 @@
+#include "studies/show/scaling_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "studies/tables/text_units.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double ticks(sim::Ticks value) { return static_cast<double>(value); }
+
+// The resource that bounds the frame.
+std::string_view binding(const RunResult& r) {
+  const processors::FrameBounds& bounds = r.bounds;
+  const sim::Ticks least = bounds.least();
+  if (least == bounds.node_work) {
+    return "node_work";
+  }
+  return least == bounds.interconnect ? "interconnect" : "bank";
+}
+
+}  // namespace
+
+Json loss_json(const RunResult& r) {
+  Json parts = Json::object();
+  Json speed_up = Json::object();
+  for (std::size_t i = 0; i < losses; ++i) {
+    parts[std::string(loss_names[i])] = r.loss.parts[i];
+    speed_up[std::string(loss_names[i])] =
+        r.timed.end > 0 ? Json(ticks(r.loss.parts[i]) / ticks(r.timed.end)) : Json(nullptr);
+  }
+  return {{"total_ps", r.loss.total}, {"parts_ps", parts}, {"lost_speed_up", speed_up}};
+}
+
+Json bounds_json(const RunResult& r) {
+  const processors::FrameBounds& b = r.bounds;
+  Json prediction = nullptr;
+  if (r.prediction) {
+    const processors::Prediction& p = *r.prediction;
+    const std::optional<double> saturation = p.network.saturation();
+    prediction = {{"cluster", p.cluster},
+                  {"reads", p.reads},
+                  {"nodes", p.network.customers},
+                  {"think_ps", p.network.think},
+                  {"demand_ps", p.network.demand()},
+                  {"largest_demand_ps", p.network.largest()},
+                  {"queues", p.network.demands.size()},
+                  {"saturation_nodes", saturation ? Json(*saturation) : Json(nullptr)},
+                  {"asymptotic_ps", p.asymptotic_low},
+                  {"balanced_job_ps", {p.balanced_low, p.balanced_high}},
+                  {"mean_value_ps", p.mean_value},
+                  {"mean_value_error", p.mean_value / ticks(r.timed.end) - 1.0},
+                  {"exact", p.exact}};
+  }
+  return {{"frame_time_at_least_ps", b.least()},
+          {"by", binding(r)},
+          {"node_work_ps", b.node_work},
+          {"busiest_node", b.busiest_node},
+          {"mean_node_work_ps", b.mean_work},
+          {"interconnect_ps", b.interconnect},
+          {"bank_ps", b.bank},
+          {"prediction", prediction}};
+}
+
+std::string loss_lines(const RunResult& r) {
+  const double n = r.scaling.nodes;
+  if (r.scaling.nodes == 1 || !r.scaling.speed_up) {
+    return "";
+  }
+  std::string text = fmt::format("\nlost speed-up {:.2f} of {}: n - s, and its share of the nodes' time\n",
+                                 n - *r.scaling.speed_up, r.scaling.nodes);
+  for (std::size_t i = 0; i < losses; ++i) {
+    std::string name(loss_names[i]);
+    std::replace(name.begin(), name.end(), '_', ' ');
+    const double part = ticks(r.loss.parts[i]) / ticks(r.timed.end);
+    text += fmt::format("  {:<14}{:>12.2f} {:>9.2f} %\n", name, part, 100.0 * part / n);
+  }
+  return text;
+}
+
+std::string bound_lines(const RunResult& r) {
+  const processors::FrameBounds& b = r.bounds;
+  if (r.timed.end == 0) {
+    return "";
+  }
+  std::string text =
+      fmt::format("\nbounds        at least {} ({:.1f} % of the frame time): a node's own work {}",
+                  seconds(b.least()), 100.0 * ticks(b.least()) / ticks(r.timed.end), seconds(b.node_work));
+  if (b.interconnect > 0) {
+    const bool bus = r.machine.interconnect.kind == memory::InterconnectKind::bus &&
+                     r.machine.placement != processors::Placement::distributed;
+    text += fmt::format(", {} {}", bus ? "the bus" : "a link", seconds(b.interconnect));
+  }
+  if (b.bank > 0) {
+    text += fmt::format(", a bank {}", seconds(b.bank));
+  }
+  text += "\n";
+  if (!r.prediction) {
+    return text;
+  }
+  const processors::Prediction& p = *r.prediction;
+  const auto frame = [](double picoseconds) { return seconds(static_cast<sim::Ticks>(picoseconds)); };
+  text += fmt::format("predicted     {} by {}mean value analysis ({:+.1f} %), {} to {} by balanced jobs\n",
+                      frame(p.mean_value), p.exact ? "" : "approximate ",
+                      100.0 * (p.mean_value / ticks(r.timed.end) - 1.0), frame(p.balanced_low),
+                      frame(p.balanced_high));
+  if (const std::optional<double> saturation = p.network.saturation()) {
+    text += fmt::format(
+        "  saturation  from {:.1f} nodes{}: {} between reads, {} a read in the busiest queue\n", *saturation,
+        r.machine.clusters > 1 ? " a cluster" : "", frame(p.network.think), frame(p.network.largest()));
+  }
+  return text;
+}
+
+std::string record_lines(const RunResult& r) {
+  std::string text;
+  if (r.heat_map) {
+    for (std::size_t i = 0; i < heats; ++i) {
+      const Legend legend = legend_of(r.heat_map->figures(static_cast<Heat>(i)));
+      text += fmt::format(
+          "{}{:<14}{:<6} dark 0, bright {:.0f} or more (1 % of the pixels); mean {:.1f}, most {:.0f}\n",
+          i == 0 ? "\n" : "", i == 0 ? "heat map" : "", heat_names[i], legend.brightest, legend.mean,
+          legend.largest);
+    }
+  }
+  if (r.timeline) {
+    text += fmt::format("\ntimeline      {} slices", r.timeline->events());
+    if (const std::optional<sim::Ticks> cut = r.timeline->cut_at()) {
+      text += fmt::format(
+          ", cut there: from {} on it is not complete; raise record.timeline_events or narrow it by "
+          "record.timeline_from and record.timeline_to",
+          seconds(*cut));
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,21 @@
+// What is said about speed-up and bounds: in the summary and in result.json.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "studies/run/run_result.h"
+
+namespace marti::studies {
+
+/// The fields machine.speed_up_loss and machine.bounds, as docs/result-schema.md describes them.
+[[nodiscard]] nlohmann::ordered_json loss_json(const RunResult& result);
+[[nodiscard]] nlohmann::ordered_json bounds_json(const RunResult& result);
+
+/// Lines of the summary. The loss has none on one node, or when the frame takes no time.
+[[nodiscard]] std::string loss_lines(const RunResult& result);
+[[nodiscard]] std::string bound_lines(const RunResult& result);
+/// What was recorded; empty when nothing was.
+[[nodiscard]] std::string record_lines(const RunResult& result);
+
+}  // namespace marti::studies

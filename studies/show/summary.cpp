@@ -1,0 +1,279 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "sim/units.h"
+#include "studies/run/plan/plan_output.h"
+#include "studies/run/run_result.h"
+#include "studies/show/build_output.h"
+#include "studies/show/cache_output.h"
+#include "studies/show/context_output.h"
+#include "studies/show/count_output.h"
+#include "studies/show/flow_output.h"
+#include "studies/show/scaling_output.h"
+#include "studies/show/working_set_output.h"
+#include "studies/tables/text_units.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Lines = std::back_insert_iterator<std::string>;
+
+// 1234567 -> 1,234,567
+std::string grouped(std::int64_t value) {
+  std::string digits = std::to_string(value);
+  const std::size_t first = digits[0] == '-' ? 1 : 0;
+  for (std::size_t at = digits.size(); at > first + 3;) {
+    at -= 3;
+    digits.insert(at, 1, ',');
+  }
+  return digits;
+}
+
+std::string grouped(std::uint64_t value) { return grouped(static_cast<std::int64_t>(value)); }
+
+// "1 node", "16 nodes"
+std::string counted(std::uint64_t count, std::string_view what) {
+  return fmt::format("{} {}{}", grouped(count), what, count == 1 ? "" : "s");
+}
+
+std::string ratio(std::optional<double> value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : "-";
+}
+
+std::string percent(double part, double whole) {
+  return whole > 0.0 ? fmt::format("{:.2f} %", 100.0 * part / whole) : "-";
+}
+
+void scene_lines(Lines out, const RunResult& r) {
+  const scenes::SceneFacts& scene = r.functional.scene;
+  fmt::format_to(out, "scene         {}: {} polygons, {} triangles", r.frame_config.scene,
+                 grouped(scene.polygons), grouped(scene.triangles));
+  for (const auto& [count, name] : {std::pair{scene.spheres, "sphere"},
+                                    std::pair{scene.cylinders, "cylinder"}, std::pair{scene.cones, "cone"}}) {
+    if (count > 0) {
+      fmt::format_to(out, ", {}", counted(count, name));
+    }
+  }
+  fmt::format_to(out, ", {} materials, {} lights\n", scene.materials, scene.lights);
+  for (const std::string& note : r.functional.notes) {
+    fmt::format_to(out, "  note        {}\n", note);
+  }
+  const processors::WorkLog& log = *r.functional.frame.log;
+  fmt::format_to(out, "structure     {}: {} nodes, {} object references", r.frame_config.structure,
+                 grouped(log.topology.nodes.size()), grouped(log.topology.entries.size()));
+  if (!r.functional.levels.empty()) {
+    fmt::format_to(out, ", {} levels", r.functional.levels.size());
+  }
+  for (const std::string& note : r.functional.structure_notes) {
+    fmt::format_to(out, "\n  note        {}", note);
+  }
+  const processors::LogTotals& totals = r.functional.totals;
+  const double rays = static_cast<double>(totals.all_rays());
+  fmt::format_to(out,
+                 "\nimage         {} x {}, {}{} rays (camera {}, shadow {}, reflection {}, refraction {})\n",
+                 log.width, log.height,
+                 log.samples == 1 ? std::string() : fmt::format("{} samples a pixel, ", log.samples),
+                 grouped(totals.all_rays()), grouped(totals.rays[0]), grouped(totals.rays[1]),
+                 grouped(totals.rays[2]), grouped(totals.rays[3]));
+  fmt::format_to(out, "work log      {}, {:.1f} bytes and {:.1f} steps a ray\n",
+                 bytes(static_cast<double>(totals.bytes)), static_cast<double>(totals.bytes) / rays,
+                 static_cast<double>(totals.all_steps()) / rays);
+}
+
+void voxel_lines(Lines out, const RunResult& r) {
+  if (!r.functional.voxel_cut) {
+    return;
+  }
+  const VoxelReport& report = *r.functional.voxel_cut;
+  const processors::Frame& frame = r.functional.frame;
+  fmt::format_to(out, "voxel cut     below {:g} pixels: ", r.frame_config.render.voxel_cut);
+  if (frame.voxels == 0) {
+    fmt::format_to(out, "no cell of the tree is that small\n");
+  } else {
+    const double rays = static_cast<double>(frame.rays.all() - frame.rays.traced[1]);
+    const std::uint64_t taken = frame.rays.voxels[0] + frame.rays.voxels[2] + frame.rays.voxels[3];
+    fmt::format_to(out, "{} voxels from level {} on; {} rays saw one ({} of all but shadow rays)\n",
+                   grouped(std::uint64_t{frame.voxels}), frame.first_voxel_level, grouped(taken),
+                   percent(static_cast<double>(taken), rays));
+  }
+  const auto use = [&](std::string_view name, const DatabaseUse& u, const processors::LogTotals& totals) {
+    const accel::Topology& topology = frame.log->topology;
+    const memory::LayoutConfig& layout = r.machine.layout;
+    const auto share = [](std::uint64_t part, std::size_t whole) {
+      return percent(static_cast<double>(part), static_cast<double>(whole));
+    };
+    const std::uint64_t needed = u.nodes * layout.node_bytes + u.entries * layout.entry_bytes +
+                                 u.primitives * layout.primitive_bytes + u.voxels * layout.material_bytes;
+    fmt::format_to(out, "  {:<12}reads {} nodes ({}), {} of the lists, {} of the primitives, {} voxels: {}\n",
+                   name, grouped(u.nodes), share(u.nodes, topology.nodes.size()),
+                   share(u.entries, topology.entries.size()), share(u.primitives, frame.log->primitives),
+                   grouped(u.voxels), bytes(static_cast<double>(needed)));
+    fmt::format_to(out, "  {:<12}{} steps, {:.1f} a ray\n", "", grouped(totals.all_steps()),
+                   static_cast<double>(totals.all_steps()) / static_cast<double>(totals.all_rays()));
+  };
+  use("cut", report.use, r.functional.totals);
+  if (report.exact) {
+    const ImageError& error = report.exact->error;
+    const auto pixels = static_cast<double>(frame.image.pixels.size());
+    use("exact", report.exact->use, report.exact->totals);
+    fmt::format_to(out,
+                   "  {:<12}RMSE {:.5f}, largest {:.3f}, {} of the pixels changed, {} by more than 1/255\n",
+                   "error", error.rmse, error.largest, percent(static_cast<double>(error.changed), pixels),
+                   percent(static_cast<double>(error.visible), pixels));
+  }
+}
+
+void machine_lines(Lines out, const RunResult& r) {
+  const processors::MachineConfig& machine = r.machine;
+  fmt::format_to(out, "machine       {} of {}, {} scheme, {} of {} x {}\n",
+                 counted(machine.clusters, "cluster"), counted(machine.nodes, "node"),
+                 processors::scheme_names[static_cast<std::size_t>(machine.scheme)],
+                 counted(r.timed.packets, "packet"), machine.packets.width, machine.packets.height);
+  const bool spread = machine.placement == processors::Placement::distributed;
+  fmt::format_to(out, "database      {}, {} cop{}: {} in all{}\n",
+                 bytes(static_cast<double>(r.timed.database_bytes)), grouped(r.timed.copies),
+                 r.timed.copies == 1 ? "y" : "ies",
+                 bytes(static_cast<double>(r.timed.database_bytes) * static_cast<double>(r.timed.copies)),
+                 spread ? fmt::format(", spread over {} in units of {}", counted(machine.nodes, "node"),
+                                      bytes(machine.distribution.interleave))
+                        : "");
+  fmt::format_to(out, "\nframe time    {} = {} node cycles\n", seconds(r.timed.end),
+                 grouped(r.timed.end / machine.clock.period()));
+  fmt::format_to(out, "speed-up      {} on {}, efficiency {}, serial fraction (Karp-Flatt) {}\n",
+                 ratio(r.scaling.speed_up, 2), counted(r.scaling.nodes, "node"),
+                 ratio(r.scaling.efficiency, 3), ratio(r.scaling.serial_fraction, 4));
+  fmt::format_to(out, "one node      {}\n", seconds(r.scaling.one_node_end));
+}
+
+void time_lines(Lines out, const RunResult& r) {
+  const processors::TimeDivision time = r.timed.time();
+  const double all = static_cast<double>(r.timed.end) * static_cast<double>(r.timed.nodes.size());
+  fmt::format_to(out, "\nwhere the nodes' time goes\n");
+  for (std::size_t i = 0; i < processors::activities; ++i) {
+    if (time[i] != 0) {
+      fmt::format_to(out, "  {:<20}{:>9}\n", processors::activity_names[i],
+                     percent(static_cast<double>(time[i]), all));
+    }
+  }
+}
+
+// "mean wait 0.1 us, ..." of what waited at a queue.
+std::string waiting(const memory::WaitStatistics& w) {
+  if (w.count == 0) {
+    return "no transactions";
+  }
+  return fmt::format("mean wait {}, 95 % below {}, longest {}", seconds(w.sum / w.count),
+                     seconds(w.histogram.percentile(95.0).value_or(0)), seconds(w.max));
+}
+
+void gather(memory::WaitStatistics& into, const memory::WaitStatistics& from) {
+  into.count += from.count;
+  into.sum = sim::add_ticks(into.sum, from.sum);
+  into.max = std::max(into.max, from.max);
+  into.histogram.merge(from.histogram);
+}
+
+void distribution_lines(Lines out, const RunResult& r, const Utilisation& used) {
+  memory::DistributedStatistics accesses;
+  memory::NetworkStatistics network;
+  for (const processors::ClusterResult& cluster : r.timed.clusters) {
+    sim::merge(accesses, cluster.distributed->accesses);
+    sim::merge(network, cluster.distributed->network);
+    gather(network.waits, cluster.distributed->network.waits);
+  }
+  const std::int64_t remote = accesses.remote_reads + accesses.remote_writes;
+  const std::int64_t all = remote + accesses.local_reads + accesses.local_writes;
+  fmt::format_to(out,
+                 "\n{:<14}{} messages, {} with their headers, {:.1f} hops each; {} of the accesses remote\n",
+                 "network", grouped(network.messages), bytes(static_cast<double>(network.bytes)),
+                 sim::ratio(network.hops, network.messages).value_or(0.0),
+                 percent(static_cast<double>(remote), static_cast<double>(all)));
+  if (used.interconnect) {
+    fmt::format_to(out, "  {:<12}{:.1f} % of its links busy, {}\n",
+                   memory::network_kind_names[static_cast<std::size_t>(r.machine.network.kind)],
+                   100.0 * *used.interconnect, waiting(network.waits));
+  }
+}
+
+void memory_lines(Lines out, const RunResult& r) {
+  const processors::ReferenceCounts references = r.timed.references();
+  fmt::format_to(out, "\nreferences    {:>15} {:>15} {:>10}\n", "lines", "misses", "hit ratio");
+  const auto line = [&](std::string_view name, std::int64_t hits, std::int64_t misses) {
+    if (hits + misses > 0) {
+      fmt::format_to(out, "  {:<11} {:>15} {:>15} {:>10}\n", name, grouped(hits + misses), grouped(misses),
+                     percent(static_cast<double>(hits), static_cast<double>(hits + misses)));
+    }
+  };
+  for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
+    line(memory::record_kind_names[kind], references.hits[kind], references.misses[kind]);
+  }
+  line("all", references.all_hits(), references.all_misses());
+  fmt::format_to(out, "{}", second_level_line(r.machine, r.timed));
+  if (r.machine.scheme == processors::Scheme::space) {
+    return;  // nodes share no memory
+  }
+
+  const Utilisation used = utilisation_of(r.machine, r.timed);
+  memory::WaitStatistics waits;
+  memory::WaitStatistics bank_waits;
+  std::int64_t moved = 0;
+  for (const processors::ClusterResult& cluster : r.timed.clusters) {
+    gather(waits, cluster.interconnect.waits);
+    moved += cluster.interconnect.bytes;
+    for (const memory::BankStatistics& bank : cluster.banks) {
+      gather(bank_waits, bank.waits);
+    }
+  }
+  const bool distributed = r.machine.placement == processors::Placement::distributed;
+  const bool ideal = r.machine.interconnect.kind == memory::InterconnectKind::ideal;
+  if (ideal && !distributed) {
+    fmt::format_to(out, "\ninterconnect  ideal, {} moved\n", bytes(static_cast<double>(moved)));
+    return;
+  }
+  if (distributed) {
+    distribution_lines(out, r, used);
+  } else {
+    fmt::format_to(out, "\n{:<14}{:.1f} % busy, {}, {} moved\n", interconnect_name(r.machine),
+                   100.0 * used.interconnect.value_or(0.0), waiting(waits),
+                   bytes(static_cast<double>(moved)));
+  }
+  fmt::format_to(out, "{:<14}{:.1f} % busy (the busiest {:.1f} %), {}\n", distributed ? "memories" : "banks",
+                 100.0 * used.mean_bank, 100.0 * used.bank, waiting(bank_waits));
+}
+
+}  // namespace
+
+std::string scene_summary_of(const RunResult& r) {
+  std::string text;
+  scene_lines(std::back_inserter(text), r);
+  return text;
+}
+
+std::string summary_of(const RunResult& r) {
+  std::string text = scene_summary_of(r);
+  const Lines out = std::back_inserter(text);
+  voxel_lines(out, r);
+  text += plan_lines(r.plan);
+  machine_lines(out, r);
+  text += loss_lines(r);
+  time_lines(out, r);
+  memory_lines(out, r);
+  text += counts_lines(r.machine, r.timed.counts);
+  if (r.working_set) {
+    text += working_set_lines(*r.working_set);
+  }
+  text += context_lines(r.machine, r.timed.contexts);
+  text += build_lines(r.timed);
+  text += flow_lines(r.machine, r.timed);
+  text += bound_lines(r);
+  text += record_lines(r);
+  fmt::format_to(out, "\nlimited by    {}\n", r.finding.sentence);
+  return text;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,193 @@
+#include "studies/show/working_set_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sim/error.h"
+#include "studies/tables/chart.h"
+#include "studies/tables/text_units.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using processors::CacheWorkingSet;
+using processors::WorkingSet;
+
+struct Point {
+  std::uint64_t size = 0;  // lines or ways
+  std::int64_t misses = 0;
+};
+
+std::string_view name_of(const WorkingSet& set, std::size_t cache) {
+  return set.caches.size() == 1 ? std::string_view("unified") : processors::split_cache_names[cache];
+}
+
+double ratio(std::int64_t part, std::int64_t whole) {
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+}
+
+// The sizes that `keep` wants, from one line to the power of two at which all that is left is compulsory.
+template <class Keep>
+std::vector<Point> sizes_of(const memory::StackHistogram& distances, const Keep& keep) {
+  std::vector<Point> points;
+  std::int64_t misses = distances.references;
+  const std::uint64_t last = std::bit_ceil(std::max<std::uint64_t>(1, distances.enough()));
+  for (std::uint64_t lines = 1; lines <= last; ++lines) {
+    const std::int64_t hits = lines <= distances.hits.size() ? distances.hits[lines - 1] : 0;
+    misses -= hits;
+    if (std::has_single_bit(lines) || keep(lines, hits)) {
+      points.push_back({lines, misses});
+    }
+  }
+  return points;
+}
+
+std::vector<Point> powers_of_two(const memory::StackHistogram& distances) {
+  return sizes_of(distances, [](std::uint64_t, std::int64_t) { return false; });
+}
+
+std::vector<Point> thinned(const memory::StackHistogram& distances) {
+  std::uint64_t kept = 0;
+  return sizes_of(distances, [&](std::uint64_t lines, std::int64_t hits) {
+    const bool keep = lines == distances.enough() || (hits != 0 && lines - kept > kept / 256);
+    kept = keep ? lines : kept;
+    return keep;
+  });
+}
+
+// What a cache of the machine's number of sets misses with 1, 2, ... ways; the same as sizes with one set.
+std::vector<Point> all_ways(const CacheWorkingSet& cache) {
+  std::vector<Point> points;
+  std::int64_t misses = cache.ways.references;
+  for (std::size_t way = 0; way < cache.ways.hits.size(); ++way) {
+    misses -= cache.ways.hits[way];
+    points.push_back({way + 1, misses});
+  }
+  return points;
+}
+
+// The smallest fully associative cache that misses at most `tenths` tenths of the compulsory misses.
+std::uint64_t lines_within(const memory::StackHistogram& distances, std::int64_t tenths) {
+  const std::int64_t compulsory = distances.compulsory;
+  return distances.lines_for(compulsory + compulsory * (tenths - 10) / 10);
+}
+
+std::string size_text(const WorkingSet& set, std::uint64_t lines) {
+  return bytes(static_cast<double>(lines) * set.line);
+}
+
+void cache_lines(std::string& text, const WorkingSet& set, std::size_t number) {
+  const auto out = std::back_inserter(text);
+  const CacheWorkingSet& cache = set.caches[number];
+  const memory::StackHistogram& distances = cache.distances;
+  fmt::format_to(out, "  {:<12}{:>12}{:>12}{:>15}{:>12}{:>16}\n", name_of(set, number), "lines", "bytes",
+                 "misses", "miss ratio", "of compulsory");
+  for (const Point& point : powers_of_two(distances)) {
+    fmt::format_to(out, "  {:<12}{:>12}{:>12}{:>15}{:>10.3f} %{:>14.2f} x\n", "", point.size,
+                   size_text(set, point.size), point.misses,
+                   100.0 * ratio(point.misses, distances.references),
+                   ratio(point.misses, distances.compulsory));
+  }
+  fmt::format_to(out, "  {:<12}2 x compulsory with {} ({} lines), 1.1 x with {} ({}), 1 x with {} ({})\n", "",
+                 size_text(set, lines_within(distances, 20)), lines_within(distances, 20),
+                 size_text(set, lines_within(distances, 11)), lines_within(distances, 11),
+                 size_text(set, distances.enough()), distances.enough());
+  if (cache.shape.sets > 1) {
+    fmt::format_to(out, "  {:<12}{} sets, by ways:", "", cache.shape.sets);
+    const char* separator = "";
+    for (const Point& point : all_ways(cache)) {
+      if (std::has_single_bit(point.size) || point.size == cache.shape.ways) {
+        fmt::format_to(out, "{} {}{}: {:.3f} %", separator, point.size,
+                       point.size == cache.shape.ways ? " (the machine's)" : "",
+                       100.0 * ratio(point.misses, cache.ways.references));
+        separator = ",";
+      }
+    }
+    text += '\n';
+  }
+}
+
+}  // namespace
+
+nlohmann::ordered_json working_set_json(const WorkingSet& set) {
+  Json caches = Json::array();
+  for (std::size_t i = 0; i < set.caches.size(); ++i) {
+    const CacheWorkingSet& cache = set.caches[i];
+    Json sizes = Json::array();
+    for (const Point& point : powers_of_two(cache.distances)) {
+      sizes.push_back({point.size, point.misses});
+    }
+    Json ways = Json::array();
+    for (const Point& point : all_ways(cache)) {
+      ways.push_back({point.size, point.misses});
+    }
+    caches.push_back({{"cache", name_of(set, i)},
+                      {"references", cache.distances.references},
+                      {"compulsory", cache.distances.compulsory},
+                      {"lines_for_2_x_compulsory", lines_within(cache.distances, 20)},
+                      {"lines_for_1_1_x_compulsory", lines_within(cache.distances, 11)},
+                      {"lines_for_compulsory", cache.distances.enough()},
+                      {"fully_associative", sizes},
+                      {"sets", cache.shape.sets},
+                      {"machine_ways", cache.shape.ways},
+                      {"ways", ways}});
+  }
+  return {{"line", set.line}, {"any_cache", set.any_cache}, {"caches", caches}};
+}
+
+std::string working_set_lines(const WorkingSet& set) {
+  std::string text = fmt::format(
+      "\nworking set   first-level LRU caches of every size, lines of {} bytes; exact {}\n", set.line,
+      set.any_cache ? "for machines with any of them"
+                    : "for the packets as handed out here:\n"
+                      "              dynamic assignment would hand them out otherwise with another cache");
+  for (std::size_t i = 0; i < set.caches.size(); ++i) {
+    cache_lines(text, set, i);
+  }
+  return text;
+}
+
+Table working_set_table(const WorkingSet& set) {
+  Table table("working_set", "Misses of first-level LRU caches by size and by ways",
+              {{"cache", ColumnType::text, "", "the unified cache, or which of the split ones"},
+               {"sets", ColumnType::integer, "1", "sets; 1: fully associative"},
+               {"ways", ColumnType::integer, "1", "lines of a set"},
+               {"bytes", ColumnType::integer, "byte", "size of the cache"},
+               {"misses", ColumnType::integer, "1", "misses of all nodes' caches"},
+               {"miss_ratio", ColumnType::real, "fraction", "misses of all references"}});
+  for (std::size_t i = 0; i < set.caches.size(); ++i) {
+    const CacheWorkingSet& cache = set.caches[i];
+    const auto add = [&](std::uint32_t sets, const Point& point) {
+      table.add_row({std::string(name_of(set, i)), std::int64_t{sets}, count_cell(point.size),
+                     count_cell(point.size * sets * set.line), point.misses,
+                     ratio(point.misses, cache.distances.references)});
+    };
+    for (const Point& point : thinned(cache.distances)) {
+      add(1, point);
+    }
+    for (const Point& point : all_ways(cache)) {
+      add(cache.shape.sets, point);
+    }
+  }
+  return table;
+}
+
+std::string working_set_chart(const Table& table) {
+  const auto charts = chart_specifications();
+  const auto chart = std::find_if(charts.begin(), charts.end(), [&](const ChartSpecification& specification) {
+    return specification.name == table.name();
+  });
+  sim::ensure(chart != charts.end(), "the chart of the working set is built into the program");
+  return fill_chart(*chart, table);
+}
+
+}  // namespace marti::studies

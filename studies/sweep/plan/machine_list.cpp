@@ -1,0 +1,100 @@
+#include "studies/sweep/plan/machine_list.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "scenes/open.h"
+#include "sim/config_errors.h"
+#include "sim/error.h"
+#include "studies/host/image_file.h"
+#include "studies/host/program_build.h"
+#include "studies/run/open_frame.h"
+#include "studies/run/scene_hash.h"
+#include "studies/sweep/plan/digest.h"
+
+namespace marti::studies {
+
+std::size_t MachineList::enter(ReadPoint& read) {
+  const std::size_t frame = enter_frame(read);
+  Digest digest;
+  digest.add(frames_[frame].key);
+  digest.add(read.machine_digest);
+  std::string key = digest.hex();
+  const auto [place, fresh] = machine_of_key_.emplace(key, machines_.size());
+  if (fresh) {
+    machines_.push_back({std::move(key), frame, read.machine, settings_.share(std::move(read.settings))});
+    first_point_.push_back(no_point);
+  }
+  return place->second;
+}
+
+void MachineList::reserve(std::size_t machines) {
+  machines_.reserve(machines);
+  first_point_.reserve(machines);
+}
+
+void MachineList::used_by_point(std::size_t machine, std::size_t point) {
+  first_point_[machine] = std::min(first_point_[machine], point);
+}
+
+void MachineList::move_into(SweepPlan& plan) && {
+  std::vector<std::size_t> order(machines_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(machines_[a].frame, first_point_[a]) < std::pair(machines_[b].frame, first_point_[b]);
+  });
+  std::vector<std::size_t> place(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    place[order[i]] = i;
+  }
+  // In place, cycle by cycle: a second list would take as much again.
+  std::vector<std::size_t> to = place;
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    while (to[i] != i) {
+      std::swap(machines_[i], machines_[to[i]]);
+      std::swap(to[i], to[to[i]]);
+    }
+  }
+  plan.machines = std::move(machines_);
+  plan.frames = std::move(frames_);
+  for (SweepPoint& point : plan.points) {
+    point.machine = place[point.machine];
+    point.base = place[point.base];
+  }
+  if (plan.compare) {
+    plan.compare = place[*plan.compare];
+  }
+}
+
+std::size_t MachineList::enter_frame(const ReadPoint& read) {
+  // A file of the same name is another one in another directory.
+  const bool file = scenes::names_a_file(read.frame.scene);
+  const std::string known = read.frame_digest + (file ? read.frame.open.base_directory.string() : "");
+  if (const auto found = frame_of_digest_.find(known); found != frame_of_digest_.end()) {
+    return found->second;
+  }
+  Digest digest;
+  digest.add(std::string(build_of_program()) + "\n" + read.frame_digest);
+  std::optional<std::uint64_t> hash;
+  if (file) {
+    const scenes::Scene scene = sim::placed(read.config, [&] { return open_frame(read.frame); });
+    hash = scene_hash(scene);
+    digest.add("\n" + std::to_string(*hash) + " " + std::to_string(scenes::facts_of(scene).polygons));
+    // What a frame's row says of the scene is part of it.
+    for (const std::string& note : scene.notes) {
+      digest.add("\n" + note);
+    }
+  }
+  std::string key = digest.hex();
+  const auto same =
+      std::find_if(frames_.begin(), frames_.end(), [&](const SweepFrame& frame) { return frame.key == key; });
+  const auto index = static_cast<std::size_t>(same - frames_.begin());
+  if (same == frames_.end()) {
+    frames_.push_back({std::move(key), read.frame, frame_settings(read), hash});
+  }
+  frame_of_digest_.emplace(known, index);
+  return index;
+}
+
+}  // namespace marti::studies

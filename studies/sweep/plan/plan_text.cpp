@@ -1,0 +1,96 @@
+// The plan of a sweep as text.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "studies/sweep/plan/sweep_plan.h"
+#include "studies/tables/text_units.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr std::size_t most_steps_shown = 8;
+constexpr std::size_t most_skipped_shown = 3;
+
+std::string join(const std::vector<std::string>& parts, std::string_view between) {
+  std::string joined;
+  for (const std::string& part : parts) {
+    joined += (joined.empty() ? "" : std::string(between)) + part;
+  }
+  return joined;
+}
+
+// The first and the last ones of a long list.
+std::string shorten(const std::vector<std::string>& steps) {
+  if (steps.size() <= most_steps_shown) {
+    return join(steps, ", ");
+  }
+  const auto kept = static_cast<std::ptrdiff_t>(most_steps_shown) - 2;
+  return join({steps.begin(), steps.begin() + kept}, ", ") + ", ..., " + steps.back() +
+         fmt::format(" ({} values)", steps.size());
+}
+
+}  // namespace
+
+std::string describe(const SweepPlan& plan, const SweepOutlook& outlook) {
+  std::string text;
+  const auto line = [&](std::string_view what, const std::string& says) {
+    text += fmt::format("{:<14}{}\n", what, says);
+  };
+  for (const SweepDirection& direction : plan.directions) {
+    line(&direction == plan.directions.data() ? "axes" : "",
+         join(direction.keys, " and ") + ": " + shorten(direction.steps));
+  }
+  std::string points = std::to_string(plan.points.size());
+  if (plan.filtered_out > 0) {
+    points += fmt::format(", {} more do not pass the filter", plan.filtered_out);
+  }
+  if (!plan.skipped.empty()) {
+    points += fmt::format(", {} more cannot be built", plan.skipped.size());
+  }
+  line("points", points);
+  for (std::size_t i = 0; i < std::min(most_skipped_shown, plan.skipped.size()); ++i) {
+    line("", "left out: " + plan.skipped[i].point + ": " + plan.skipped[i].reason);
+  }
+  line("frames", fmt::format("{} functional run{}, {} done", plan.frames.size(),
+                             plan.frames.size() == 1 ? "" : "s", outlook.frames_done));
+
+  std::vector<bool> asked_for(plan.machines.size());
+  for (const SweepPoint& point : plan.points) {
+    asked_for[point.machine] = true;
+  }
+  const auto of_points = static_cast<std::size_t>(std::count(asked_for.begin(), asked_for.end(), true));
+  std::string machines = std::to_string(plan.machines.size());
+  if (of_points < plan.machines.size()) {
+    machines += fmt::format(" ({} of points, {} to measure them against)", of_points,
+                            plan.machines.size() - of_points);
+  }
+  line("machines", machines + fmt::format(", {} done", outlook.machines_done));
+
+  const auto by_cost = [](const SweepPoint& a, const SweepPoint& b) { return a.cost < b.cost; };
+  const auto [cheapest, dearest] = std::minmax_element(plan.points.begin(), plan.points.end(), by_cost);
+  if (cheapest != plan.points.end()) {
+    line("price", fmt::format("{:.6g} to {:.6g} a machine", cheapest->cost, dearest->cost));
+  }
+  if (outlook.seconds) {
+    line("time", "about " + duration_text(*outlook.seconds));
+  }
+  constexpr double worth_a_word = 1 << 20;
+  const auto itself = static_cast<double>(plan_bytes(plan.points.size(), plan.axes.size()));
+  const bool large = itself >= worth_a_word;
+  if (large || outlook.log_bytes || outlook.machine_bytes) {
+    const auto logs = static_cast<double>(outlook.log_bytes.value_or(0));
+    const auto machines_in_flight = static_cast<double>(outlook.machine_bytes.value_or(0));
+    line("memory", fmt::format("about {}: {}work logs {}, machines {}",
+                               bytes(logs + machines_in_flight + (large ? itself : 0.0)),
+                               large ? "the plan " + bytes(itself) + ", " : "", bytes(logs),
+                               bytes(machines_in_flight)));
+  }
+  for (const std::string& note : plan.notes) {
+    line("note", note);
+  }
+  return text;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,117 @@
+#include "studies/sweep/plan/read_point.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "studies/keys/machine_keys.h"
+#include "studies/run/run_result.h"
+#include "studies/sweep/plan/digest.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr std::array<std::string_view, 2> single = {"machine.clusters", "machine.nodes"};
+constexpr std::array<std::string_view, 3> counted = {"count.miss_classes", "count.sharing",
+                                                     "count.attribution"};
+
+std::vector<bool> keys_read(const sim::Config& config) {
+  std::vector<bool> used(config.schema().keys().size());
+  for (std::size_t key = 0; key < used.size(); ++key) {
+    used[key] = config.used_at(key);
+  }
+  return used;
+}
+
+void add(Digest& digest, const std::string& key, const std::string& value) {
+  digest.add(key);
+  digest.add("=");
+  digest.add(value);
+  digest.add("\n");
+}
+
+bool is_host(const std::string& key) { return key.starts_with("host_machine."); }
+
+sim::EffectiveValue effective(const sim::Config& config, std::size_t key) {
+  const sim::Key& declared = config.schema().keys()[key];
+  return {declared.name, print_values(declared, config.values_at(key)), config.given_at(key),
+          config.where(declared.name)};
+}
+
+void set(sim::Config& config, std::string_view key, sim::Value value) {
+  config.set({*config.schema().find(key), {std::move(value)}, 0, "the machine of one node"});
+}
+
+}  // namespace
+
+ReadPoint read_point(sim::Config config) {
+  ReadPoint point{std::move(config), {}, {}, {}, {}, {}, {}};
+  const std::vector<sim::Key>::size_type keys = point.config.schema().keys().size();
+  point.frame = read_frame(point.config);
+  refuse_several_frames(point.config, point.frame.frames);
+  point.frame_keys = keys_read(point.config);
+  point.machine = read_machine(point.config);
+  refuse_beyond_memory(point.config, point.frame, point.machine);
+
+  Digest frame;
+  Digest machine;
+  const std::vector<bool> used = keys_read(point.config);
+  point.settings.reserve(
+      static_cast<std::size_t>(std::count(used.begin(), used.end(), true) -
+                               std::count(point.frame_keys.begin(), point.frame_keys.end(), true)));
+  for (std::size_t key = 0; key < keys; ++key) {
+    const sim::Key& declared = point.config.schema().keys()[key];
+    if (point.frame_keys[key]) {
+      if (!is_host(declared.name)) {
+        add(frame, declared.name, print_values(declared, point.config.values_at(key)));
+      }
+    } else if (point.config.used_at(key)) {
+      point.settings.push_back(effective(point.config, key));
+      add(machine, declared.name, point.settings.back().value);
+    }
+  }
+  point.frame_digest = frame.hex();
+  point.machine_digest = machine.hex();
+  return point;
+}
+
+std::vector<sim::EffectiveValue> frame_settings(const ReadPoint& point) {
+  std::vector<sim::EffectiveValue> settings;
+  for (std::size_t key = 0; key < point.frame_keys.size(); ++key) {
+    if (point.frame_keys[key] && !is_host(point.config.schema().names()[key])) {
+      settings.push_back(effective(point.config, key));
+    }
+  }
+  return settings;
+}
+
+sim::Config one_node_config(const ReadPoint& point) {
+  sim::Config one = point.config.with({});
+  for (std::size_t key = 0; key < point.frame_keys.size(); ++key) {
+    if (one.given_at(key) && !point.config.used_at(key)) {
+      one.reset(key);
+    }
+  }
+  for (const std::string_view key : single) {
+    set(one, key, std::int64_t{1});
+  }
+  for (const std::string_view key : counted) {
+    one.reset(*one.schema().find(key));
+  }
+  if (point.machine.scheme != processors::Scheme::image) {
+    set(one, "machine.scheme", std::string("image"));
+  }
+  if (point.machine.scheme == processors::Scheme::space) {
+    set(one, "database.placement", std::string("replicated"));
+  }
+  return one;
+}
+
+bool is_set_for_one_node(std::string_view key) {
+  return std::find(single.begin(), single.end(), key) != single.end() ||
+         std::find(counted.begin(), counted.end(), key) != counted.end();
+}
+
+}  // namespace marti::studies

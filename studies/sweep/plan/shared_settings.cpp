@@ -1,0 +1,51 @@
+#include "studies/sweep/plan/shared_settings.h"
+
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+namespace marti::studies {
+
+namespace {
+
+void append(std::string& text, std::string_view part) {
+  text += part;
+  text += '\0';
+}
+
+}  // namespace
+
+std::string_view section_of(std::string_view key) { return key.substr(0, key.rfind('.')); }
+
+SharedSettings SettingsPool::share(std::vector<sim::EffectiveValue> settings) {
+  SharedSettings shared;
+  for (auto begin = settings.begin(); begin != settings.end();) {
+    std::string content;
+    auto end = begin;
+    for (; end != settings.end() && section_of(end->key) == section_of(begin->key); ++end) {
+      append(content, end->key);
+      append(content, end->value);
+      append(content, end->given ? "given" : "default");
+      append(content, end->source);
+    }
+    SettingsPart& part = parts_[std::move(content)];
+    if (part == nullptr) {
+      part = std::make_shared<const std::vector<sim::EffectiveValue>>(std::make_move_iterator(begin),
+                                                                      std::make_move_iterator(end));
+    }
+    shared.push_back(part);
+    begin = end;
+  }
+  shared.shrink_to_fit();
+  return shared;
+}
+
+std::vector<sim::EffectiveValue> all_of(const SharedSettings& settings) {
+  std::vector<sim::EffectiveValue> all;
+  for (const SettingsPart& part : settings) {
+    all.insert(all.end(), part->begin(), part->end());
+  }
+  return all;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,72 @@
+#include "studies/sweep/plan/sweep_cost.h"
+
+#include <cstdint>
+
+namespace marti::studies {
+
+namespace {
+
+using processors::CacheOrganisation;
+using processors::MachineConfig;
+using processors::SecondLevel;
+
+double kib(std::uint64_t bytes) { return static_cast<double>(bytes) / 1024.0; }
+
+// Bytes of a node's first level.
+std::uint64_t first_level(const MachineConfig& machine) {
+  switch (machine.cache.organisation) {
+    case CacheOrganisation::none:
+      return 0;
+    case CacheOrganisation::unified:
+      return machine.cache.cache.size;
+    case CacheOrganisation::split:
+      break;
+  }
+  std::uint64_t bytes = 0;
+  for (const std::uint64_t size : machine.cache.split_sizes) {
+    bytes += size;
+  }
+  return bytes;
+}
+
+double node_cost(const Prices& prices, const MachineConfig& machine) {
+  double cost = prices.node + prices.context * static_cast<double>(machine.contexts - 1) +
+                prices.cache_kib * kib(first_level(machine));
+  if (machine.l2.sharing == SecondLevel::private_caches) {
+    cost += prices.l2_kib * kib(machine.l2.cache.size);
+  }
+  const bool network =
+      machine.scheme != processors::Scheme::image || machine.placement == processors::Placement::distributed;
+  if (network && machine.network.kind != memory::NetworkKind::ideal) {
+    cost += prices.network_byte * static_cast<double>(machine.network.width);
+  }
+  return cost;
+}
+
+// The way to a cluster's shared memory, and that memory.
+double memory_cost(const Prices& prices, const MachineConfig& machine) {
+  const bool shared = machine.scheme != processors::Scheme::space &&
+                      machine.placement != processors::Placement::distributed &&
+                      machine.interconnect.kind != memory::InterconnectKind::ideal;
+  if (!shared) {
+    return 0.0;
+  }
+  const bool crossbar = machine.interconnect.kind == memory::InterconnectKind::crossbar;
+  const double banks = static_cast<double>(machine.banks.count);
+  return prices.interconnect_byte * static_cast<double>(machine.interconnect.width) *
+             (crossbar ? banks : 1.0) +
+         prices.bank * banks;
+}
+
+}  // namespace
+
+double cost_of(const Prices& prices, const MachineConfig& machine) {
+  double cluster = prices.cluster + node_cost(prices, machine) * static_cast<double>(machine.nodes) +
+                   memory_cost(prices, machine);
+  if (machine.l2.sharing == SecondLevel::shared) {
+    cluster += prices.l2_kib * kib(machine.l2.cache.size);
+  }
+  return cluster * static_cast<double>(machine.clusters);
+}
+
+}  // namespace marti::studies

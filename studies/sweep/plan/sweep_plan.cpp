@@ -1,0 +1,333 @@
+#include "studies/sweep/plan/sweep_plan.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+
+#include "sim/config_errors.h"
+#include "sim/shown.h"
+#include "studies/sweep/plan/machine_list.h"
+#include "studies/sweep/plan/read_point.h"
+#include "studies/sweep/plan/sweep_filter.h"
+#include "studies/sweep/plan/sweep_keys.h"
+#include "studies/sweep/plan/sweep_points.h"
+#include "studies/sweep/plan/sweep_table.h"
+
+namespace marti::studies {
+
+namespace {
+
+// Points read at a time: enough for all host cores, and few enough to stay in their caches until equal
+// machines have become one.
+constexpr std::size_t points_at_once = 256;
+
+// As a user reads it: quantities without the quotation marks of TOML.
+std::string plain_values(const sim::Key& key, const std::vector<sim::Value>& values) {
+  std::string text = print_values(key, values);
+  const bool quoted = !key.is_list && key.type != sim::ValueType::text && text.front() == '"';
+  return quoted ? text.substr(1, text.size() - 2) : text;
+}
+
+// What a point asks for, or why it cannot be had.
+struct Outcome {
+  std::optional<ReadPoint> read;
+  std::string error;
+};
+
+Outcome read_outcome(const sim::Config& config) {
+  Outcome outcome;
+  try {
+    outcome.read = read_point(config);
+  } catch (const sim::UserError& error) {
+    outcome.error = error.what();
+  }
+  return outcome;
+}
+
+class Planner {
+ public:
+  explicit Planner(sim::Config& config)
+      : config_(config),
+        prices_(read_prices(config)),
+        filter_(config.text("sweep.filter")),
+        skip_invalid_(config.boolean("sweep.skip_invalid")),
+        table_(read_sweep_table(config)),
+        points_(config, table_),
+        used_(config.schema().keys().size()) {
+    refuse_records(config);
+  }
+
+  SweepPlan plan() {
+    plan_.file = config_.name();
+    plan_.notes = table_.notes;
+    name_axes();
+    const std::vector<std::uint64_t> passing = filter();
+    find_strides_of_bases();
+    if (const std::string excess = read_memory(config_).excess(plan_bytes(passing.size(), plan_.axes.size()));
+        !excess.empty()) {
+      throw sim::UserError(config_.name() + ": sweep: the plan of " + std::to_string(passing.size()) +
+                           " points takes" + excess + ": raise the limit, or split the sweep");
+    }
+    plan_.points.reserve(passing.size());
+    found_.reserve(passing.size() + 1);
+    for (std::size_t begin = 0; begin < passing.size(); begin += points_at_once) {
+      add(std::span(passing).subspan(begin, std::min(points_at_once, passing.size() - begin)));
+    }
+    if (plan_.points.empty()) {
+      sim::fail_at(config_, config_.free_section_line("sweep"), "sweep",
+                   "no point of the sweep can be built; the first: " + plan_.skipped.front().reason);
+    }
+    add_compare();
+    refuse_unused();
+    std::move(found_).move_into(plan_);
+    return std::move(plan_);
+  }
+
+ private:
+  void name_axes() {
+    if (points_.named()) {
+      plan_.axes.emplace_back("point");
+    }
+    for (const std::size_t key : points_.keys()) {
+      plan_.axes.push_back(config_.schema().names()[key]);
+    }
+    for (const SweepAxis& axis : table_.axes) {
+      SweepDirection direction;
+      const bool named = axis.kind == SweepAxis::Kind::named;
+      if (named) {
+        direction.keys.emplace_back("point");
+        direction.steps = axis.names;
+      } else {
+        for (const std::size_t key : axis.keys) {
+          direction.keys.push_back(config_.schema().names()[key]);
+        }
+        for (const std::vector<sim::Setting>& step : axis.steps) {
+          std::string text;
+          for (const sim::Setting& setting : step) {
+            text += (text.empty() ? "" : " and ") +
+                    plain_values(config_.schema().keys()[setting.key], setting.values);
+          }
+          direction.steps.push_back(std::move(text));
+        }
+      }
+      plan_.directions.push_back(std::move(direction));
+    }
+  }
+
+  std::vector<std::uint64_t> filter() {
+    std::vector<std::uint64_t> passing;
+    if (filter_.empty()) {
+      passing.resize(points_.size());
+      std::iota(passing.begin(), passing.end(), std::uint64_t{0});
+      return passing;
+    }
+    const std::string where = config_.where("sweep.filter");
+    SweepFilter filter(config_.schema(), filter_, points_.named(),
+                       sim::shown(where) + (where.starts_with("--set ") ? "" : ": sweep.filter"));
+    std::vector<sim::Value> values(filter.columns().size());
+    for (std::uint64_t point = 0; point < points_.size(); ++point) {
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::size_t key = filter.columns()[i];
+        values[i] = key == FilterText::point ? sim::Value(points_.name(point)) : points_.value(point, key);
+      }
+      if (filter.passes(values)) {
+        passing.push_back(point);
+      }
+    }
+    if (passing.empty()) {
+      config_.fail("sweep.filter", "no point of " + std::to_string(points_.size()) + " passes");
+    }
+    plan_.filtered_out = points_.size() - passing.size();
+    return passing;
+  }
+
+  // Points that differ only in what their base machine overrides have one base machine.
+  void find_strides_of_bases() {
+    for (const SweepAxis& axis : table_.axes) {
+      const bool overridden = std::all_of(axis.keys.begin(), axis.keys.end(), [&](std::size_t key) {
+        return table_.base.empty()
+                   ? is_set_for_one_node(config_.schema().names()[key])
+                   : std::any_of(table_.base.begin(), table_.base.end(),
+                                 [&](const sim::Setting& setting) { return setting.key == key; });
+      });
+      shapes_base_.push_back(!overridden);
+    }
+  }
+  [[nodiscard]] std::uint64_t base_group(std::uint64_t point) const {
+    std::uint64_t group = 0;
+    for (std::size_t axis = 0; axis < table_.axes.size(); ++axis) {
+      if (shapes_base_[axis]) {
+        group = group * table_.axes[axis].steps.size() + points_.step(point, axis);
+      }
+    }
+    return group;
+  }
+
+  [[nodiscard]] Outcome read_base(std::uint64_t point, const ReadPoint& read) const {
+    if (table_.base.empty()) {
+      return read_outcome(one_node_config(read));
+    }
+    std::vector<sim::Setting> settings = points_.settings(point);
+    settings.insert(settings.end(), table_.base.begin(), table_.base.end());
+    return read_outcome(config_.with(settings));
+  }
+
+  void add(std::span<const std::uint64_t> points) {
+    struct Both {
+      Outcome point;
+      Outcome base;
+      bool wants_base = false;
+    };
+    std::vector<Both> read(points.size());
+    std::unordered_map<std::uint64_t, std::size_t> wanted;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::uint64_t group = base_group(points[i]);
+      read[i].wants_base = !bases_.contains(group) && wanted.emplace(group, i).second;
+    }
+    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+      read[i].point = read_outcome(config_.with(points_.settings(points[i])));
+      if (read[i].wants_base && read[i].point.read) {
+        read[i].base = read_base(points[i], *read[i].point.read);
+      }
+    });
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!read[i].point.read) {
+        skip(points[i], read[i].point.error);
+        continue;
+      }
+      ReadPoint& point = *read[i].point.read;
+      const std::uint64_t group = base_group(points[i]);
+      if (!bases_.contains(group)) {
+        // The first point of the group could not be built.
+        enter_base(group, points[i],
+                   read[i].wants_base ? std::move(read[i].base) : read_base(points[i], point));
+      }
+      enter_point(points[i], point, bases_.at(group));
+    }
+  }
+
+  void skip(std::uint64_t point, const std::string& error) {
+    if (!skip_invalid_) {
+      throw sim::UserError(error + " (the point " + sim::shown(points_.text(point)) +
+                           "; sweep.skip_invalid = true leaves out such points)");
+    }
+    plan_.skipped.push_back({points_.text(point), error});
+  }
+
+  void enter_base(std::uint64_t group, std::uint64_t point, Outcome base) {
+    if (!base.read) {
+      throw sim::UserError(base.error + " (the machine that the point " + sim::shown(points_.text(point)) +
+                           " is measured against)");
+    }
+    note_use(base.read->config);
+    bases_.emplace(group, found_.enter(*base.read));
+  }
+
+  void enter_point(std::uint64_t number, ReadPoint& read, std::size_t base) {
+    if (plan_.points.empty()) {
+      config_.take_reasons(read.config);
+    }
+    note_use(read.config);
+    SweepPoint point;
+    point.values.reserve(plan_.axes.size());
+    if (points_.named()) {
+      point.values.emplace_back(points_.name(number));
+    }
+    for (const std::size_t key : points_.keys()) {
+      point.values.push_back(points_.value(number, key));
+    }
+    point.machine = found_.enter(read);
+    point.base = base;
+    point.cost = cost_of(prices_, read.machine);
+    found_.used_by_point(point.machine, plan_.points.size());
+    plan_.points.push_back(std::move(point));
+  }
+
+  void add_compare() {
+    if (!table_.compare) {
+      return;
+    }
+    Outcome compare = read_outcome(config_.with(*table_.compare));
+    if (!compare.read) {
+      throw sim::UserError(compare.error + " (the machine of [sweep.compare])");
+    }
+    refuse_unused(*table_.compare, compare.read->config, "the machine of [sweep.compare]");
+    note_use(compare.read->config);
+    plan_.compare = found_.enter(*compare.read);
+  }
+
+  void note_use(const sim::Config& read) {
+    for (std::size_t key = 0; key < used_.size(); ++key) {
+      used_[key] = used_[key] || read.used_at(key);
+    }
+  }
+
+  void refuse_unused(const std::vector<sim::Setting>& settings, const sim::Config& read,
+                     const std::string& who) const {
+    for (const sim::Setting& setting : settings) {
+      if (!read.used_at(setting.key)) {
+        const std::string& key = config_.schema().names()[setting.key];
+        const std::string reason(read.why_unused(key));
+        sim::fail_at(config_, setting.line, key,
+                     "is not used by " + who + (reason.empty() ? "" : ": " + reason));
+      }
+    }
+  }
+
+  // A key that one point uses and another does not is none of the user's faults.
+  void refuse_unused() {
+    for (std::size_t key = 0; key < used_.size(); ++key) {
+      if (used_[key]) {
+        config_.use(key);
+      }
+    }
+    for (const SweepAxis& axis : table_.axes) {
+      for (const std::vector<sim::Setting>& step : axis.steps) {
+        refuse_unused(step, config_, "any point of the sweep");
+      }
+    }
+    refuse_unused(table_.base, config_, "any machine of the sweep");
+    // As an assignment may, an axis may switch off what the file's own machine has.
+    if (const Outcome own = read_outcome(config_.with({})); own.read) {
+      for (std::size_t key = 0; key < used_.size(); ++key) {
+        if (own.read->config.used_at(key)) {
+          config_.use(key);
+        }
+      }
+    }
+    config_.refuse_unused();
+  }
+
+  sim::Config& config_;
+  Prices prices_;
+  std::string filter_;
+  bool skip_invalid_;
+  SweepTable table_;
+  SweepPoints points_;
+  std::vector<bool> used_;         // by any machine
+  std::vector<bool> shapes_base_;  // of each axis
+  std::unordered_map<std::uint64_t, std::size_t> bases_;
+  MachineList found_;
+  SweepPlan plan_;
+};
+
+}  // namespace
+
+std::uint64_t plan_bytes(std::uint64_t points, std::size_t axes) {
+  constexpr std::uint64_t overhead = 16;  // of an allocation
+  constexpr std::uint64_t key = 48;       // of 32 digits, beside its string
+  constexpr std::uint64_t sections = 16;  // of a configuration, at most, that a machine reads
+  const std::uint64_t machine =
+      sizeof(SweepMachine) + key + overhead + sections * sizeof(SettingsPart) + sizeof(std::size_t);
+  const std::uint64_t known = sizeof(std::pair<std::string, std::size_t>) + key + 4 * overhead;
+  const std::uint64_t point = sizeof(SweepPoint) + overhead + axes * sizeof(sim::Value);
+  // And the numbers by which machines are put in order.
+  return points * (machine + known + point + 4 * sizeof(std::size_t));
+}
+
+SweepPlan plan_sweep(sim::Config& config) { return Planner(config).plan(); }
+
+}  // namespace marti::studies

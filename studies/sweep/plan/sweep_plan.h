@@ -1,0 +1,97 @@
+// What a sweep runs: the frames to be traced once each, and the machines to be timed on them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "processors/machine/machine_config.h"
+#include "sim/config.h"
+#include "studies/keys/frame_keys.h"
+#include "studies/sweep/plan/shared_settings.h"
+
+namespace marti::studies {
+
+/// One functional run: equal values give the same image and the same work log.
+struct SweepFrame {
+  /// 32 hexadecimal digits of the settings, of the program that it is (program_build.h) and, where the scene
+  /// is a file, of the scene in it.
+  std::string key;
+  FrameConfig config;
+  std::vector<sim::EffectiveValue> settings;  ///< that a frame reads, without host_machine.*
+  /// Of the scene as it was planned, where it is a file; it must be the same when it is traced.
+  std::optional<std::uint64_t> scene_hash{};
+};
+
+/// One machine on one frame. A machine is timed once, however many points ask for it.
+struct SweepMachine {
+  std::string key;        ///< 32 hexadecimal digits of the frame's key and the machine's settings
+  std::size_t frame = 0;  ///< index into SweepPlan::frames
+  processors::MachineConfig config;
+  SharedSettings settings;  ///< the machine's keys only
+};
+
+/// One point of the sweep's axes.
+struct SweepPoint {
+  std::vector<sim::Value> values;  ///< one for each of SweepPlan::axes
+  std::size_t machine = 0;         ///< index into SweepPlan::machines
+  std::size_t base = 0;            ///< the machine that its speed-up is measured against
+  double cost = 0.0;               ///< by [prices]
+};
+
+/// A direction of the sweep, for people.
+struct SweepDirection {
+  std::vector<std::string> keys;   ///< that change together; "point" for named points
+  std::vector<std::string> steps;  ///< what each step gives them
+};
+
+/// A point that is left out because its machine cannot be built.
+struct SkippedPoint {
+  std::string point;   ///< "cache.ways = 8, ..."
+  std::string reason;  ///< names file, line and key
+};
+
+struct SweepPlan {
+  std::string file;  ///< the configuration's name, as it stands in messages
+  /// Keys that differ between points, "point" first where there are named points. The value of a key that is
+  /// a list is a text.
+  std::vector<std::string> axes;
+  std::vector<SweepFrame> frames;
+  /// No two with equal keys. Ordered by frame; those of the points in the points' order, then base machines
+  /// that are no point's.
+  std::vector<SweepMachine> machines;
+  std::vector<SweepPoint> points;      ///< that pass the filter; the last axis changes fastest
+  std::uint64_t filtered_out = 0;      ///< points that do not pass
+  std::optional<std::size_t> compare;  ///< the machine that all are compared with
+
+  std::vector<SweepDirection> directions;  ///< all are crossed, the last changes fastest
+  std::vector<SkippedPoint> skipped;       ///< only with sweep.skip_invalid
+  std::vector<std::string> notes;          ///< about the input, each naming file and line
+};
+
+/// Reads [sweep] and [prices] of a configuration of sweep_schema() and makes its points. Machines are read on
+/// all host cores; the plan is the same at any number of them. A scene that is a file is opened: its content
+/// is part of the frame's key. Throws UserError naming file, line and key; for a point whose machine cannot
+/// be built, of the first such point in order, with what the point gives; for a plan beyond
+/// host_machine.memory_limit, before its points are read.
+[[nodiscard]] SweepPlan plan_sweep(sim::Config& config);
+
+/// What is known besides the plan before it runs.
+struct SweepOutlook {
+  std::size_t machines_done = 0;               ///< whose results are there already
+  std::size_t frames_done = 0;                 ///< whose logs are kept, or that no machine needs any more
+  std::optional<double> seconds;               ///< estimated time of what is left
+  std::optional<std::uint64_t> log_bytes;      ///< estimated memory of the work logs in use
+  std::optional<std::uint64_t> machine_bytes;  ///< and of the machines that are timed at once
+};
+
+/// Host bytes that a plan takes, about, in which each of `points` points has `axes` values and a machine of
+/// its own. A text among the values that is longer than 15 bytes takes more.
+[[nodiscard]] std::uint64_t plan_bytes(std::uint64_t points, std::size_t axes);
+
+/// The plan as text for people, a few lines.
+[[nodiscard]] std::string describe(const SweepPlan& plan, const SweepOutlook& outlook = {});
+
+}  // namespace marti::studies

@@ -1,0 +1,74 @@
+// What is kept of a timed machine: its counters, summed over its nodes, and its histograms of waits.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "processors/machine/machine_config.h"
+#include "processors/replay/replay.h"
+#include "studies/run/functional_run.h"
+#include "studies/tables/table.h"
+
+namespace marti::studies {
+
+/// Some waits of a machine, log-scaled. Only buckets that hold something.
+struct SweepHistogram {
+  std::string what;  ///< one of sweep_histogram_names()
+  struct Bucket {
+    std::int64_t lowest = 0;  ///< ps
+    std::int64_t highest = 0;
+    std::int64_t count = 0;
+    bool operator==(const Bucket&) const = default;
+  };
+  std::vector<Bucket> buckets;
+  bool operator==(const SweepHistogram&) const = default;
+};
+
+struct SweepRow {
+  /// One for each of sweep_columns(), whatever the machine; nothing where the machine has no such part.
+  std::vector<std::optional<std::int64_t>> counters;
+  std::vector<SweepHistogram> histograms;
+  bool operator==(const SweepRow&) const = default;
+};
+
+/// The counters of every row, in order: all integers. "end" (ps) is the frame time.
+[[nodiscard]] std::span<const Column> sweep_columns();
+
+/// Names of the histograms that a row can have.
+[[nodiscard]] std::span<const std::string_view> sweep_histogram_names();
+
+/// Sums over nodes, clusters and banks; of peaks the largest. Throws InternalError for a sum that does not
+/// fit.
+[[nodiscard]] SweepRow sweep_row(const processors::MachineConfig& machine,
+                                 const processors::MachineResult& result);
+
+/// The row as bytes, to send it to another process of the same program; and back. Throws InternalError for
+/// bytes that are no row.
+[[nodiscard]] std::string encode(const SweepRow& row);
+[[nodiscard]] SweepRow decode_sweep_row(std::string_view bytes);
+
+/// What is kept of a functional run: counters of its scene, structure, rays and log.
+struct FrameRow {
+  std::vector<std::optional<std::int64_t>> counters;  ///< one for each of frame_columns()
+  std::string scene;                                  ///< its name
+  std::string scene_hash;                             ///< 16 hexadecimal digits, as are the others
+  std::string image_hash;
+  std::string hit_hash;
+  std::vector<std::string> notes;
+  bool operator==(const FrameRow&) const = default;
+};
+
+/// The counters of every FrameRow, in order: all integers.
+[[nodiscard]] std::span<const Column> frame_columns();
+
+/// `scene_hash` is that of the scene as opened (studies/run/scene_hash.h).
+[[nodiscard]] FrameRow frame_row(const FunctionalRun& run, std::uint64_t scene_hash);
+
+[[nodiscard]] std::string encode(const FrameRow& row);
+[[nodiscard]] FrameRow decode_frame_row(std::string_view bytes);
+
+}  // namespace marti::studies

@@ -1,0 +1,41 @@
+// What the ranks of a sweep say to each other.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/sweep/work/schedule.h"
+
+namespace marti::studies {
+
+/// Only the members that a kind names are sent.
+struct SweepMessage {
+  enum class Kind : std::uint8_t {
+    // From rank 0.
+    begin,    ///< bytes: the configuration
+    task,     ///< task; `end`: there is none any more
+    drop,     ///< number: frame whose log nobody needs any more
+    goodbye,  ///< all are ready to leave
+    // To rank 0.
+    ready,    ///< number: worker threads; bytes: digest of the plan
+    ask,      ///< for a task
+    traced,   ///< number: frame; nanoseconds; row: of the frame
+    timed,    ///< number: machine; nanoseconds; row
+    leaving,  ///< it has brought all its results and asks for nothing any more
+    failed    ///< number: 1: the user's error, 0: ours; bytes: the message
+  };
+  Kind kind = Kind::ask;
+  std::uint64_t number = 0;
+  std::int64_t nanoseconds = 0;
+  std::string row{};
+  std::string bytes{};
+  SweepTask task{};
+};
+
+[[nodiscard]] std::string encode(const SweepMessage& message);
+/// Throws InternalError for bytes that are no message.
+[[nodiscard]] SweepMessage decode_sweep_message(std::string_view bytes);
+
+}  // namespace marti::studies

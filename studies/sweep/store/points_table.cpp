@@ -1,0 +1,180 @@
+#include "studies/sweep/store/points_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "sim/error.h"
+#include "studies/sweep/plan/sweep_row.h"
+#include "studies/sweep/store/sweep_metrics.h"
+#include "studies/sweep/store/sweep_reader.h"
+#include "studies/tables/cell_number.h"
+#include "studies/tables/text_table.h"
+#include "studies/tables/text_units.h"
+
+namespace marti::studies {
+
+namespace {
+
+struct Row {
+  StoredPoint point;
+  std::vector<Cell> figures;
+};
+
+std::vector<Row> rows_of(const SweepReader& reader, std::span<const std::string> names) {
+  std::vector<Row> rows;
+  reader.for_each_point(names, [&](const StoredPoint& point, std::span<const Cell> cells) {
+    if (point.done) {
+      rows.push_back({point, {cells.begin(), cells.end()}});
+    }
+  });
+  return rows;
+}
+
+std::string plain(std::string name) {
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
+}
+
+// Name, unit and description of a figure; its type is that of the first value there is.
+Column column_of(const std::string& name, std::span<const Row> rows, std::size_t index) {
+  Column column{plain(name), ColumnType::real, "", "the key " + name};
+  if (name == "cost") {
+    column.unit = "1";
+    column.description = "price of the machine, by [prices]";
+  } else if (name == "ordinal") {
+    column.description = "number of the point in the sweep, from 0";
+  } else if (name == "machine") {
+    column.description = "id of its machine in the store";
+  } else if (name == "base") {
+    column.description = "id of the machine that its speed-up is measured against";
+  } else if (name == "point") {
+    column.description = "name in [sweep.points]";
+  }
+  for (const SweepMetric& metric : derived_metrics()) {
+    if (metric.name == name) {
+      column.unit = metric.unit;
+      column.description = metric.description;
+    }
+  }
+  for (const Column& counter : sweep_columns()) {
+    if (counter.name == name) {
+      column.unit = counter.unit;
+      column.description = counter.description;
+    }
+  }
+  for (const Row& row : rows) {
+    const Cell& cell = row.figures[index];
+    if (!std::holds_alternative<std::monostate>(cell)) {
+      column.type = std::holds_alternative<std::int64_t>(cell)  ? ColumnType::integer
+                    : std::holds_alternative<std::string>(cell) ? ColumnType::text
+                                                                : ColumnType::real;
+      break;
+    }
+  }
+  return column;
+}
+
+// A figure may be an integer in one row and a real in another.
+Cell as_type(const Cell& cell, ColumnType type) {
+  if (const auto* integer = std::get_if<std::int64_t>(&cell);
+      integer != nullptr && type == ColumnType::real) {
+    return static_cast<double>(*integer);
+  }
+  if (type == ColumnType::integer && !std::holds_alternative<std::int64_t>(cell)) {
+    return {};
+  }
+  return cell;
+}
+
+bool mixes_numbers(std::span<const Row> rows, std::size_t index) {
+  return std::any_of(rows.begin(), rows.end(),
+                     [index](const Row& row) { return std::holds_alternative<double>(row.figures[index]); });
+}
+
+Table table_of(std::string name, std::string title, std::span<const std::string> names,
+               std::span<const Row> rows) {
+  std::vector<Column> columns;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    columns.push_back(column_of(names[i], rows, i));
+    if (columns.back().type == ColumnType::integer && mixes_numbers(rows, i)) {
+      columns.back().type = ColumnType::real;
+    }
+    if (columns.back().type == ColumnType::text) {
+      columns.back().unit.clear();  // it stands in the text
+    }
+  }
+  Table table(std::move(name), std::move(title), columns);
+  for (const Row& row : rows) {
+    std::vector<Cell> cells;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      cells.push_back(as_type(row.figures[i], columns[i].type));
+    }
+    table.add_row(std::move(cells));
+  }
+  return table;
+}
+
+std::string text_of(const Cell& cell) {
+  if (const auto* text = std::get_if<std::string>(&cell)) {
+    return *text;
+  }
+  const std::optional<double> number = number_of(cell);
+  return number ? fmt::format("{:.6g}", *number) : "-";
+}
+
+}  // namespace
+
+Table points_table(const std::filesystem::path& store) {
+  const SweepReader reader(store);
+  const std::vector<std::string> names = reader.figures();
+  return table_of("points", "Points of the sweep", names, rows_of(reader, names));
+}
+
+BestPoints best_points(const std::filesystem::path& store, const std::string& metric,
+                       std::optional<double> budget) {
+  const SweepReader reader(store);
+  std::vector<std::string> names = reader.axes();
+  const std::size_t axes = names.size();
+  names.insert(names.end(), {"cost", metric});
+  const Better better = find_metric(metric, sweep_columns()).better;
+  std::vector<Row> rows = rows_of(reader, names);
+  std::erase_if(rows, [](const Row& row) { return !number_of(row.figures.back()); });
+  std::vector<Offer> offers;
+  for (const Row& row : rows) {
+    offers.push_back({row.point.cost, *number_of(row.figures.back())});
+  }
+  const std::optional<std::size_t> best = best_within(offers, budget, better);
+  if (!best) {
+    throw sim::UserError(store.string() + ": no point has a " + metric +
+                         (budget ? fmt::format(" within a cost of {:g}", *budget) : std::string()));
+  }
+  std::vector<Row> front;
+  for (const std::size_t index : pareto_front(offers, better)) {
+    front.push_back(rows[index]);
+  }
+  // Times that differ in their fourth digit must not look alike.
+  const bool time = find_metric(metric, sweep_columns()).unit == "ps";
+  const auto figure = [time](const Cell& cell) {
+    return time ? seconds(static_cast<sim::Ticks>(*number_of(cell))) : text_of(cell);
+  };
+  std::string text = fmt::format("best {}{}: {} at a cost of {:g}:", metric,
+                                 budget ? fmt::format(" within {:g}", *budget) : std::string(),
+                                 figure(rows[*best].figures.back()), offers[*best].cost);
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    text += (axis == 0 ? " " : ", ") + names[axis] + " = " + text_of(rows[*best].figures[axis]);
+  }
+  Table table = table_of("best", "Points that no other beats in cost and " + metric, names, front);
+  for (Row& row : front) {
+    if (time) {
+      row.figures.back() = figure(row.figures.back());
+    }
+  }
+  text += "\n\n" + studies::text_of(table_of("best", table.title(), names, front));
+  return {std::move(table), std::move(text)};
+}
+
+}  // namespace marti::studies

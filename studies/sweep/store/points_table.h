@@ -1,0 +1,28 @@
+// The points of a sweep's store as tables.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "studies/tables/table.h"
+
+namespace marti::studies {
+
+/// "points": a row for each point of the present plan whose machine has been timed: its axes, its cost, what
+/// is derived, and all counters. A dot in a key becomes '_' in its column's name. Throws UserError when the
+/// store cannot be read.
+[[nodiscard]] Table points_table(const std::filesystem::path& store);
+
+/// Which points are worth their price.
+struct BestPoints {
+  Table front;       ///< "best": the points that no other beats in cost and metric, ascending by cost
+  std::string text;  ///< for people: the best within the budget, and the front
+};
+
+/// `metric` is a figure of SweepReader::figures(). Throws UserError when it is none, or when no point has it
+/// within the budget.
+[[nodiscard]] BestPoints best_points(const std::filesystem::path& store, const std::string& metric,
+                                     std::optional<double> budget);
+
+}  // namespace marti::studies

@@ -1,0 +1,55 @@
+// Rows of results into the store and back.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "studies/sweep/plan/sweep_row.h"
+#include "studies/sweep/store/store_sums.h"
+#include "studies/tables/sqlite_connection.h"
+
+namespace marti::studies {
+
+/// Adds rows with their checksums; its statements are prepared once. Within a transaction.
+class RowWriter {
+ public:
+  explicit RowWriter(SqliteConnection& connection);
+
+  [[nodiscard]] bool has_machine(std::int64_t machine) { return there(has_machine_, machine); }
+  [[nodiscard]] bool has_frame(std::int64_t frame) { return there(has_frame_, frame); }
+  void add(std::int64_t machine, const SweepRow& row);
+  void add(std::int64_t frame, const FrameRow& row);
+
+ private:
+  static bool there(SqliteStatement& statement, std::int64_t id);
+
+  SqliteStatement has_machine_;
+  SqliteStatement has_frame_;
+  SqliteStatement result_;
+  SqliteStatement bucket_;
+  SqliteStatement frame_;
+  SqliteStatement note_;
+  RowSums machine_sums_;
+  RowSums frame_sums_;
+};
+
+/// Reads rows; its statements are prepared once.
+class RowReader {
+ public:
+  explicit RowReader(SqliteConnection& connection);
+
+  /// The row, if it is there. A counter that the store has no column for has no value.
+  [[nodiscard]] std::optional<SweepRow> find_machine(std::int64_t machine);
+  [[nodiscard]] std::optional<FrameRow> find_frame(std::int64_t frame);
+
+ private:
+  SqliteStatement result_;
+  SqliteStatement buckets_;
+  SqliteStatement frame_;
+  SqliteStatement notes_;
+  std::vector<int> result_places_;  // of each counter: its column; -1: none
+  std::vector<int> frame_places_;
+};
+
+}  // namespace marti::studies

@@ -1,0 +1,239 @@
+#include "studies/sweep/store/store_schema.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "processors/cost/accounting.h"
+#include "sim/error.h"
+#include "sim/statistics.h"
+#include "studies/host/program_build.h"
+#include "studies/sweep/plan/sweep_row.h"
+#include "studies/sweep/store/store_columns.h"
+#include "studies/version.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr std::int64_t application = 0x6d617274;  // "mart"
+constexpr std::int64_t format = 2;                // 1: without checksums
+
+constexpr std::string_view what_to_do =
+    "; give another directory, or remove the file and run the sweep again";
+
+constexpr const char* fixed_tables = R"(
+CREATE TABLE store (what TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE provenance (what TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE columns ("table" TEXT NOT NULL, name TEXT NOT NULL, unit TEXT NOT NULL,
+                      description TEXT NOT NULL);
+CREATE TABLE settings (id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL, UNIQUE (key, value));
+CREATE TABLE sections (section INTEGER NOT NULL, setting INTEGER NOT NULL,
+                       PRIMARY KEY (section, setting)) WITHOUT ROWID;
+CREATE TABLE frames (id INTEGER PRIMARY KEY, key TEXT NOT NULL UNIQUE);
+CREATE TABLE frame_sections (frame INTEGER NOT NULL, section INTEGER NOT NULL,
+                             PRIMARY KEY (frame, section)) WITHOUT ROWID;
+CREATE TABLE frame_notes (frame INTEGER NOT NULL, ordinal INTEGER NOT NULL, note TEXT NOT NULL,
+                          PRIMARY KEY (frame, ordinal)) WITHOUT ROWID;
+CREATE TABLE machines (id INTEGER PRIMARY KEY, key TEXT NOT NULL UNIQUE, frame INTEGER NOT NULL);
+CREATE TABLE machine_sections (machine INTEGER NOT NULL, section INTEGER NOT NULL,
+                               PRIMARY KEY (machine, section)) WITHOUT ROWID;
+CREATE TABLE waits (id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE);
+CREATE TABLE buckets (lowest INTEGER PRIMARY KEY, highest INTEGER NOT NULL);
+CREATE TABLE wait_buckets (machine INTEGER NOT NULL, wait INTEGER NOT NULL, lowest INTEGER NOT NULL,
+                           highest INTEGER, count INTEGER NOT NULL,
+                           PRIMARY KEY (machine, wait, lowest)) WITHOUT ROWID;
+CREATE TABLE compare (machine INTEGER NOT NULL);
+CREATE TABLE host_sessions (id INTEGER PRIMARY KEY, began TEXT NOT NULL, ended TEXT, host TEXT NOT NULL,
+                            process INTEGER NOT NULL, processor TEXT NOT NULL, system TEXT NOT NULL,
+                            threads TEXT NOT NULL);
+CREATE TABLE host_machines (machine INTEGER PRIMARY KEY, session INTEGER NOT NULL,
+                            cpu_nanoseconds INTEGER NOT NULL);
+CREATE TABLE host_frames (frame INTEGER PRIMARY KEY, session INTEGER NOT NULL,
+                          cpu_nanoseconds INTEGER NOT NULL);
+CREATE VIEW machine_settings AS
+  SELECT m.machine AS machine, s.key AS key, s.value AS value
+  FROM machine_sections m JOIN sections c ON c.section = m.section JOIN settings s ON s.id = c.setting;
+CREATE VIEW frame_settings AS
+  SELECT f.frame AS frame, s.key AS key, s.value AS value
+  FROM frame_sections f JOIN sections c ON c.section = f.section JOIN settings s ON s.id = c.setting;
+CREATE VIEW histograms AS
+  SELECT h.machine AS machine, w.name AS what, h.lowest AS lowest, COALESCE(h.highest, b.highest) AS highest,
+         h.count AS count
+  FROM wait_buckets h JOIN waits w ON w.id = h.wait LEFT JOIN buckets b ON b.lowest = h.lowest;
+)";
+
+std::vector<std::string> column_names(SqliteConnection& connection, const std::string& table) {
+  std::vector<std::string> names;
+  SqliteStatement statement(connection, "SELECT name FROM pragma_table_info(?) ORDER BY cid");
+  statement.bind(1, std::string_view(table));
+  while (statement.next()) {
+    names.push_back(statement.text(0));
+  }
+  return names;
+}
+
+bool has_columns(SqliteConnection& connection, const std::string& table, int first,
+                 std::span<const Column> columns) {
+  const std::vector<std::string> names = column_names(connection, table);
+  return std::equal(std::min(names.begin() + first, names.end()), names.end(), columns.begin(), columns.end(),
+                    [](const std::string& name, const Column& column) { return name == column.name; });
+}
+
+std::string counters_sql(std::span<const Column> columns) {
+  std::string sql;
+  for (const Column& column : columns) {
+    sql += ", " + sql_name(column.name) + " INTEGER";
+  }
+  return sql;
+}
+
+// An axis has the type of its values, if they all have the same.
+std::string axis_type(const SweepPlan& plan, std::size_t axis) {
+  constexpr std::array<std::string_view, 4> types = {"INTEGER", "INTEGER", "REAL", "TEXT"};
+  std::string_view type;
+  for (const SweepPoint& point : plan.points) {
+    const std::string_view here = types.at(point.values.at(axis).index());
+    if (!type.empty() && type != here) {
+      return "";
+    }
+    type = here;
+  }
+  return std::string(type);
+}
+
+std::string text_of(SqliteConnection& connection, const std::string& sql) {
+  const Cell cell = connection.value(sql);
+  const auto* text = std::get_if<std::string>(&cell);
+  return text == nullptr ? "" : *text;
+}
+
+}  // namespace
+
+void check_store_file(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (status.type() == std::filesystem::file_type::not_found) {
+    return;
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw sim::UserError(file.string() + ": is not a regular file" + std::string(what_to_do));
+  }
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  if (!error && bytes == 0) {
+    return;  // made, but never written
+  }
+  std::array<unsigned char, 100> header{};
+  std::ifstream in(file, std::ios::binary);
+  in.read(reinterpret_cast<char*>(header.data()), static_cast<std::streamsize>(header.size()));
+  if (!in && in.gcount() == 0) {
+    throw sim::UserError(file.string() + ": cannot be read");
+  }
+  constexpr std::string_view magic("SQLite format 3\0", 16);
+  if (!std::equal(magic.begin(), magic.end(), header.begin()) ||
+      in.gcount() != static_cast<std::streamsize>(header.size())) {
+    throw sim::UserError(file.string() + ": is no SQLite database" + std::string(what_to_do));
+  }
+  // https://www.sqlite.org/fileformat.html: page size at 16, pages at 28. A log or journal beside the file
+  // may hold what it lacks.
+  const auto big_endian = [&](std::size_t at, std::size_t size) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      value = value << 8U | header.at(at + i);
+    }
+    return value;
+  };
+  const std::uint64_t page = big_endian(16, 2) == 1 ? 65536 : big_endian(16, 2);
+  if (bytes < page * big_endian(28, 4) && !has_log_or_journal(file)) {
+    throw sim::UserError(file.string() + ": is damaged: it has " + std::to_string(bytes) + " bytes of " +
+                         std::to_string(page * big_endian(28, 4)) + std::string(what_to_do));
+  }
+}
+
+bool is_empty_database(SqliteConnection& connection) {
+  return connection.integer("PRAGMA application_id") == 0 &&
+         connection.integer("SELECT COUNT(*) FROM sqlite_schema") == 0;
+}
+
+std::int64_t check_store_format(SqliteConnection& connection, const std::filesystem::path& file) {
+  if (connection.integer("PRAGMA application_id") != application) {
+    throw sim::UserError(file.string() + ": is a database, but not the store of a sweep" +
+                         std::string(what_to_do));
+  }
+  const std::int64_t found = connection.integer("PRAGMA user_version");
+  if (found < 1 || found > format ||
+      text_of(connection, "SELECT value FROM store WHERE what = 'format'") != std::to_string(found)) {
+    throw sim::UserError(file.string() + ": is a store of format " + std::to_string(found) +
+                         ", but this program reads formats 1 to " + std::to_string(format) +
+                         "; use the program that wrote it, give another directory, or remove the file");
+  }
+  return found;
+}
+
+void check_store_version(SqliteConnection& connection, const std::filesystem::path& file) {
+  const std::string found = text_of(connection, "SELECT value FROM store WHERE what = 'version'");
+  if (found != version) {
+    throw sim::UserError(file.string() + ": was written by version " + found + ", but this is version " +
+                         std::string(version) + ", whose results could differ; use version " + found +
+                         ", give another directory, or remove the file and run the sweep again");
+  }
+  // Older formats are read and not written. Digits of the sources come last; a program that was changed may
+  // give other results.
+  if (connection.integer("PRAGMA user_version") != format ||
+      text_of(connection, "SELECT value FROM store WHERE what = 'build'") != build_of_program() ||
+      !has_columns(connection, "results", first_result_counter, sweep_columns()) ||
+      !has_columns(connection, "frame_results", first_frame_counter, frame_columns())) {
+    throw sim::UserError(file.string() + ": was written by another build of version " + found +
+                         ", whose results could differ" + std::string(what_to_do));
+  }
+}
+
+void create_store(SqliteConnection& connection) {
+  connection.execute("PRAGMA application_id = " + std::to_string(application) +
+                     "; PRAGMA user_version = " + std::to_string(format));
+  connection.execute(fixed_tables);
+  connection.execute("CREATE TABLE results (machine INTEGER PRIMARY KEY, checksum INTEGER" +
+                     counters_sql(sweep_columns()) + ")");
+  connection.execute(
+      "CREATE TABLE frame_results (frame INTEGER PRIMARY KEY, scene TEXT NOT NULL, scene_hash TEXT NOT NULL, "
+      "image_hash TEXT NOT NULL, hit_hash TEXT NOT NULL, checksum INTEGER" +
+      counters_sql(frame_columns()) + ")");
+  SqliteStatement store(connection, "INSERT INTO store VALUES (?, ?)");
+  const std::string format_text = std::to_string(format);
+  store.bind(1, std::string_view("format")).bind(2, std::string_view(format_text)).run();
+  store.bind(1, std::string_view("version")).bind(2, std::string_view(version)).run();
+  store.bind(1, std::string_view("build")).bind(2, build_of_program()).run();
+  SqliteStatement wait(connection, "INSERT INTO waits VALUES (?, ?)");
+  std::int64_t number = 0;
+  for (const std::string_view name : sweep_histogram_names()) {
+    wait.bind(1, number++).bind(2, name).run();
+  }
+  SqliteStatement bucket(connection, "INSERT INTO buckets VALUES (?, ?)");
+  const std::size_t last = sim::LogHistogram::bucket_of(INT64_MAX);
+  for (std::size_t i = 0; i <= last; ++i) {
+    bucket.bind(1, sim::LogHistogram::lowest_of(i)).bind(2, sim::LogHistogram::highest_of(i)).run();
+  }
+}
+
+void create_points(SqliteConnection& connection, const SweepPlan& plan) {
+  connection.execute("DROP VIEW IF EXISTS summary; DROP TABLE IF EXISTS points; DELETE FROM columns;");
+  std::string table =
+      "CREATE TABLE points (ordinal INTEGER PRIMARY KEY, machine INTEGER NOT NULL, base INTEGER NOT NULL, "
+      "cost REAL NOT NULL";
+  for (std::size_t axis = 0; axis < plan.axes.size(); ++axis) {
+    table += ", " + sql_name(plan.axes[axis]) + " " + axis_type(plan, axis);
+  }
+  connection.execute(table + ")");
+  connection.execute(summary_view(plan.axes));
+  SqliteStatement insert(connection, "INSERT INTO columns VALUES (?, ?, ?, ?)");
+  for (const StoreColumn& column : store_columns(plan.axes)) {
+    insert.bind(1, std::string_view(column.table)).bind(2, std::string_view(column.name));
+    insert.bind(3, std::string_view(column.unit)).bind(4, std::string_view(column.description));
+    insert.run();
+  }
+}
+
+}  // namespace marti::studies

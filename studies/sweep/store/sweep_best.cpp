@@ -1,0 +1,57 @@
+#include "studies/sweep/store/sweep_best.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sim/error.h"
+
+namespace marti::studies {
+
+namespace {
+
+bool is_better(double a, double b, Better better) { return better == Better::lower ? a < b : a > b; }
+
+void check(std::span<const Offer> offers) {
+  const bool numbers = std::none_of(offers.begin(), offers.end(), [](const Offer& offer) {
+    return std::isnan(offer.cost) || std::isnan(offer.metric);
+  });
+  sim::ensure(numbers, "an offer's cost or metric is no number");
+}
+
+}  // namespace
+
+std::optional<std::size_t> best_within(std::span<const Offer> offers, std::optional<double> budget,
+                                       Better better) {
+  check(offers);
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < offers.size(); ++i) {
+    if (budget && offers[i].cost > *budget) {
+      continue;
+    }
+    if (!best || is_better(offers[i].metric, offers[*best].metric, better) ||
+        (offers[i].metric == offers[*best].metric && offers[i].cost < offers[*best].cost)) {
+      best = i;
+    }
+  }
+  return best;
+}
+
+std::vector<std::size_t> pareto_front(std::span<const Offer> offers, Better better) {
+  check(offers);
+  std::vector<std::size_t> order(offers.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return offers[a].cost != offers[b].cost ? offers[a].cost < offers[b].cost
+                                            : is_better(offers[a].metric, offers[b].metric, better);
+  });
+  std::vector<std::size_t> front;
+  for (const std::size_t i : order) {
+    if (front.empty() || is_better(offers[i].metric, offers[front.back()].metric, better)) {
+      front.push_back(i);
+    }
+  }
+  return front;
+}
+
+}  // namespace marti::studies

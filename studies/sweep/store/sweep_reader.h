@@ -1,0 +1,73 @@
+// What a store holds, for whoever reports on it. A store can be read while a sweep writes it: all that a
+// reader sees is of the instant at which it was opened.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "studies/sweep/plan/sweep_row.h"
+#include "studies/tables/table.h"
+
+namespace marti::studies {
+
+/// A point of the sweep's present plan. Machines are named by their ids in the store.
+struct StoredPoint {
+  std::int64_t ordinal = 0;  ///< from 0
+  std::int64_t machine = 0;
+  std::int64_t base = 0;
+  double cost = 0.0;
+  bool done = false;         ///< its machine's result is there
+  std::vector<Cell> values;  ///< one for each of SweepReader::axes()
+};
+
+/// Whether there is anything in the file: a sweep that was killed at once has left none, or an empty one.
+[[nodiscard]] bool is_begun(const std::filesystem::path& store);
+
+class SweepReader {
+ public:
+  /// Throws UserError when the file is not there, is no store, or is one of another format. A store of
+  /// another version of the program can be read: counters that it has not got have no value.
+  explicit SweepReader(const std::filesystem::path& file);
+  ~SweepReader();
+  SweepReader(const SweepReader&) = delete;
+  SweepReader& operator=(const SweepReader&) = delete;
+
+  /// The version of the program that wrote the store.
+  [[nodiscard]] const std::string& version() const;
+  [[nodiscard]] const std::vector<std::string>& axes() const;
+  [[nodiscard]] std::vector<StoredPoint> points() const;
+  /// The machine that all are compared with.
+  [[nodiscard]] std::optional<std::int64_t> compare() const;
+
+  /// Keys of all machines that have been timed, and of all frames that have been traced, sorted.
+  [[nodiscard]] std::vector<std::string> machines_done() const;
+  [[nodiscard]] std::vector<std::string> frames_done() const;
+
+  /// Nothing when the machine has not been timed yet.
+  [[nodiscard]] std::optional<SweepRow> read_result(std::int64_t machine) const;
+  /// Of the frame that a machine is timed on; nothing when it has not been traced yet.
+  [[nodiscard]] std::optional<FrameRow> read_frame(std::int64_t machine) const;
+  /// Keys and values of a machine and of its frame, sorted by key.
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> settings(std::int64_t machine) const;
+
+  /// The names of all figures of a point: axes, cost, what is derived (view summary), and all counters.
+  [[nodiscard]] std::vector<std::string> figures() const;
+  /// Calls `visit` for each point of the plan in order, with the figures of these names; a figure has no
+  /// value where the machine has no such part, has not been timed yet, or the denominator is 0. Throws
+  /// UserError for a name that is none, with the nearest that is one.
+  void for_each_point(std::span<const std::string> names,
+                      const std::function<void(const StoredPoint&, std::span<const Cell>)>& visit) const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace marti::studies

@@ -1,0 +1,47 @@
+// The results of a sweep: one SQLite file that many runs of the program add to.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "studies/sweep/plan/sweep_plan.h"
+#include "studies/sweep/plan/sweep_row.h"
+
+namespace marti::studies {
+
+/// Write-ahead logged; each result is one transaction, so that a program that is killed loses the machines in
+/// flight and nothing else. One process writes it at a time; another is refused. All failures are UserErrors
+/// that name the file.
+class SweepStore {
+ public:
+  /// Opens the file, or makes it, and enters what the plan asks for in one transaction: older results stay.
+  /// Refuses a file that is no store, one of another version of the store or of the program (whose results
+  /// could differ), and one that another process has open.
+  SweepStore(const std::filesystem::path& file, const SweepPlan& plan);
+  ~SweepStore();
+  SweepStore(const SweepStore&) = delete;
+  SweepStore& operator=(const SweepStore&) = delete;
+
+  /// For each machine of the plan: is its result there?
+  [[nodiscard]] std::vector<bool> done() const;
+  /// For each frame of the plan: is its row there?
+  [[nodiscard]] std::vector<bool> frames_done() const;
+
+  // Each is committed when it returns. A row that is there already must be equal, else InternalError: the
+  // same machine has given two results. `cpu_nanoseconds` is what the host took; it is kept apart from what
+  // must be the same in every run.
+  void add_frame(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds);
+  void add_result(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds);
+
+  /// Ends the write-ahead log, so that the store is one file again.
+  void close();
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace marti::studies

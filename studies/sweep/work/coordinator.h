@@ -1,0 +1,71 @@
+// The middle of a sweep: hands out tasks, takes results, keeps store and progress.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+
+#include "studies/sweep/store/sweep_store.h"
+#include "studies/sweep/work/progress.h"
+#include "studies/sweep/work/schedule.h"
+#include "studies/sweep/work/task_source.h"
+
+namespace marti::studies {
+
+/// Thread-safe. Each result is in the store before the call that brings it returns.
+class Coordinator {
+ public:
+  /// `over(frame)` is called once for each frame whose machines are all timed, by the thread that brought the
+  /// last.
+  Coordinator(const SweepPlan& plan, SweepStore& store, Progress& progress,
+              std::function<void(std::size_t)> over);
+
+  /// The next task of a place, as Schedule::next; without `wait` it may be `wait`.
+  [[nodiscard]] SweepTask next(std::size_t place, std::int64_t nanoseconds, bool wait);
+  void traced(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds);
+  void timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds);
+  void stop();
+  /// As Schedule::nanoseconds_left.
+  [[nodiscard]] std::int64_t nanoseconds_left();
+  /// Nothing is left to do, or it was stopped.
+  [[nodiscard]] bool finished();
+  /// Machines of the plan that are saved.
+  [[nodiscard]] std::size_t saved();
+  /// Closes the store for good, when nobody is writing to it: for a program that is about to be ended.
+  /// Returns how many machines of the plan are saved.
+  std::size_t close_for_good();
+
+ private:
+  void tell_if_over(std::unique_lock<std::mutex>& lock, std::size_t frame);
+
+  std::mutex mutex_;
+  std::condition_variable news_;
+  SweepStore& store_;
+  Progress& progress_;
+  std::function<void(std::size_t)> over_;
+  Schedule schedule_;
+  std::size_t machines_;
+  bool stopped_ = false;
+};
+
+/// The tasks of one place of this process.
+class LocalSource : public TaskSource {
+ public:
+  LocalSource(Coordinator& coordinator, std::size_t place) : coordinator_(coordinator), place_(place) {}
+  SweepTask next() override { return coordinator_.next(place_, 0, true); }
+  void traced(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) override {
+    coordinator_.traced(frame, row, cpu_nanoseconds);
+  }
+  void timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds) override {
+    coordinator_.timed(machine, row, cpu_nanoseconds);
+  }
+  void stop() override { coordinator_.stop(); }
+
+ private:
+  Coordinator& coordinator_;
+  std::size_t place_;
+};
+
+}  // namespace marti::studies

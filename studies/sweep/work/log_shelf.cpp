@@ -1,0 +1,193 @@
+#include "studies/sweep/work/log_shelf.h"
+
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace marti::studies {
+
+namespace {
+
+template <class Item>
+std::uint64_t reserved(const std::vector<Item>& items) {
+  return items.capacity() * sizeof(Item);
+}
+
+struct Entry {
+  std::shared_ptr<const FrameLog> log{};  ///< null: not in memory
+  std::uint64_t bytes = 0;                ///< that it takes or took when it was there; 0: not known yet
+  std::uint64_t users = 0;
+  std::uint64_t last_used = 0;
+  bool tracing = false;
+  bool dropped = false;
+};
+
+}  // namespace
+
+std::uint64_t memory_of(const processors::WorkLog& log) {
+  std::uint64_t bytes = reserved(log.topology.nodes) + reserved(log.topology.entries) +
+                        reserved(log.topology.work) + reserved(log.quadrics) + reserved(log.texture_begin) +
+                        reserved(log.rows);
+  for (const processors::LogRow& row : log.rows) {
+    bytes += reserved(row.words) + reserved(row.begin);
+  }
+  return bytes;
+}
+
+class LogShelf::Book : public std::enable_shared_from_this<Book> {
+ public:
+  explicit Book(std::uint64_t limit) : limit_(limit) {}
+
+  void put(std::size_t frame, FrameLog log) {
+    const std::lock_guard lock(mutex_);
+    const EntryPointer entry = entry_of(frame);
+    if (!entry->log && !entry->tracing) {
+      place_if_it_fits(*entry, std::move(log));
+    }
+  }
+
+  std::shared_ptr<const FrameLog> take(std::size_t frame, const Trace& trace) {
+    std::unique_lock lock(mutex_);
+    const EntryPointer entry = entry_of(frame);
+    while (!entry->log) {
+      if (!entry->tracing && fits(pinned_, entry->bytes)) {
+        trace_again(lock, *entry, trace);
+      } else {
+        changed_.wait(lock);
+      }
+    }
+    if (entry->users++ == 0) {
+      pinned_ += entry->bytes;
+    }
+    entry->last_used = ++clock_;
+    return {entry->log.get(),
+            [book = shared_from_this(), entry](const FrameLog*) { book->give_back(*entry); }};
+  }
+
+  void drop(std::size_t frame) {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = entries_.find(frame); found != entries_.end()) {
+      found->second->dropped = true;
+      forget_if_idle(*found->second);
+      entries_.erase(found);
+    }
+  }
+
+  std::uint64_t in_memory() {
+    const std::lock_guard lock(mutex_);
+    return in_memory_;
+  }
+
+ private:
+  using EntryPointer = std::shared_ptr<Entry>;
+
+  [[nodiscard]] EntryPointer entry_of(std::size_t frame) {
+    EntryPointer& entry = entries_[frame];
+    if (!entry) {
+      entry = std::make_shared<Entry>();
+    }
+    return entry;
+  }
+
+  // One log may always be in memory.
+  [[nodiscard]] bool fits(std::uint64_t beside, std::uint64_t bytes) const {
+    return beside == 0 || (beside <= limit_ && bytes <= limit_ - beside);
+  }
+
+  // Lets go of logs that nobody uses until `bytes` fit, if they fit beside those in use.
+  void make_room(std::uint64_t bytes) {
+    while (fits(pinned_, bytes) && !fits(in_memory_, bytes)) {
+      Entry* oldest = nullptr;
+      for (const auto& [frame, entry] : entries_) {
+        if (entry->log && entry->users == 0 && (oldest == nullptr || entry->last_used < oldest->last_used)) {
+          oldest = entry.get();
+        }
+      }
+      forget(*oldest);
+    }
+  }
+
+  void place(Entry& entry, FrameLog log) {
+    entry.bytes = memory_of(*log.log);
+    entry.log = std::make_shared<const FrameLog>(std::move(log));
+    entry.last_used = ++clock_;
+    in_memory_ += entry.bytes;
+  }
+  void place_if_it_fits(Entry& entry, FrameLog log) {
+    entry.bytes = memory_of(*log.log);
+    make_room(entry.bytes);
+    if (fits(in_memory_, entry.bytes)) {
+      place(entry, std::move(log));
+    }
+  }
+
+  // A log whose size is known gets its room before it is traced; another one when it is there, if it fits.
+  void trace_again(std::unique_lock<std::mutex>& lock, Entry& entry, const Trace& trace) {
+    const std::uint64_t room = entry.bytes;
+    make_room(room);
+    entry.tracing = true;
+    in_memory_ += room;
+    pinned_ += room;
+    lock.unlock();
+    FrameLog log;
+    const auto stop_tracing = [&] {
+      lock.lock();
+      entry.tracing = false;
+      in_memory_ -= room;
+      pinned_ -= room;
+      changed_.notify_all();
+    };
+    try {
+      log = trace();
+    } catch (...) {
+      stop_tracing();
+      throw;
+    }
+    stop_tracing();
+    if (room != 0) {
+      place(entry, std::move(log));
+    } else {
+      place_if_it_fits(entry, std::move(log));
+    }
+  }
+
+  void give_back(Entry& entry) {
+    const std::lock_guard lock(mutex_);
+    if (--entry.users == 0) {
+      pinned_ -= entry.bytes;
+      forget_if_idle(entry);
+      changed_.notify_all();
+    }
+  }
+  void forget_if_idle(Entry& entry) {
+    if (entry.dropped && entry.log && entry.users == 0) {
+      forget(entry);
+    }
+  }
+  void forget(Entry& entry) {
+    in_memory_ -= entry.bytes;
+    entry.log.reset();
+  }
+
+  const std::uint64_t limit_;
+  std::mutex mutex_;  // of all below
+  std::condition_variable changed_;
+  std::map<std::size_t, EntryPointer> entries_;
+  std::uint64_t in_memory_ = 0;  // bytes of logs, also of those that were dropped but are in use
+  std::uint64_t pinned_ = 0;     // of them, those in use or being traced again
+  std::uint64_t clock_ = 0;
+};
+
+LogShelf::LogShelf(std::uint64_t memory_limit) : book_(std::make_shared<Book>(memory_limit)) {}
+LogShelf::~LogShelf() = default;
+
+void LogShelf::put(std::size_t frame, FrameLog log) { book_->put(frame, std::move(log)); }
+std::shared_ptr<const FrameLog> LogShelf::take(std::size_t frame, const Trace& trace) {
+  return book_->take(frame, trace);
+}
+void LogShelf::drop(std::size_t frame) { book_->drop(frame); }
+std::uint64_t LogShelf::in_memory() const { return book_->in_memory(); }
+
+}  // namespace marti::studies

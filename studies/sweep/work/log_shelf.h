@@ -1,0 +1,56 @@
+// The work logs of a sweep: kept in memory while there is room, and traced again when there was none.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "processors/program/work_log.h"
+#include "studies/sweep/plan/sweep_row.h"
+
+namespace marti::studies {
+
+/// A functional run as a sweep keeps it: no image.
+struct FrameLog {
+  std::shared_ptr<const processors::WorkLog> log;
+  FrameRow row;
+};
+
+/// Bytes of memory that a log takes, with what its vectors have in reserve.
+[[nodiscard]] std::uint64_t memory_of(const processors::WorkLog& log);
+
+/// Holds the logs of the frames a sweep works on, by the frame's index. Thread-safe.
+///
+/// What take() returns is in use until the last copy of that pointer is gone; the log inside must not be held
+/// longer than it. Logs in use stay in memory; others make room, those first that were used longest ago.
+class LogShelf {
+ public:
+  /// Makes the log of one frame, the same each time.
+  using Trace = std::function<FrameLog()>;
+
+  /// `memory_limit`: bytes of all logs together; one log may always be there.
+  explicit LogShelf(std::uint64_t memory_limit);
+  ~LogShelf();
+  LogShelf(const LogShelf&) = delete;
+  LogShelf& operator=(const LogShelf&) = delete;
+
+  /// Puts a new log on the shelf; where it does not fit beside those in use, it is forgotten. One that is
+  /// there already stays. Never waits for room.
+  void put(std::size_t frame, FrameLog log);
+  /// The log of that frame: the one on the shelf, or else what `trace` makes, one call at a time for each
+  /// frame. Waits until others let go of theirs where the log would exceed the limit, so the calling thread
+  /// must not hold one. Throws what `trace` throws.
+  [[nodiscard]] std::shared_ptr<const FrameLog> take(std::size_t frame, const Trace& trace);
+  /// Nobody will take it again: its memory is free when the last user lets go.
+  void drop(std::size_t frame);
+
+  /// Bytes of the logs in memory and of those being traced again.
+  [[nodiscard]] std::uint64_t in_memory() const;
+
+ private:
+  class Book;
+  std::shared_ptr<Book> book_;  ///< shared with what is in use
+};
+
+}  // namespace marti::studies

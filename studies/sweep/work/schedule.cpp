@@ -1,0 +1,161 @@
+#include "studies/sweep/work/schedule.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "processors/walk/stripped_log.h"
+#include "sim/error.h"
+
+namespace marti::studies {
+
+Schedule::Schedule(const SweepPlan& plan, const std::vector<bool>& machines_done,
+                   const std::vector<bool>& frames_done)
+    : frames_(plan.frames.size()), batch_of_(plan.machines.size()) {
+  std::map<std::pair<std::size_t, std::string>, std::size_t> known;
+  for (std::size_t machine = 0; machine < plan.machines.size(); ++machine) {
+    if (machines_done[machine]) {
+      continue;
+    }
+    const std::size_t frame = plan.machines[machine].frame;
+    const auto [entry, is_new] = known.try_emplace(
+        {frame, processors::StrippedLog::key_of(plan.machines[machine].config)}, batches_.size());
+    if (is_new) {
+      batches_.emplace_back().frame = frame;
+      frames_[frame].batches.push_back(entry->second);
+    }
+    Batch& batch = batches_[entry->second];
+    batch.machines.push_back(machine);
+    ++batch.size;
+    batch_of_[machine] = entry->second;
+    ++frames_[frame].left;
+    ++frames_[frame].to_hand_out;
+    ++machines_left_;
+  }
+  for (Batch& batch : batches_) {
+    std::reverse(batch.machines.begin(), batch.machines.end());
+  }
+  for (std::size_t frame = 0; frame < frames_.size(); ++frame) {
+    if (frames_[frame].left == 0 && frames_done[frame]) {
+      frames_[frame].trace = Trace::done;
+    } else {
+      ++frames_left_;
+    }
+  }
+}
+
+std::int64_t Schedule::cost_of(const Batch& batch) const {
+  if (batch.timed != 0) {
+    return batch.spent / batch.timed;
+  }
+  return timed_ != 0 ? spent_ / timed_ : 0;
+}
+
+// A batch with machines to be handed out whose log is there; batches_.size() when there is none.
+std::size_t Schedule::choose_batch(std::size_t place) const {
+  const std::size_t none = batches_.size();
+  std::size_t mine = none;
+  std::size_t fresh = none;
+  std::size_t longest = none;
+  std::int64_t most = -1;
+  for (std::size_t number = 0; number < batches_.size(); ++number) {
+    const Batch& batch = batches_[number];
+    if (batch.machines.empty() || frames_[batch.frame].trace != Trace::done) {
+      continue;
+    }
+    if (batch.place == place && mine == none) {
+      mine = number;
+    }
+    if (batch.place == no_place && fresh == none) {
+      fresh = number;
+    }
+    // One nanosecond each keeps the order where nothing is known of the costs.
+    const std::int64_t left = static_cast<std::int64_t>(batch.machines.size()) * (cost_of(batch) + 1);
+    if (left > most) {
+      most = left;
+      longest = number;
+    }
+  }
+  return mine != none ? mine : fresh != none ? fresh : longest;
+}
+
+// The frame to be traced now; frames_.size() when there is none, or when the one traced ahead is not begun
+// yet.
+std::size_t Schedule::frame_to_trace() const {
+  for (std::size_t number = 0; number < frames_.size(); ++number) {
+    if (frames_[number].trace == Trace::waiting) {
+      return number;
+    }
+  }
+  return frames_.size();
+}
+
+SweepTask Schedule::next(std::size_t place, std::int64_t nanoseconds) {
+  const std::size_t waiting = frame_to_trace();
+  // Logs that are there or under way and that machines wait for.
+  std::size_t ahead = 0;
+  for (const Frame& frame : frames_) {
+    ahead +=
+        frame.trace == Trace::under_way || (frame.trace == Trace::done && frame.to_hand_out != 0) ? 1 : 0;
+  }
+  // The first log, and one more while the last machines of the one before are handed out.
+  const std::size_t number = choose_batch(place);
+  if (waiting != frames_.size() && (ahead == 0 || (ahead == 1 && number == batches_.size()))) {
+    frames_[waiting].trace = Trace::under_way;
+    return {SweepTask::Kind::trace, waiting, {}, 0};
+  }
+  if (number == batches_.size()) {
+    return {finished() ? SweepTask::Kind::end : SweepTask::Kind::wait, 0, {}, 0};
+  }
+  Batch& batch = batches_[number];
+  if (batch.place == no_place) {
+    batch.place = place;
+  }
+  SweepTask task{SweepTask::Kind::time, batch.frame, {}, batch.size};
+  const std::int64_t each = std::max<std::int64_t>(1, cost_of(batch));
+  std::int64_t given = 0;
+  do {
+    task.machines.push_back(batch.machines.back());
+    batch.machines.pop_back();
+    --frames_[batch.frame].to_hand_out;
+    given += each;
+  } while (!batch.machines.empty() && batch.timed != 0 && given + each <= nanoseconds);
+  return task;
+}
+
+void Schedule::traced(std::size_t frame, std::int64_t cpu_nanoseconds) {
+  sim::ensure(frames_[frame].trace == Trace::under_way, "a frame was traced that nobody was given");
+  frames_[frame].trace = Trace::done;
+  --frames_left_;
+  ++traced_;
+  spent_tracing_ += cpu_nanoseconds;
+}
+
+std::size_t Schedule::timed(std::size_t machine, std::int64_t cpu_nanoseconds) {
+  Batch& batch = batches_[batch_of_[machine]];
+  sim::ensure(frames_[batch.frame].left != 0, "a machine was timed twice");
+  --frames_[batch.frame].left;
+  --machines_left_;
+  ++batch.timed;
+  batch.spent += cpu_nanoseconds;
+  ++timed_;
+  spent_ += cpu_nanoseconds;
+  return batch.frame;
+}
+
+bool Schedule::over(std::size_t frame) const {
+  return frames_[frame].trace == Trace::done && frames_[frame].left == 0;
+}
+
+bool Schedule::finished() const { return machines_left_ == 0 && frames_left_ == 0; }
+
+std::int64_t Schedule::nanoseconds_left() const {
+  std::int64_t left = 0;
+  for (const Batch& batch : batches_) {
+    left += static_cast<std::int64_t>(batch.machines.size()) * cost_of(batch);
+  }
+  const auto waiting = std::count_if(frames_.begin(), frames_.end(),
+                                     [](const Frame& frame) { return frame.trace == Trace::waiting; });
+  return left + (traced_ != 0 ? spent_tracing_ / traced_ * waiting : 0);
+}
+
+}  // namespace marti::studies

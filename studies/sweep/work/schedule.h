@@ -1,0 +1,90 @@
+// Who does what next in a sweep: book-keeping without threads, files or clocks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "studies/sweep/plan/sweep_plan.h"
+
+namespace marti::studies {
+
+/// What a worker is to do.
+struct SweepTask {
+  enum class Kind : std::uint8_t {
+    trace,  ///< make the frame's log, and bring it to the shelf
+    time,   ///< time `machines`, all of one frame, whose log is there
+    wait,   ///< nothing now: ask again when something has been traced
+    end     ///< nothing any more
+  };
+  Kind kind = Kind::end;
+  std::size_t frame = 0;
+  std::vector<std::size_t> machines;  ///< indices into SweepPlan::machines
+  /// How many machines share these machines' stripped log (processors/walk/stripped_log.h) in this sweep.
+  std::size_t sharing = 0;
+};
+
+/// Machines of a frame that can share a stripped log are a batch. A place (a process, with all its threads)
+/// is given machines of one batch as long as there are any, then a new batch, then some of the batch of which
+/// most is left. One log is traced ahead of the machines that are being timed, so that nobody waits when a
+/// frame comes to its end. Costs are measured: the mean of what machines of the batch took, else of all.
+class Schedule {
+ public:
+  /// `machines_done` and `frames_done` as SweepStore gives them. A frame whose machines are all done is
+  /// traced only if its row is not there.
+  Schedule(const SweepPlan& plan, const std::vector<bool>& machines_done,
+           const std::vector<bool>& frames_done);
+
+  /// The next task of `place`: machines that take about `nanoseconds` together, at least one.
+  [[nodiscard]] SweepTask next(std::size_t place, std::int64_t nanoseconds = 0);
+
+  // To be told when it is done.
+  void traced(std::size_t frame, std::int64_t cpu_nanoseconds);
+  /// Returns the machine's frame.
+  std::size_t timed(std::size_t machine, std::int64_t cpu_nanoseconds);
+
+  /// All machines of the frame are timed: nobody needs its log.
+  [[nodiscard]] bool over(std::size_t frame) const;
+  /// All is done.
+  [[nodiscard]] bool finished() const;
+  [[nodiscard]] std::size_t machines_left() const { return machines_left_; }
+  [[nodiscard]] std::size_t frames_left() const { return frames_left_; }
+  /// Estimated processor time of what is neither done nor under way; nothing known yet: 0.
+  [[nodiscard]] std::int64_t nanoseconds_left() const;
+
+ private:
+  enum class Trace : std::uint8_t { waiting, under_way, done };
+  struct Batch {
+    std::size_t frame = 0;
+    std::vector<std::size_t> machines;  // to be handed out, the last first
+    std::size_t size = 0;               // with those handed out
+    std::size_t place = no_place;       // whose it is
+    std::int64_t spent = 0;
+    std::int64_t timed = 0;
+  };
+  struct Frame {
+    Trace trace = Trace::waiting;
+    std::size_t left = 0;  // machines not timed yet
+    std::size_t to_hand_out = 0;
+    std::vector<std::size_t> batches;
+  };
+  static constexpr std::size_t no_place = static_cast<std::size_t>(-1);
+
+  [[nodiscard]] std::int64_t cost_of(const Batch& batch) const;
+  [[nodiscard]] std::size_t choose_batch(std::size_t place) const;
+  [[nodiscard]] std::size_t frame_to_trace() const;
+
+  std::vector<Frame> frames_;
+  std::vector<Batch> batches_;
+  std::vector<std::size_t> batch_of_;  // of each machine
+  std::size_t machines_left_ = 0;
+  std::size_t frames_left_ = 0;
+  std::int64_t timed_ = 0;
+  std::int64_t spent_ = 0;
+  std::int64_t traced_ = 0;
+  std::int64_t spent_tracing_ = 0;
+};
+
+}  // namespace marti::studies

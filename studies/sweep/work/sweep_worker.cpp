@@ -1,0 +1,141 @@
+#include "studies/sweep/work/sweep_worker.h"
+
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "processors/replay/host_bytes.h"
+#include "processors/replay/replay.h"
+#include "scenes/open.h"
+#include "sim/config_errors.h"
+#include "sim/error.h"
+#include "sim/shown.h"
+#include "studies/host/cpu_time.h"
+#include "studies/host/image_file.h"
+#include "studies/run/functional_run.h"
+#include "studies/run/open_frame.h"
+#include "studies/run/scene_hash.h"
+
+namespace marti::studies {
+
+namespace {
+
+FrameLog trace(const SweepFrame& frame) {
+  const FrameConfig& config = frame.config;
+  const scenes::Scene scene = open_frame(config);
+  const std::uint64_t hash = scene_hash(scene);
+  if (frame.scene_hash && *frame.scene_hash != hash) {
+    throw sim::KeyError(
+        "scene.source",
+        sim::shown(config.scene) + ": the scene has changed since the sweep was begun; begin it again");
+  }
+  const FunctionalRun run = run_functional(config, scene);
+  return {run.frame.log, frame_row(run, hash)};
+}
+
+// Tracing uses all of the computer's threads, so what it takes is the time that passes.
+void do_trace(const SweepSite& site, TaskSource& source, const SweepTask& task) {
+  const auto begin = std::chrono::steady_clock::now();
+  const SweepFrame& frame = site.plan.frames[task.frame];
+  FrameLog log = sim::placed(frame.settings, site.plan.file, [&] { return trace(frame); });
+  const FrameRow row = log.row;
+  site.logs.put(task.frame, std::move(log));
+  const auto end = std::chrono::steady_clock::now();
+  source.traced(task.frame, row, std::chrono::duration_cast<std::chrono::nanoseconds>(end - begin).count());
+}
+
+std::string name_of(const SweepMachine& machine) {
+  std::string name;
+  for (const SettingsPart& part : machine.settings) {
+    for (const sim::EffectiveValue& value : *part) {
+      if (value.given) {
+        name += (name.empty() ? "" : ", ") + value.key + " = " + value.value;
+      }
+    }
+  }
+  return name;
+}
+
+void do_time(const SweepSite& site, TaskSource& source, const SweepTask& task) {
+  const std::shared_ptr<const FrameLog> log =
+      site.logs.take(task.frame, [&] { return trace(site.plan.frames[task.frame]); });
+  for (const std::size_t number : task.machines) {
+    const SweepMachine& machine = site.plan.machines[number];
+    const std::int64_t begin = thread_cpu_nanoseconds();
+    SweepRow row;
+    try {
+      const std::shared_ptr<const processors::StrippedLog> stripped =
+          site.strips.get(task.frame, log->log, machine.config, task.sharing);
+      const MemoryGate::Pass pass(site.machines, processors::host_bytes(machine.config));
+      processors::ReplayOptions options;
+      options.stripped = stripped.get();
+      // The events that a row holds must not depend on whether there was room for a stripped log.
+      options.keep_read_events = true;
+      row = sim::placed(machine.settings, site.plan.file, [&] {
+        return sweep_row(machine.config, processors::replay(*log->log, machine.config, options));
+      });
+    } catch (const sim::UserError& error) {
+      throw sim::UserError(std::string(error.what()) + " (the machine with " + sim::shown(name_of(machine)) +
+                           ")");
+    }
+    source.timed(number, row, thread_cpu_nanoseconds() - begin);
+  }
+}
+
+}  // namespace
+
+void work(const SweepSite& site, TaskSource& source) {
+  for (;;) {
+    const SweepTask task = source.next();
+    switch (task.kind) {
+      case SweepTask::Kind::trace:
+        do_trace(site, source, task);
+        break;
+      case SweepTask::Kind::time:
+        do_time(site, source, task);
+        break;
+      case SweepTask::Kind::wait:
+        throw sim::InternalError("a worker was told to wait");
+      case SweepTask::Kind::end:
+        return;
+    }
+  }
+}
+
+void work_together(const SweepSite& site, TaskSource& source, unsigned workers) {
+  std::mutex mutex;
+  std::exception_ptr first;
+  {
+    std::vector<std::jthread> threads;
+    const auto run = [&] {
+      try {
+        work(site, source);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (first == nullptr) {
+          first = std::current_exception();
+        }
+        source.stop();
+      }
+    };
+    try {
+      for (unsigned worker = 0; worker < workers; ++worker) {
+        threads.emplace_back(run);
+      }
+    } catch (const std::system_error& error) {
+      // The system gives no more threads: those that there are do the work.
+      if (threads.empty()) {
+        throw sim::UserError(std::string("no thread can be started: ") + error.what());
+      }
+    }
+  }
+  if (first != nullptr) {
+    std::rethrow_exception(first);
+  }
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,26 @@
+// Where the worker threads of a sweep get their tasks and bring their results.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "studies/sweep/plan/sweep_row.h"
+#include "studies/sweep/work/schedule.h"
+
+namespace marti::studies {
+
+/// Thread-safe. In one process it is the schedule itself (sweep/coordinator.h); in a rank that does not hold
+/// the schedule it asks the one that does.
+class TaskSource {
+ public:
+  virtual ~TaskSource() = default;
+  /// The next task, never `wait`: it blocks until there is one.
+  [[nodiscard]] virtual SweepTask next() = 0;
+  /// The log has been put on the shelf of this process.
+  virtual void traced(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) = 0;
+  virtual void timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds) = 0;
+  /// Some worker has failed: every next() from now on gives `end`.
+  virtual void stop() = 0;
+};
+
+}  // namespace marti::studies

@@ -1,0 +1,30 @@
+// Charts: Vega-Lite specifications (studies/tables/charts/*.vl.json, built into the program) with a table's
+// rows inlined, so that any viewer of Vega-Lite shows them.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "studies/tables/table.h"
+
+namespace marti::studies {
+
+/// A specification as it stands in studies/tables/charts/. Its data names the table that it shows:
+/// "data": {"name": "figure1"}.
+struct ChartSpecification {
+  std::string_view name;  ///< the file's, without .vl.json
+  std::string_view json;
+};
+
+/// All of them, in alphabetical order.
+[[nodiscard]] std::span<const ChartSpecification> chart_specifications();
+
+/// The name of the table that a specification shows. Throws InternalError when it names none.
+[[nodiscard]] std::string table_of(const ChartSpecification& chart);
+
+/// The specification with the table's rows as its data, an object each; a value that is missing, NaN or
+/// infinite is null. Text that is not UTF-8 is shown with replacement characters.
+[[nodiscard]] std::string fill_chart(const ChartSpecification& chart, const Table& table);
+
+}  // namespace marti::studies

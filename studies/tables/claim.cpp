@@ -1,0 +1,46 @@
+#include "studies/tables/claim.h"
+
+#include <fmt/format.h>
+
+#include "sim/error.h"
+
+namespace marti::studies {
+
+std::string_view name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::agrees:
+      return "agrees";
+    case Verdict::in_part:
+      return "in part";
+    case Verdict::differs:
+      return "differs";
+    case Verdict::not_measured:
+      return "not measured";
+  }
+  throw sim::InternalError("an unknown verdict");
+}
+
+Table claim_table(std::span<const Claim> claims) {
+  Table table("claims", "The paper's statements",
+              {{"subject", ColumnType::text, "", "what it is about"},
+               {"paper", ColumnType::text, "", "what the paper says"},
+               {"here", ColumnType::text, "", "what was measured"},
+               {"verdict", ColumnType::text, "", "agrees, in part, differs, or not measured"}});
+  for (const Claim& claim : claims) {
+    table.add_row({claim.subject, claim.paper, claim.here.empty() ? Cell() : Cell(claim.here),
+                   std::string(name_of(claim.verdict))});
+  }
+  return table;
+}
+
+std::string text_of(std::span<const Claim> claims) {
+  std::string text = "The paper's statements\n";
+  for (const Claim& claim : claims) {
+    text += fmt::format("  {:12}  {}\n                paper: {}\n                here:  {}\n",
+                        name_of(claim.verdict), claim.subject, claim.paper,
+                        claim.here.empty() ? "-" : claim.here);
+  }
+  return text;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,54 @@
+#include "studies/tables/json_table.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Cell& cell) {
+  if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
+    return *integer;
+  }
+  if (const auto* real = std::get_if<double>(&cell)) {
+    return std::isfinite(*real) ? Json(*real) : Json();
+  }
+  if (const auto* text = std::get_if<std::string>(&cell)) {
+    return *text;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string json_text(const Json& json) {
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json rows_json(const Table& table) {
+  Json rows = Json::array();
+  for (const std::vector<Cell>& row : table.rows()) {
+    Json object = Json::object();
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      object[table.columns()[i].name] = json_of(row[i]);
+    }
+    rows.push_back(std::move(object));
+  }
+  return rows;
+}
+
+std::string json_of(const Table& table) {
+  Json columns = Json::array();
+  for (const Column& column : table.columns()) {
+    columns.push_back({{"name", column.name}, {"unit", column.unit}, {"description", column.description}});
+  }
+  const Json whole = {
+      {"name", table.name()}, {"title", table.title()}, {"columns", columns}, {"rows", rows_json(table)}};
+  return json_text(whole);
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,89 @@
+#include "studies/tables/table.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "sim/error.h"
+
+namespace marti::studies {
+
+namespace {
+
+bool is_plain(std::string_view name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+bool fits(const Cell& cell, ColumnType type) {
+  if (std::holds_alternative<std::monostate>(cell)) {
+    return true;
+  }
+  switch (type) {
+    case ColumnType::integer:
+      return std::holds_alternative<std::int64_t>(cell);
+    case ColumnType::real:
+      return std::holds_alternative<double>(cell);
+    case ColumnType::text:
+      return std::holds_alternative<std::string>(cell);
+  }
+  return false;
+}
+
+}  // namespace
+
+Table::Table(std::string name, std::string title, std::vector<Column> columns)
+    : name_(std::move(name)), title_(std::move(title)), columns_(std::move(columns)) {
+  sim::ensure(is_plain(name_) && !columns_.empty(), "a table needs a plain name and a column");
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    sim::ensure(is_plain(columns_[i].name), "the name of a table's column is not plain");
+    for (std::size_t j = 0; j < i; ++j) {
+      sim::ensure(columns_[i].name != columns_[j].name, "two columns of a table have one name");
+    }
+  }
+}
+
+void Table::add_row(std::vector<Cell> cells) {
+  sim::ensure(cells.size() == columns_.size(), "a row has another number of cells than its table columns");
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    sim::ensure(fits(cells[i], columns_[i].type), "a cell is not of its column's type");
+  }
+  rows_.push_back(std::move(cells));
+}
+
+std::size_t Table::column(std::string_view name) const {
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    if (columns_[i].name == name) {
+      return i;
+    }
+  }
+  throw sim::InternalError("table " + name_ + " has no column " + std::string(name));
+}
+
+const Cell& Table::at(std::size_t row, std::string_view column_name) const {
+  sim::ensure(row < rows_.size(), "a table has no such row");
+  return rows_[row][column(column_name)];
+}
+
+Cell count_cell(std::uint64_t count) {
+  sim::ensure(count <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()),
+              "a count does not fit a table");
+  return static_cast<std::int64_t>(count);
+}
+
+Table describe_columns(std::span<const Table> tables) {
+  Table described("columns", "Every column of every table",
+                  {{"table_name", ColumnType::text, "", "table"},
+                   {"column_name", ColumnType::text, "", "column"},
+                   {"unit", ColumnType::text, "", "unit; 1 for a count, empty for a text"},
+                   {"description", ColumnType::text, "", "meaning"}});
+  for (const Table& table : tables) {
+    for (const Column& column : table.columns()) {
+      described.add_row({table.name(), column.name, column.unit, column.description});
+    }
+  }
+  return described;
+}
+
+}  // namespace marti::studies

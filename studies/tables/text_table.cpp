@@ -1,0 +1,124 @@
+#include "studies/tables/text_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "studies/tables/wide_table.h"
+
+namespace marti::studies {
+
+namespace {
+
+/// How a unit is shown: what one of it is worth in the shown unit, its name, and the decimals.
+struct Shown {
+  double factor = 1.0;
+  std::string unit;
+  int decimals = 3;
+  bool convert = false;  ///< integers too become reals
+};
+
+Shown shown(const Column& column) {
+  if (column.unit == "ps") {
+    return {1e-12, "s", 3, true};
+  }
+  if (column.unit == "byte") {
+    return {1.0 / 1024.0, "KiB", 1, true};
+  }
+  if (column.unit == "fraction") {
+    return {100.0, "%", 2, true};
+  }
+  return {1.0, column.unit == "1" ? "" : column.unit, 3, false};
+}
+
+std::string grouped(std::int64_t value) {
+  std::string digits = std::to_string(value);
+  const std::size_t first = value < 0 ? 1 : 0;
+  for (std::size_t at = digits.size(); at > first + 3; at -= 3) {
+    digits.insert(at - 3, ",");
+  }
+  return digits;
+}
+
+std::string visible(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20U || c == 0x7f) {
+      out += fmt::format("\\x{:02x}", static_cast<unsigned>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string real(double value, const Shown& how) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value * how.factor, how.decimals)
+                              : fmt::format("{}", value);
+}
+
+std::string text_of(const Cell& cell, const Shown& how) {
+  if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
+    return how.convert ? real(static_cast<double>(*integer), how) : grouped(*integer);
+  }
+  if (const auto* value = std::get_if<double>(&cell)) {
+    return real(*value, how);
+  }
+  if (const auto* text = std::get_if<std::string>(&cell)) {
+    return visible(*text);
+  }
+  return "-";
+}
+
+/// Characters, not bytes: bytes of UTF-8 that continue a character do not count.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
+}
+
+}  // namespace
+
+std::string text_of(const Table& table) {
+  std::vector<std::vector<std::string>> lines(2);
+  for (const Column& column : table.columns()) {
+    lines[0].push_back(column.name);
+    lines[1].push_back(shown(column).unit);
+  }
+  for (const std::vector<Cell>& row : table.rows()) {
+    std::vector<std::string>& line = lines.emplace_back();
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      line.push_back(text_of(row[i], shown(table.columns()[i])));
+    }
+  }
+  std::vector<std::size_t> widths(table.columns().size(), 0);
+  for (const std::vector<std::string>& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      widths[i] = std::max(widths[i], width_of(line[i]));
+    }
+  }
+  std::string out = table.title() + "\n";
+  for (const std::vector<std::string>& line : lines) {
+    std::string text;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const std::string padding(widths[i] - width_of(line[i]), ' ');
+      const bool left = table.columns()[i].type == ColumnType::text;
+      text += "  " + (left ? line[i] + padding : padding + line[i]);
+    }
+    out += text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
+  }
+  return out;
+}
+
+std::string side_by_side(const Table& table, std::string_view row, std::string_view across,
+                         std::string_view value, std::string_view title) {
+  const Table wide = widen(table, std::array{row}, across, "", value);
+  Table titled("shown", std::string(title), {wide.columns().begin(), wide.columns().end()});
+  for (const std::vector<Cell>& cells : wide.rows()) {
+    titled.add_row(cells);
+  }
+  return text_of(titled);
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,40 @@
+#include "studies/tables/text_units.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace marti::studies {
+
+std::string seconds(sim::Ticks ticks) {
+  const double s = static_cast<double>(ticks) / static_cast<double>(sim::ticks_per_second);
+  if (s >= 1.0) {
+    return fmt::format("{:.3f} s", s);
+  }
+  if (s >= 1e-3) {
+    return fmt::format("{:.3f} ms", s * 1e3);
+  }
+  return fmt::format("{:.3f} us", s * 1e6);
+}
+
+std::string bytes(double count) {
+  if (count >= 1024.0 * 1024.0) {
+    return fmt::format("{:.1f} MiB", count / (1024.0 * 1024.0));
+  }
+  return count >= 1024.0 ? fmt::format("{:.1f} KiB", count / 1024.0) : fmt::format("{:.0f} B", count);
+}
+
+std::string duration_text(double seconds) {
+  // Rounded before it is divided, so that no part of it becomes 60.
+  if (seconds < 59.95) {
+    return fmt::format("{:.1f} s", seconds);
+  }
+  const double whole = std::round(seconds);
+  if (whole < 3600.0) {
+    return fmt::format("{:.0f} min {:02.0f} s", std::floor(whole / 60.0), std::fmod(whole, 60.0));
+  }
+  const double minutes = std::round(seconds / 60.0);
+  return fmt::format("{:.0f} h {:02.0f} min", std::floor(minutes / 60.0), std::fmod(minutes, 60.0));
+}
+
+}  // namespace marti::studies
