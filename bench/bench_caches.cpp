@@ -23,6 +23,7 @@
 #include "memory/all_ways.h"
 #include "memory/stack_distance.h"
 #include "memory/tags.h"
+#include "processors/cost/cost_model.h"
 #include "processors/passes/reference_trace.h"
 #include "processors/passes/working_set.h"
 #include "processors/program/render.h"

@@ -10,6 +10,7 @@
 
 #include "accel/structure.h"
 #include "bench/report.h"
+#include "processors/cost/cost_model.h"
 #include "processors/program/render.h"
 #include "processors/replay/replay.h"
 #include "scenes/procedural.h"

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "processors/cost/cost_model.h"
 #include "sim/config_errors.h"
 #include "sim/error.h"
 #include "studies/keys/build_keys.h"

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "accel/structure.h"
+#include "processors/cost/cost_model.h"
 #include "processors/program/render.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"

@@ -37,11 +37,16 @@ FrameLog trace(const SweepFrame& frame) {
   return {run.frame.log, frame_row(run, hash)};
 }
 
+// A fault of the frame is reported at the place of its key.
+FrameLog trace(const SweepSite& site, const SweepFrame& frame) {
+  return sim::placed(frame.settings, site.plan.file, [&] { return trace(frame); });
+}
+
 // Tracing uses all of the computer's threads, so what it takes is the time that passes.
 void do_trace(const SweepSite& site, TaskSource& source, const SweepTask& task) {
   const auto begin = std::chrono::steady_clock::now();
   const SweepFrame& frame = site.plan.frames[task.frame];
-  FrameLog log = sim::placed(frame.settings, site.plan.file, [&] { return trace(frame); });
+  FrameLog log = trace(site, frame);
   const FrameRow row = log.row;
   site.logs.put(task.frame, std::move(log));
   const auto end = std::chrono::steady_clock::now();
@@ -62,7 +67,7 @@ std::string name_of(const SweepMachine& machine) {
 
 void do_time(const SweepSite& site, TaskSource& source, const SweepTask& task) {
   const std::shared_ptr<const FrameLog> log =
-      site.logs.take(task.frame, [&] { return trace(site.plan.frames[task.frame]); });
+      site.logs.take(task.frame, [&] { return trace(site, site.plan.frames[task.frame]); });
   for (const std::size_t number : task.machines) {
     const SweepMachine& machine = site.plan.machines[number];
     const std::int64_t begin = thread_cpu_nanoseconds();
@@ -75,7 +80,7 @@ void do_time(const SweepSite& site, TaskSource& source, const SweepTask& task) {
       options.stripped = stripped.get();
       // The events that a row holds must not depend on whether there was room for a stripped log.
       options.keep_read_events = true;
-      row = sim::placed(machine.settings, site.plan.file, [&] {
+      row = sim::placed(all_of(machine.settings), site.plan.file, [&] {
         return sweep_row(machine.config, processors::replay(*log->log, machine.config, options));
       });
     } catch (const sim::UserError& error) {
