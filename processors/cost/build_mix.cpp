@@ -15,14 +15,6 @@ namespace {
 using accel::Counted;
 using accel::OperationCounts;
 
-OperationMix mean(const OperationCounts& counts, std::uint64_t divisor) {
-  const auto each = [divisor](std::uint64_t count) {
-    return divisor == 0 ? 0 : static_cast<std::int64_t>((count * 1000 + divisor / 2) / divisor);
-  };
-  return {each(counts.add),         each(counts.multiply), each(counts.divide),
-          each(counts.square_root), each(counts.compare),  each(counts.integer)};
-}
-
 // A count may lie below the share of it that the mean of others predicts.
 OperationCounts beyond(const OperationCounts& counts, const OperationMix& each, std::uint64_t times) {
   const auto rest = [times](std::uint64_t count, std::int64_t mean) {
@@ -43,10 +35,10 @@ class Measurement {
     std::vector<std::uint32_t> all(octree_.triangles().size());
     std::iota(all.begin(), all.end(), 0U);
     split(0, {}, all);
-    measured_.mixes.listed = mean(untested_counts_, untested_);
+    measured_.mixes.listed = mean_mix(untested_counts_, untested_);
     measured_.mixes.overlap =
-        mean(beyond(tested_counts_, measured_.mixes.listed, tested_), measured_.overlaps);
-    measured_.mixes.child = mean(child_counts_, measured_.children);
+        mean_mix(beyond(tested_counts_, measured_.mixes.listed, tested_), measured_.overlaps);
+    measured_.mixes.child = mean_mix(child_counts_, measured_.children);
     measured_.listed = untested_ + tested_;
     return measured_;
   }

@@ -204,15 +204,15 @@ OperationMix sum(const OperationMix& a, const OperationMix& b) {
           a.compare + b.compare, a.integer + b.integer};
 }
 
-OperationMix mean(const OperationCounts& counts, std::uint64_t steps) {
+}  // namespace
+
+OperationMix mean_mix(const accel::OperationCounts& counts, std::uint64_t steps) {
   const auto each = [steps](std::uint64_t count) {
     return steps == 0 ? 0 : static_cast<std::int64_t>((count * 1000 + steps / 2) / steps);
   };
   return {each(counts.add),         each(counts.multiply), each(counts.divide),
           each(counts.square_root), each(counts.compare),  each(counts.integer)};
 }
-
-}  // namespace
 
 MeasuredMixes measure_operation_mixes(const scenes::Scene& scene, const accel::TriangleSet& triangles,
                                       const accel::Structure& structure, const RenderOptions& options) {
@@ -242,26 +242,26 @@ MeasuredMixes measure_operation_mixes(const scenes::Scene& scene, const accel::T
   measured.steps = recorder.steps();
   const LogTotals& steps = measured.steps;
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
-    measured.mixes.ray[kind] = mean(buckets.ray[kind], steps.rays[kind]);
+    measured.mixes.ray[kind] = mean_mix(buckets.ray[kind], steps.rays[kind]);
   }
-  measured.mixes.branch = mean(buckets.branch, steps.branches);
-  measured.mixes.leaf = mean(buckets.leaf, steps.leaves);
-  measured.mixes.lookup = mean(buckets.lookup, steps.lookups);
+  measured.mixes.branch = mean_mix(buckets.branch, steps.branches);
+  measured.mixes.leaf = mean_mix(buckets.leaf, steps.leaves);
+  measured.mixes.lookup = mean_mix(buckets.lookup, steps.lookups);
   measured.tests = recorder.tests();
   const auto test = [&](accel::PrimitiveKind kind) {
     const auto k = static_cast<std::size_t>(kind);
-    return mean(buckets.test[k], measured.tests[k]);
+    return mean_mix(buckets.test[k], measured.tests[k]);
   };
   measured.mixes.test = test(accel::PrimitiveKind::triangle);
   measured.mixes.sphere_test = test(accel::PrimitiveKind::sphere);
   measured.mixes.cone_test = test(accel::PrimitiveKind::cone);
-  measured.mixes.shade = mean(buckets.shade, steps.shades);
-  measured.mixes.light = mean(buckets.light, steps.lights);
+  measured.mixes.shade = mean_mix(buckets.shade, steps.shades);
+  measured.mixes.light = mean_mix(buckets.light, steps.lights);
   if (steps.texels > 0) {
-    measured.mixes.texel = sum(mean(buckets.texel, steps.texels), texel_sampling);
+    measured.mixes.texel = sum(mean_mix(buckets.texel, steps.texels), texel_sampling);
   }
   measured.mixes.pixel =
-      sum(mean(buckets.pixel, std::uint64_t{options.width} * options.height), pixel_conversion);
+      sum(mean_mix(buckets.pixel, std::uint64_t{options.width} * options.height), pixel_conversion);
   return measured;
 }
 

@@ -99,4 +99,8 @@ struct MeasuredWalks {
 [[nodiscard]] MeasuredWalks measure_walks(const accel::Structure& structure,
                                           std::span<const accel::Ray> rays);
 
+/// Counted operations over the number of steps (or splits) that they were counted in, in thousandths, rounded
+/// to the nearest; all 0 without steps.
+[[nodiscard]] OperationMix mean_mix(const accel::OperationCounts& counts, std::uint64_t steps);
+
 }  // namespace marti::processors

@@ -13,7 +13,7 @@ namespace marti::studies {
 
 namespace {
 
-constexpr std::uint64_t full = processors::PacketSample::all_before;
+constexpr std::uint64_t full_warming = processors::PacketSample::all_before;
 constexpr std::uint32_t all_nodes = std::numeric_limits<std::uint32_t>::max();
 
 // Nobody asks, so nobody is told.
@@ -33,7 +33,7 @@ sim::Ticks unloaded_miss(const processors::MachineConfig& machine) {
 
 std::vector<Method> make_methods() {
   std::vector<Method> methods = {{}};
-  for (const std::uint64_t warm_up : {std::uint64_t{0}, std::uint64_t{1}, full}) {
+  for (const std::uint64_t warm_up : {std::uint64_t{0}, std::uint64_t{1}, full_warming}) {
     for (const std::uint64_t one_in : {2, 4, 8, 16, 32}) {
       methods.push_back({.kind = MethodKind::sampled, .one_in = one_in, .warm_up = warm_up});
     }
@@ -77,9 +77,9 @@ std::string Method::knob() const {
       return "replay";
     case MethodKind::sampled:
       return "1/" + std::to_string(one_in) + ", " +
-             (warm_up == full ? "full warming"
-              : warm_up == 0  ? "cold"
-                              : "one packet of warming");
+             (warm_up == full_warming ? "full warming"
+              : warm_up == 0          ? "cold"
+                                      : "one packet of warming");
     case MethodKind::relaxed:
       return "quantum of " + std::to_string(quantum) + (quantum == 1 ? " miss" : " misses");
     case MethodKind::analytic:

@@ -21,7 +21,7 @@ constexpr std::string_view expected =
 // Both have a results.sqlite, with other columns in the table that describes the others. Whoever reads the
 // file says what else is wrong with it.
 bool is_study(const fs::path& file) {
-  check_store_file(file);
+  (void)check_store_file(file);
   SqliteConnection connection(file, SqliteConnection::Access::read);
   return connection.integer("SELECT count(*) FROM pragma_table_info('columns') WHERE name = 'table_name'") >
          0;

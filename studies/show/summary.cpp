@@ -23,19 +23,6 @@ namespace {
 
 using Lines = std::back_insert_iterator<std::string>;
 
-// 1234567 -> 1,234,567
-std::string grouped(std::int64_t value) {
-  std::string digits = std::to_string(value);
-  const std::size_t first = digits[0] == '-' ? 1 : 0;
-  for (std::size_t at = digits.size(); at > first + 3;) {
-    at -= 3;
-    digits.insert(at, 1, ',');
-  }
-  return digits;
-}
-
-std::string grouped(std::uint64_t value) { return grouped(static_cast<std::int64_t>(value)); }
-
 // "1 node", "16 nodes"
 std::string counted(std::uint64_t count, std::string_view what) {
   return fmt::format("{} {}{}", grouped(count), what, count == 1 ? "" : "s");

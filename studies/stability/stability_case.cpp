@@ -9,15 +9,6 @@
 
 namespace marti::studies {
 
-std::string grouped(std::uint64_t count) {
-  std::string text = std::to_string(count);
-  for (std::size_t at = text.size(); at > 3;) {
-    at -= 3;
-    text.insert(at, ",");
-  }
-  return text;
-}
-
 CaseOutcome none_wrong(const Tally& tally, std::string_view what) {
   if (tally.of == 0) {
     return {fmt::format("no {} tried", what), 1.0, 0.0};

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "studies/tables/text_units.h"  // grouped(), which every case uses
+
 namespace marti::studies {
 
 /// How large the cases are.
@@ -50,9 +52,6 @@ struct Tally {
     return *this;
   }
 };
-
-/// "1,234,567".
-[[nodiscard]] std::string grouped(std::uint64_t count);
 
 /// None may be wrong: "0 of 20,000 WHAT". A case that tried nothing fails.
 [[nodiscard]] CaseOutcome none_wrong(const Tally& tally, std::string_view what);

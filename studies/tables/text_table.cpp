@@ -1,4 +1,5 @@
 #include "studies/tables/text_table.h"
+#include "studies/tables/text_units.h"
 
 #include <fmt/format.h>
 
@@ -31,15 +32,6 @@ Shown shown(const Column& column) {
     return {100.0, "%", 2, true};
   }
   return {1.0, column.unit == "1" ? "" : column.unit, 3, false};
-}
-
-std::string grouped(std::int64_t value) {
-  std::string digits = std::to_string(value);
-  const std::size_t first = value < 0 ? 1 : 0;
-  for (std::size_t at = digits.size(); at > first + 3; at -= 3) {
-    digits.insert(at - 3, ",");
-  }
-  return digits;
 }
 
 std::string visible(const std::string& text) {

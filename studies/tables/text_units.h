@@ -1,6 +1,7 @@
 // Times and sizes as people read them.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "sim/time.h"
@@ -12,6 +13,9 @@ namespace marti::studies {
 
 /// Of real time: "1.2 s", "2 min 05 s", "3 h 20 min".
 [[nodiscard]] std::string duration_text(double seconds);
+
+/// Digits in groups of three: "1,234,567".
+[[nodiscard]] std::string grouped(std::int64_t value);
 
 /// "1.2 MiB", "1.2 KiB", "12 B".
 [[nodiscard]] std::string bytes(double count);

@@ -2,7 +2,7 @@
 # each_command_test.sh PROGRAM SOURCE: every command of marti once, on a small machine. Under the sanitizers it shows
 # that no command touches memory wrongly on its ordinary way; what commands print is judged by the other tests.
 set -euo pipefail
-program=$1 source=$2
+program=$(realpath "$1") source=$(realpath "$2")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"

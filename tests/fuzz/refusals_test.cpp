@@ -50,7 +50,7 @@ struct Command {
   std::string file;
 };
 
-void read_run(Config& config) {
+void read_machine_of_run(Config& config) {
   const studies::FrameConfig frame = studies::read_frame(config);
   const processors::MachineConfig machine = studies::read_machine(config);
   (void)studies::read_record(config, false);
@@ -60,11 +60,11 @@ void read_run(Config& config) {
 
 std::vector<Command> commands() {
   return {
-      {studies::run_schema(), read_run, "marti.toml"},
-      {studies::run_schema(), read_run, "contexts.toml"},
-      {studies::run_schema(), read_run, "pipeline.toml"},
-      {studies::run_schema(), read_run, "space.toml"},
-      {studies::run_schema(), read_run, "distributed.toml"},
+      {studies::run_schema(), read_machine_of_run, "marti.toml"},
+      {studies::run_schema(), read_machine_of_run, "contexts.toml"},
+      {studies::run_schema(), read_machine_of_run, "pipeline.toml"},
+      {studies::run_schema(), read_machine_of_run, "space.toml"},
+      {studies::run_schema(), read_machine_of_run, "distributed.toml"},
       {studies::run_schema(), [](Config& config) { (void)studies::read_frames(config); }, "animation.toml"},
       {studies::sweep_schema(), [](Config& config) { (void)studies::plan_sweep(config); },
        "sweep-small.toml"},

@@ -113,18 +113,18 @@ std::string text_of(SqliteConnection& connection, const std::string& sql) {
 
 }  // namespace
 
-void check_store_file(const std::filesystem::path& file) {
+const std::filesystem::path& check_store_file(const std::filesystem::path& file) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
   if (status.type() == std::filesystem::file_type::not_found) {
-    return;
+    return file;
   }
   if (!std::filesystem::is_regular_file(status)) {
     throw sim::UserError(file.string() + ": is not a regular file" + std::string(what_to_do));
   }
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
   if (!error && bytes == 0) {
-    return;  // made, but never written
+    return file;  // made, but never written
   }
   std::array<unsigned char, 100> header{};
   std::ifstream in(file, std::ios::binary);
@@ -151,6 +151,7 @@ void check_store_file(const std::filesystem::path& file) {
     throw sim::UserError(file.string() + ": is damaged: it has " + std::to_string(bytes) + " bytes of " +
                          std::to_string(page * big_endian(28, 4)) + std::string(what_to_do));
   }
+  return file;
 }
 
 bool is_empty_database(SqliteConnection& connection) {

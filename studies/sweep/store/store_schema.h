@@ -12,8 +12,9 @@ namespace marti::studies {
 inline constexpr int first_result_counter = 2;
 inline constexpr int first_frame_counter = 6;
 
-/// Throws UserError when the file is there but is no whole SQLite database, before SQLite has touched it.
-void check_store_file(const std::filesystem::path& file);
+/// The file itself. Throws UserError when it is there but is not a whole SQLite database, before SQLite has
+/// touched it.
+const std::filesystem::path& check_store_file(const std::filesystem::path& file);
 
 /// Whether nothing was ever written into the database: it is new.
 [[nodiscard]] bool is_empty_database(SqliteConnection& connection);

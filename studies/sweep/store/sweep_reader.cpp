@@ -17,7 +17,7 @@ namespace {
 // The columns of table points that are no axes.
 constexpr std::size_t point_columns = 4;
 
-const std::filesystem::path& checked(const std::filesystem::path& file) {
+const std::filesystem::path& existing_store(const std::filesystem::path& file) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
   if (status.type() == std::filesystem::file_type::not_found) {
@@ -26,8 +26,7 @@ const std::filesystem::path& checked(const std::filesystem::path& file) {
   if (error) {
     throw sim::UserError(file.string() + ": cannot be read: " + error.message());
   }
-  check_store_file(file);
-  return file;
+  return check_store_file(file);
 }
 
 std::vector<std::string> columns_of(SqliteConnection& connection, const std::string& table) {
@@ -46,14 +45,14 @@ bool is_begun(const std::filesystem::path& store) {
   if (std::filesystem::status(store, error).type() == std::filesystem::file_type::not_found) {
     return false;
   }
-  SqliteConnection connection(checked(store), SqliteConnection::Access::read);
+  SqliteConnection connection(existing_store(store), SqliteConnection::Access::read);
   return !is_empty_database(connection);
 }
 
 class SweepReader::Implementation {
  public:
   explicit Implementation(const std::filesystem::path& file)
-      : file_(file), connection_(checked(file), SqliteConnection::Access::read) {
+      : file_(file), connection_(existing_store(file), SqliteConnection::Access::read) {
     connection_.execute("BEGIN");  // from here on all reads are of one instant
     if (is_empty_database(connection_)) {
       throw sim::UserError(file.string() +

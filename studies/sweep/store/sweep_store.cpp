@@ -27,18 +27,12 @@ std::string host_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
-// Checks what can be told without opening the database, so that SQLite does not touch what is no store.
-const std::filesystem::path& checked(const std::filesystem::path& file) {
-  check_store_file(file);
-  return file;
-}
-
 }  // namespace
 
 class SweepStore::Implementation {
  public:
   Implementation(const std::filesystem::path& file, const SweepPlan& plan)
-      : lock_(file), connection_(checked(file), SqliteConnection::Access::write) {
+      : lock_(file), connection_(check_store_file(file), SqliteConnection::Access::write) {
     const bool is_new = is_empty_database(connection_);
     if (!is_new) {
       const std::int64_t format = check_store_format(connection_, file);
