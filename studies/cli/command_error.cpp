@@ -25,7 +25,7 @@ std::string listed(const std::vector<std::string>& names) {
 
 bool looks_like_a_file(std::string_view word) { return word.ends_with(".toml"); }
 
-// The command that was reached, the words that led to it and those behind them.
+// The subcommand that the words select, the words that lead to it and those that follow it.
 struct Reached {
   const CLI::App* command = nullptr;
   std::string name;  // as "scene info"
