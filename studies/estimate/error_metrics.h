@@ -11,8 +11,7 @@ namespace marti::studies {
 
 /// Kendall's rank correlation tau-b of two lists of equal length (M. G. Kendall, "The treatment of ties in
 /// ranking problems", Biometrika 33(3), 1945): 1 when both put all pairs in the same order, -1 when in the
-/// opposite, and a pair tied in one list only counts half. Nothing when one of the lists has no two different
-/// values.
+/// opposite, and a pair tied in one list only counts half. std::nullopt when all values of a list are equal.
 [[nodiscard]] std::optional<double> kendall_tau(std::span<const double> a, std::span<const double> b);
 
 /// What it costs to choose by an estimate: the true value at the least estimate, over the least true value,

@@ -13,8 +13,8 @@ namespace marti::studies {
 struct StageLoad {
   std::string name;  ///< "search", "nearest", "shade"; "nodes" where there are no stages
   std::uint64_t nodes = 0;
-  double busy = 0.0;     ///< mean share of the frame without waits for rays or queues and without idling
-  double busiest = 0.0;  ///< that share for the busiest node
+  double busy = 0.0;        ///< mean share of the frame without waits for rays or queues and without idling
+  double busiest = 0.0;     ///< that share for the busiest node
   double queue_full = 0.0;  ///< mean share of the frame in which a node waits for a full queue
   std::int64_t longest_queue = 0;
 

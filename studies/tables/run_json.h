@@ -20,18 +20,19 @@ class RunJson {
   [[nodiscard]] const nlohmann::ordered_json& find(std::string_view path) const;
   /// An object that has to be there. Throws UserError, naming the file and the field, when it is not.
   [[nodiscard]] const nlohmann::ordered_json& at(std::string_view path) const;
-  /// Nothing when it is not there or no finite number.
+  /// std::nullopt when the field is missing or not a finite number.
   [[nodiscard]] std::optional<double> number(std::string_view path) const;
-  /// Both throw UserError, naming the file and the field, when it is there and no number from `low` to
-  /// `high`; the first also when it is missing or null, where the second gives nothing.
+  /// Both throw UserError, naming the file and the field, when the field is present and not a number from
+  /// `low` to `high`. If it is missing or null, the first throws as well and the second returns std::nullopt.
   [[nodiscard]] double required_number(std::string_view path, double low, double high) const;
   [[nodiscard]] std::optional<double> optional_number(std::string_view path, double low, double high) const;
-  /// 0 when it is not there or no number.
+  /// 0 when the field is missing or not a number.
   [[nodiscard]] double count(std::string_view path) const { return number(path).value_or(0.0); }
-  /// Empty when it is not there or no text.
+  /// Empty when the field is missing or not a text.
   [[nodiscard]] std::string text(std::string_view path) const;
   [[nodiscard]] bool boolean(std::string_view path) const;
-  /// The objects of a list; none when it is not there or no list. Whatever else is in it is passed over.
+  /// The objects of a list; empty when the field is missing or not a list. Items that are not objects are
+  /// ignored.
   [[nodiscard]] std::vector<RunJson> list(std::string_view path) const;
 
   /// Throws UserError: the file's name, `reason`, and what file is expected.

@@ -24,7 +24,8 @@ class Database {
   /// Makes a table of this name with the columns and rows of `table`. NaN becomes NULL, as SQLite has none.
   void add(const Table& table);
 
-  /// Ends the connection; a failure to do so is a UserError. The destructor only lets go.
+  /// Ends the connection; a failure to do so is a UserError. The destructor ends it without reporting
+  /// failures.
   void close() { connection_.close(); }
 
  private:
