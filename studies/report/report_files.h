@@ -10,8 +10,8 @@
 
 namespace marti::studies {
 
-/// A name as charts, files and elements of the page have it: other than lower-case letters and digits become
-/// '_'.
+/// A name as charts, files and elements of the page have it: every other character than lower-case letters
+/// and digits becomes '_'.
 [[nodiscard]] std::string plain_name(std::string name);
 
 /// Is there something of this name, be it a link to nothing? UserError when that cannot be told.
@@ -22,7 +22,7 @@ namespace marti::studies {
                                                                  std::string_view ending);
 
 /// Takes a PNG file into the report; of one with more than 16 MiB only a sentence says that it is left out.
-/// UserError when it cannot be read, is none or has been cut off.
+/// UserError when it cannot be read, is not a PNG file or has been cut off.
 void take_image(const std::filesystem::path& file, const std::string& title, ReportData& report);
 
 /// A chart that a run or a study has written. UserError unless it is a Vega-Lite specification whose rows

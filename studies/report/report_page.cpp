@@ -46,7 +46,7 @@ Json data_of(const ReportData& report) {
   for (const ReportChart& chart : report.charts) {
     Json& each =
         data["charts"].emplace_back(Json{{"name", chart.name}, {"title", chart.title}, {"spec", chart.spec}});
-    // By this name rows are exchanged.
+    // The page replaces rows by this data name.
     each["spec"]["data"]["name"] = "rows";
     if (chart.live.is_object() && report.explorer.is_object()) {
       each["live"] = chart.live;

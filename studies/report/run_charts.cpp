@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Counts of a file that somebody may have changed; add_run_charts() says which file.
+// Adds counts of a file that somebody may have changed; if they overflow, add_run_charts() names the file.
 std::int64_t plus(std::int64_t a, std::int64_t b) {
   std::int64_t sum = 0;
   if (__builtin_add_overflow(a, b, &sum)) {

@@ -15,17 +15,17 @@ inline constexpr int first_frame_counter = 6;
 /// Throws UserError when the file is there but is no whole SQLite database, before SQLite has touched it.
 void check_store_file(const std::filesystem::path& file);
 
-/// Whether nothing was ever written into the database: it is new.
+/// Whether the database is new: nothing was ever written into it.
 [[nodiscard]] bool is_empty_database(SqliteConnection& connection);
 
-/// Its format. Throws UserError unless the database is a store of one that this program reads.
+/// The store's format. Throws UserError unless the database is a store of a format that this program reads.
 std::int64_t check_store_format(SqliteConnection& connection, const std::filesystem::path& file);
 
 /// Throws UserError unless this program may add results to the store: it must be of this version and of the
 /// newest format.
 void check_store_version(SqliteConnection& connection, const std::filesystem::path& file);
 
-/// Makes the tables that stay. Within a transaction.
+/// Makes the tables that outlive a plan. Within a transaction.
 void create_store(SqliteConnection& connection);
 
 /// Makes table points, the view summary and table columns anew for the axes of a plan; points is left empty.

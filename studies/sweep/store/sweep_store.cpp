@@ -88,8 +88,8 @@ class SweepStore::Implementation {
     const std::string ended = now();
     end.bind(1, std::string_view(ended)).bind(2, session_).run();
     connection_.execute("PRAGMA wal_checkpoint(TRUNCATE)");
-    // Ends the log, without a journal as at its beginning. A reader may still need it: whoever opens the
-    // store next then does without it again.
+    // Ends the log, without a journal, as begin_log() does. If a reader still needs the log, it stays, and
+    // the next to open and close the store ends it.
     try {
       connection_.execute("PRAGMA busy_timeout = 0; PRAGMA journal_mode = OFF");
     } catch (const sim::UserError&) {
@@ -98,9 +98,9 @@ class SweepStore::Implementation {
   }
 
  private:
-  // What is committed to the log survives the end of the program; only a power cut may take the last commits.
-  // Going to a log and back changes two bytes of the first page, which one write of one sector does. SQLite's
-  // journal for it would stand in the way of readers if the program were killed in between, so there is none.
+  // Commits in the log survive the end of the program; only a power cut may lose the last ones. Switching to
+  // a log and back changes two bytes of the first page, by one write of one sector. No journal of SQLite's is
+  // used for it: if the program were killed in between, the journal would stand in the way of readers.
   void begin_log() {
     if (connection_.value("PRAGMA journal_mode") != Cell("wal")) {
       connection_.execute("PRAGMA journal_mode = OFF; PRAGMA journal_mode = WAL");

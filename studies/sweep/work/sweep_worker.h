@@ -22,7 +22,7 @@ struct SweepSite {
 /// for each other, and oneTBB's own threads must be free to trace and strip meanwhile.
 void work(const SweepSite& site, TaskSource& source);
 
-/// Runs `workers` of them, or as many as the system has threads for, and returns when all have ended; throws
+/// Runs `workers` workers, or as many as the system has threads for, and returns when all have ended; throws
 /// what the first to fail threw.
 void work_together(const SweepSite& site, TaskSource& source, unsigned workers);
 
