@@ -120,7 +120,7 @@ class SceneStudy {
           estimate_analytically(log_, machine(0, node), shapes, {methods[m].walked_nodes});
       study_.cpu_seconds[m][repeat] += thread_cpu_seconds() - begin;
       for (std::size_t cache = 0; cache < found.size(); ++cache) {
-        found[cache].words = cache == 0 ? found[cache].words : 0;  // one pass
+        found[cache].words = cache == 0 ? found[cache].words : 0;  // one pass for all caches
         study_.estimates[m][index(cache, node)] = found[cache];
       }
     }

@@ -180,7 +180,7 @@ CaseOutcome degenerate_triangles(const CaseSize& size) {
   return none_wrong(tally, "hit");
 }
 
-/// A closed mesh somewhere, through every structure.
+/// A closed mesh at some place, traced through every structure.
 struct LeakPlace {
   const char* id;
   double offset;
