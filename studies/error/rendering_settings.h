@@ -41,7 +41,7 @@ struct StructurePlan {
 };
 
 struct RenderingPlan {
-  processors::RenderOptions base;          ///< the frame's, made small; each knob changes its own part of them
+  processors::RenderOptions base;          ///< the frame's, made small; each knob changes its own part
   std::vector<StructurePlan> structures;   ///< the first is the frame's own
   std::vector<RenderingSetting> settings;  ///< knob by knob, in the order of Knob, by ascending value
   std::vector<std::string> notes;          ///< what was left out, and why
