@@ -63,7 +63,7 @@ std::string no_subcommand(const Reached& reached) {
   return where + "there is no command \"" + word + "\"" + sim::did_you_mean(word, names) + "; " + there_are;
 }
 
-// The required positional argument that is not there.
+// The required positional argument that is missing.
 const CLI::Option* missing_argument(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_required() && option->count() == 0) {

@@ -15,7 +15,8 @@ namespace marti::studies {
 [[nodiscard]] std::optional<double> kendall_tau(std::span<const double> a, std::span<const double> b);
 
 /// What it costs to choose by an estimate: the true value at the least estimate, over the least true value,
-/// less 1. Of equal estimates the first is chosen. Values must be positive; throws InternalError for none.
+/// less 1. Of equal estimates the first is chosen. Values must be positive; throws InternalError without
+/// values.
 [[nodiscard]] double regret(std::span<const double> truth, std::span<const double> estimate);
 
 /// The indices of the points that no other beats in one coordinate without losing in the other, both of which
@@ -26,7 +27,7 @@ struct CostAndError {
 };
 [[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const CostAndError> points);
 
-/// Of signed errors.
+/// Statistics of signed errors.
 struct ErrorSummary {
   std::size_t cases = 0;
   double mean = 0.0;      ///< signed: the bias

@@ -63,7 +63,7 @@ enum class Bottleneck : std::uint8_t { none, host, network };
 [[nodiscard]] Bottleneck bottleneck_of(const processors::MachineConfig& machine,
                                        const processors::MachineResult& result);
 
-/// From this share of the frame on a shared resource counts as full.
+/// A shared resource that is busy for this share of the frame or longer counts as full.
 inline constexpr double full = 0.9;
 /// Above this share of the frame a stage or a node counts as always busy.
 inline constexpr double always_busy = 0.8;

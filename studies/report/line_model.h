@@ -43,7 +43,7 @@ enum class Zone : std::uint8_t { between, beyond };
 
 struct Modelled {
   double end = 0.0;        ///< ps
-  double base_end = 0.0;   ///< ps; 0: not there
+  double base_end = 0.0;   ///< ps; 0: not known
   double asymptote = 0.0;  ///< ps, asymptotic_end() of the interpolated counters
   Zone zone = Zone::between;
 };
@@ -87,7 +87,7 @@ class LeaveOneOut {
   /// An outer point counts only if it is at most two steps beyond the rest, a step being that of the two
   /// beside it: the model is never evaluated farther out.
   void add(const LineModel& line, bool logarithmic);
-  /// Of frame times between other points, and beyond them, one step of the axis away.
+  /// The error of frame times between other points, or one step of the axis beyond them.
   [[nodiscard]] ModelError of_end(Zone zone) const { return summary(end_[static_cast<std::size_t>(zone)]); }
   [[nodiscard]] ModelError of_speed_up(Zone zone) const {
     return summary(speed_up_[static_cast<std::size_t>(zone)]);

@@ -14,7 +14,7 @@ namespace marti::studies {
 /// and digits becomes '_'.
 [[nodiscard]] std::string plain_name(std::string name);
 
-/// Is there something of this name, be it a link to nothing? UserError when that cannot be told.
+/// Whether a file or a link of this name exists, even a link to nothing. UserError when that cannot be told.
 [[nodiscard]] bool is_there(const std::filesystem::path& file);
 
 /// Paths of the files in `directory` whose names end in `ending`, by name. UserError when it cannot be read.
@@ -26,8 +26,8 @@ namespace marti::studies {
 void take_image(const std::filesystem::path& file, const std::string& title, ReportData& report);
 
 /// A chart that a run or a study has written. UserError unless it is a Vega-Lite specification whose rows
-/// stand in data.values, an object each, and that has no other data: none from outside the file, none that
-/// the page would have to make.
+/// stand in data.values, an object each, and that has no other data, neither loaded from outside the file nor
+/// generated.
 [[nodiscard]] ReportChart read_chart(const std::filesystem::path& file);
 
 }  // namespace marti::studies

@@ -108,7 +108,7 @@ std::int64_t size_of(const RunJson& run, const std::string& key) {
   try {
     return sim::parse_size(text);
   } catch (const sim::UserError&) {
-    return 0;  // the field is not what a run writes: nothing is shown of it
+    return 0;  // not what a run writes: the chart leaves it out
   }
 }
 

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t largest_text = std::int64_t{4} << 20U;
-constexpr std::size_t most_rows = 20'000;  // of all tables: more is no page for people
+constexpr std::size_t most_rows = 20'000;  // of all tables together: people read no more
 constexpr std::string_view remedy = "; run the study again into an empty directory";
 
 struct Described {

@@ -1,4 +1,4 @@
-// What is said about speed-up and bounds: in the summary and in result.json.
+// Speed-up and bounds in the summary and in result.json.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

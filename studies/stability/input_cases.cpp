@@ -95,7 +95,8 @@ scenes::Scene opened(const std::vector<float>& coordinates) {
   return scenes::open_scene(path.string(), {}, {});
 }
 
-/// One corner of 10,000 triangles is no number: the scene is that of the other 9,999, and says so once.
+/// One corner of 10,000 triangles has a coordinate that is not finite: the scene is the other 9,999, with one
+/// note.
 CaseOutcome gltf_with(float value, const CaseSize& size) {
   constexpr std::size_t triangles = 10'000;
   Random random(62);

@@ -1,4 +1,5 @@
-// Cases of the ray/triangle kernel by itself: signs, watertightness, and what must change nothing.
+// Cases of the ray/triangle kernel by itself: signs, watertightness, and changes of input that must not
+// matter.
 #include <algorithm>
 #include <array>
 #include <cmath>

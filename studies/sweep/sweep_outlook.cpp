@@ -34,7 +34,7 @@ bool shares_stripped(const processors::MachineConfig& machine, const Machines& m
   return !key.empty() && static_cast<std::size_t>(sharing) >= StripShelf::fewest_machines;
 }
 
-// Of one frame and one of its machines, scaled up from a small image.
+// Estimates for one frame and one of its machines, scaled up from a small image.
 struct Sample {
   double trace_seconds = 0.0;
   double machine_seconds = 0.0;

@@ -16,9 +16,9 @@ class RunJson {
  public:
   RunJson(nlohmann::ordered_json json, std::string file) : json_(std::move(json)), file_(std::move(file)) {}
 
-  /// The field; null when it is not there.
+  /// The field; null when it is missing.
   [[nodiscard]] const nlohmann::ordered_json& find(std::string_view path) const;
-  /// An object that has to be there. Throws UserError, naming the file and the field, when it is not.
+  /// An object that must be there. Throws UserError, naming the file and the field, when it is missing.
   [[nodiscard]] const nlohmann::ordered_json& at(std::string_view path) const;
   /// std::nullopt when the field is missing or not a finite number.
   [[nodiscard]] std::optional<double> number(std::string_view path) const;
@@ -46,7 +46,7 @@ class RunJson {
   std::string file_;
 };
 
-/// A `result.json`. Throws UserError when the file cannot be read, is no result of a run, is one of another
+/// A `result.json`. Throws UserError when the file cannot be read, is not the result of a run, has another
 /// schema, or lacks one of the objects `parts`.
 [[nodiscard]] RunJson read_run_json(const std::filesystem::path& file,
                                     std::initializer_list<const char*> parts = {});

@@ -14,8 +14,8 @@ namespace marti::studies {
 /// running out of memory is std::bad_alloc.
 class Database {
  public:
-  /// Makes the file, which must be new or empty. It is not journalled: whoever writes it does so under a
-  /// temporary name (sim::PendingFile).
+  /// Makes the file, which must be new or empty. It is not journalled, so give it a temporary name until it
+  /// is complete (sim::PendingFile).
   explicit Database(const std::filesystem::path& file);
 
   /// Runs statements without parameters and without results.

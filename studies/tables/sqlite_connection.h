@@ -19,8 +19,8 @@ namespace marti::studies {
 class SqliteConnection {
  public:
   enum class Access : std::uint8_t {
-    write,        ///< the file is made if it is not there
-    write_alone,  ///< it has a name that nobody else knows: it is written without any lock
+    write,        ///< the file is made if it is missing
+    write_alone,  ///< written without any lock: nobody else knows the file's name
     /// The file must exist; others may write it. A journal or log that a killed writer has left beside it is
     /// applied first, if the file and its directory may be written. If they may not, a journal or log that
     /// cannot be read is a UserError that says what to do, and a file without one is read without any lock.

@@ -77,7 +77,7 @@ struct PlanEntry {
 class KeptItems {
  public:
   KeptItems() = default;
-  /// Of names of items, or "all". Throws UserError for another name, with the nearest.
+  /// `names`: of items, or "all". Throws UserError for another name, with the nearest.
   explicit KeptItems(std::span<const std::string> names);
   static KeptItems all();
 

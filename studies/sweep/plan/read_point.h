@@ -23,7 +23,7 @@ struct ReadPoint {
 };
 
 /// Reads and checks frame and machine. Throws UserError naming file, line and key; keys that this machine
-/// does not use are no error.
+/// does not use are allowed.
 [[nodiscard]] ReadPoint read_point(sim::Config config);
 
 /// The keys and values of the frame's digest, in the order of the schema.

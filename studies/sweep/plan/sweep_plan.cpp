@@ -24,7 +24,7 @@ namespace {
 // machines have become one.
 constexpr std::size_t points_at_once = 256;
 
-// As a user reads it: quantities without the quotation marks of TOML.
+// Values as a user reads them: quantities without the quotation marks of TOML.
 std::string plain_values(const sim::Key& key, const std::vector<sim::Value>& values) {
   std::string text = print_values(key, values);
   const bool quoted = !key.is_list && key.type != sim::ValueType::text && text.front() == '"';

@@ -21,7 +21,7 @@ struct SweepFrame {
   std::string key;
   FrameConfig config;
   std::vector<sim::EffectiveValue> settings;  ///< that a frame reads, without host_machine.*
-  /// Of the scene as it was planned, where it is a file; it must be the same when it is traced.
+  /// Hash of the scene as it was planned, where it is a file; the scene must be the same when it is traced.
   std::optional<std::uint64_t> scene_hash{};
 };
 

@@ -47,7 +47,7 @@ struct SweepRow {
                                  const processors::MachineResult& result);
 
 /// The row as bytes, to send it to another process of the same program; and back. Throws InternalError for
-/// bytes that are no row.
+/// bytes that are not a row.
 [[nodiscard]] std::string encode(const SweepRow& row);
 [[nodiscard]] SweepRow decode_sweep_row(std::string_view bytes);
 

@@ -8,11 +8,11 @@
 
 namespace marti::studies {
 
-/// Where the counters of the tables begin, after the columns that are no counters.
+/// The number of each table's first column that is a counter.
 inline constexpr int first_result_counter = 2;
 inline constexpr int first_frame_counter = 6;
 
-/// Throws UserError when the file is there but is no whole SQLite database, before SQLite has touched it.
+/// Throws UserError when the file exists but is not a whole SQLite database, before SQLite has touched it.
 void check_store_file(const std::filesystem::path& file);
 
 /// Whether the database is new: nothing was ever written into it.

@@ -1,4 +1,4 @@
-// Checksums of what a store holds, so that damage is told from results.
+// Checksums of what a store holds, to detect damage.
 #pragma once
 
 #include <cstdint>

@@ -27,7 +27,7 @@ std::string host_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
-// Checks what can be told without opening the database, so that SQLite does not touch what is no store.
+// Checks what can be checked without SQLite, which must not touch a file that is not a store.
 const std::filesystem::path& checked(const std::filesystem::path& file) {
   check_store_file(file);
   return file;
@@ -155,7 +155,7 @@ class SweepStore::Implementation {
 
   StoreLock lock_;  // outlives the connection
   SqliteConnection connection_;
-  std::optional<RowWriter> rows_;  // made when the tables are there
+  std::optional<RowWriter> rows_;  // made once the tables exist
   StoreIds ids_;
   std::int64_t session_ = 0;
 };

@@ -39,8 +39,8 @@ class LogShelf {
   /// there stays. Never waits for room.
   void put(std::size_t frame, FrameLog log);
   /// The log of that frame: the one on the shelf, or else what `trace` makes, one call at a time for each
-  /// frame. Waits until others let go of theirs where the log would exceed the limit, so the calling thread
-  /// must not hold one. Throws what `trace` throws.
+  /// frame. If the log would exceed the limit, waits until other threads release theirs, so the calling
+  /// thread must not hold a log. Throws what `trace` throws.
   [[nodiscard]] std::shared_ptr<const FrameLog> take(std::size_t frame, const Trace& trace);
   /// Says that nobody will take the log again: its memory is freed when its last user lets go.
   void drop(std::size_t frame);

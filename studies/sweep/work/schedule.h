@@ -16,8 +16,8 @@ struct SweepTask {
   enum class Kind : std::uint8_t {
     trace,  ///< make the frame's log, and bring it to the shelf
     time,   ///< time `machines`, all of one frame, whose log is there
-    wait,   ///< nothing now: ask again when something has been traced
-    end     ///< nothing any more
+    wait,   ///< no task now: ask again when something has been traced
+    end     ///< no more tasks
   };
   Kind kind = Kind::end;
   std::size_t frame = 0;
