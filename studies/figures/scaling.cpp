@@ -15,7 +15,7 @@ using processors::Activity;
 
 namespace {
 
-// Waits for what is always busy are named from this share of the nodes' time on.
+// Waits for a part that is always busy are named if they take at least this share of the nodes' time.
 constexpr double worth_naming = 0.1;
 
 double share(sim::Ticks part, double whole) { return whole > 0.0 ? static_cast<double>(part) / whole : 0.0; }

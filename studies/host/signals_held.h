@@ -7,8 +7,8 @@
 namespace marti::studies {
 
 /// To be called by main() before it starts any thread. From then on SIGINT, SIGTERM and SIGHUP, unless they
-/// are ignored, end the program as they always do, but first the temporary files of unfinished output are
-/// removed, and while a SignalsHeld lives they wait.
+/// are ignored, still end the program, but first the temporary files of unfinished output are removed; and
+/// while a SignalsHeld lives, the signals wait.
 void end_cleanly_on_signals();
 
 /// Keeps such a signal from splitting a set of files into old and new ones.

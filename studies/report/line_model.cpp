@@ -22,7 +22,7 @@ double customers_of(const PointCounters& counters) {
   return nodes / std::max(1.0, counters.clusters);
 }
 
-// Each queue has a number of its own in the network, and no configuration has more of them (memory.banks).
+// The most queues of a network, which has an entry for each: no configuration has more (memory.banks).
 constexpr double most_queues = 65536.0;
 
 // The queues of a cluster. `count` may be interpolated, or of a store that somebody may have changed.
@@ -54,7 +54,7 @@ double cycles_of(const PointCounters& counters) {
   return (counters.reads > 0.0 ? counters.reads : 1.0) / std::max(1.0, counters.clusters);
 }
 
-// Straight in the logarithms where both are above 0.
+// Interpolates linearly in the logarithms if both are above 0.
 double interpolate(double a, double b, double share) {
   if (a > 0.0 && b > 0.0) {
     return a == b ? a : std::exp(std::lerp(std::log(a), std::log(b), share));

@@ -40,7 +40,8 @@ std::vector<std::string_view> page_scripts(std::span<const Script> scripts) {
   return all;
 }
 
-// Rows of charts that the explorer fills stand in its columns already.
+// The data of the page's scripts. A chart that the explorer fills has no rows: the explorer's columns hold
+// them.
 Json data_of(const ReportData& report) {
   Json data = {{"kind", report.kind}, {"charts", Json::array()}};
   for (const ReportChart& chart : report.charts) {

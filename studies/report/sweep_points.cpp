@@ -229,7 +229,7 @@ std::map<std::string, std::string> settings_of(const SweepReader& reader, const 
   return {settings.begin(), settings.end()};
 }
 
-// Settings that all machines of the sweep share, and what each says of its queues.
+// Collects the settings that all machines of the sweep share, and notes for each point what its queues are.
 class Settings {
  public:
   void add(ReportPoint& point, const std::map<std::string, std::string>& by_key) {

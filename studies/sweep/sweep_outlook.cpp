@@ -25,7 +25,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 using Machines = std::vector<const processors::MachineConfig*>;
 
-// Will the sweep strip the log for this one of a frame's machines?
+// Whether the sweep will strip the log for this machine, one of those of a frame.
 bool shares_stripped(const processors::MachineConfig& machine, const Machines& machines) {
   const std::string key = processors::StrippedLog::key_of(machine);
   const auto sharing = std::count_if(
