@@ -17,9 +17,10 @@ namespace marti::studies {
 /// A setting, measured.
 struct RenderingPoint {
   RenderingSetting setting;
-  /// Against the knob's reference. Of several samples the squares are means over the seeds of all repeats (A.
-  /// Celarek et al., "Quantifying the error of light transport algorithms", CGF 38(4), 2019), all else is
-  /// that of the first repeat.
+  /// Against the knob's reference. Of several samples the squares are means over the seeds of all repeats
+  /// (A. Celarek et al., "Quantifying the error of light transport algorithms", CGF 38(4), 2019), all else is
+  /// that of the
+  /// first repeat.
   RenderingErrors errors;
   bool below_floor = false;    ///< not above the reference's own noise: the error is not known
   processors::LogTotals work;  ///< counted in the first rendering

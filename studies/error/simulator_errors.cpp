@@ -31,7 +31,7 @@ std::vector<Answer> answers_of(const SimulatorStudy& study, std::size_t method, 
   return answers;
 }
 
-// By the answers of one class of nodes, except those of scene `without`.
+// The allowance by the answers of one class of nodes, without those of scene `without`.
 std::optional<double> allowance_of(const SimulatorStudy& study, const std::vector<Answer>& answers,
                                    std::size_t node_class, std::optional<std::size_t> without) {
   std::vector<double> excesses;

@@ -34,8 +34,8 @@ constexpr double least_covered = 0.9;
 constexpr double most_analytic_use = 0.25;
 
 // Adds the measured half-widths to the method's own. That of the interconnect's use was measured in
-// percentage points, on machines that may use it less; it is at least the relative ones of misses and frame
-// time together.
+// percentage points, on machines that may use it less; it is at least the use times the relative half-widths
+// of misses and frame time.
 void widen(Estimate& estimate, const MeasuredError& measured, std::uint32_t nodes) {
   MachineFigures& half = estimate.half_width;
   for (std::size_t i = 0; i < figure_count; ++i) {

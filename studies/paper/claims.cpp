@@ -184,8 +184,8 @@ double operations(const TracedRun& run) {
   return thousandths / 1000.0;
 }
 
-/// The paper does not name the scene: it agrees when the second teapot takes within a quarter of the paper's
-/// number.
+/// The paper does not name the scene; the claim agrees when the second teapot takes within a quarter of the
+/// paper's number.
 Claim frame_operations(std::span<const TracedRun> runs) {
   constexpr double published = 900e6;
   constexpr double pixels = 1024.0 * 1024.0;

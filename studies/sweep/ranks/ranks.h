@@ -14,8 +14,8 @@ namespace marti::studies {
 /// How long a process that waits for another one sleeps before it looks again.
 inline constexpr auto pause = std::chrono::milliseconds(1);
 
-/// Made at most once in a process, and used only by the thread that made it. All waiting for other processes
-/// is done asleep, except at the beginning and at the end.
+/// Made at most once in a process, and used only by the thread that made it. It sleeps whenever it waits for
+/// other processes, except at the beginning and at the end.
 class Ranks {
  public:
   /// Joins the other processes. Throws UserError when the program was built without MPI, or the launcher is

@@ -52,7 +52,7 @@ class SweepReader {
 
   /// std::nullopt when the machine has not been timed yet.
   [[nodiscard]] std::optional<SweepRow> read_result(std::int64_t machine) const;
-  /// Of the frame that a machine is timed on; std::nullopt when it has not been traced yet.
+  /// The row of the frame that a machine is timed on; std::nullopt when it has not been traced yet.
   [[nodiscard]] std::optional<FrameRow> read_frame(std::int64_t machine) const;
   /// Keys and values of a machine and of its frame, sorted by key.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> settings(std::int64_t machine) const;
