@@ -25,7 +25,7 @@ std::string listed(const std::vector<std::string>& names) {
 
 bool looks_like_a_file(std::string_view word) { return word.ends_with(".toml"); }
 
-// The command that was reached, the words that led to it and those behind them.
+// The subcommand that the words select, the words that lead to it and those that follow it.
 struct Reached {
   const CLI::App* command = nullptr;
   std::string name;  // as "scene info"
@@ -63,7 +63,7 @@ std::string no_subcommand(const Reached& reached) {
   return where + "there is no command \"" + word + "\"" + sim::did_you_mean(word, names) + "; " + there_are;
 }
 
-// The required positional argument that is not there.
+// The required positional argument that is missing.
 const CLI::Option* missing_argument(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_required() && option->count() == 0) {

@@ -1,4 +1,4 @@
-// What is said of a command line that is wrong: CLI11 finds the fault, this names the remedy.
+// The message for a wrong command line: CLI11 finds the error, this file says what would be right.
 #pragma once
 
 #include <span>

@@ -8,7 +8,7 @@
 
 namespace marti::studies {
 
-/// Whether a word after it belongs to it.
+/// Whether the option takes the word after it as its value.
 [[nodiscard]] inline bool takes_value(const CLI::Option& option) {
   return option.get_items_expected_max() > 0;
 }

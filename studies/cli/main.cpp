@@ -126,7 +126,7 @@ void run_command(const RunArguments& arguments) {
   print(text);
 }
 
-// What every study takes.
+// The arguments that every study takes.
 struct StudyArguments {
   std::string config;
   std::vector<std::string> assignments;
@@ -137,8 +137,8 @@ std::string no_empty_directory(const std::string& name) {
   return name.empty() ? "the name of a directory must not be empty" : "";
 }
 
-// Runs a study; without a directory it only prints. What it finds wrong with the program is our fault, once
-// everything is written.
+// Runs a study; without an output directory it only prints. A fault of the program that the study finds is
+// thrown as InternalError, once all files are written.
 template <class Study>
 void run_study(const StudyArguments& arguments, const sim::Schema& schema, const Study& study) {
   if (!arguments.config.empty()) {
@@ -333,7 +333,7 @@ struct SceneArguments {
   scenes::GltfOptions gltf;
 };
 
-// Without a configuration, the limit is the host's.
+// There is no configuration that could set a memory limit: it is the host's default.
 scenes::OpenOptions options_of(const SceneArguments& arguments) {
   scenes::OpenOptions options{{}, arguments.gltf};
   options.gltf.size_first = studies::size_of_image;
@@ -445,7 +445,8 @@ int parse_and_run(int argc, char** argv) {
   SceneArguments scene_arguments;
   add_scene_commands(app, scene_arguments);
 
-  // The scripts of the shells ask so; an option among their words must not be taken for one of this call.
+  // The shells' completion scripts call the program this way. The words to complete may be options, which
+  // CLI11 must not parse as options of this call.
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words.front() == "__complete") {
     print(studies::completions(app, studies::all_keys(), std::span(words).subspan(1)));
@@ -454,7 +455,7 @@ int parse_and_run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // CLI11 prints help and version; a complaint is the user's input being wrong.
+    // CLI11 also throws for --help and --version, with exit code 0; all else is an error of the user's input.
     if (error.get_exit_code() == 0) {
       return app.exit(error);
     }
@@ -466,10 +467,10 @@ int parse_and_run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A reader that goes away is an error of writing like a full disk.
+  // Writing to a pipe without a reader is then an error of writing, like a full disk.
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is refused like one on a full disk
-  // One of several processes takes the others with it.
+  std::signal(SIGXFSZ, SIG_IGN);  // a file at its size limit is then an error of writing, like a full disk
+  // A rank that ends also ends the other ranks of its job.
   const auto end = [](int status) {
     marti::studies::end_all_ranks(status);
     return status;
@@ -479,14 +480,14 @@ int main(int argc, char** argv) {
     marti::studies::take_only_threads_there_are();
     return parse_and_run(argc, argv);
   } catch (const marti::sim::UserError& error) {
-    // Whatever a message quotes, it must not steer the terminal.
+    // A message may quote control characters, which must not reach the terminal.
     std::fprintf(stderr, "marti: %s\n", marti::sim::shown(error.what(), marti::sim::all_shown).c_str());
     return end(wrong_input);
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "marti: not enough memory for this scene or machine\n");
     return end(wrong_input);
   } catch (const std::system_error& error) {
-    // What std::thread throws where there can be no more of them.
+    // std::thread throws this when the system allows no more threads.
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
     std::fprintf(stderr,
                  no_thread ? "marti: the system lets this process have no more threads: %s\n"

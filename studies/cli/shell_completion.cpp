@@ -30,7 +30,7 @@ class Candidates {
       text_.append(candidate).push_back('\n');
     }
   }
-  // ":files" and ":directories": what the shell looks for itself.
+  // ":files" or ":directories": such names are left to the shell to find.
   void ask_shell(std::string_view directive) { directive_ = directive; }
 
   [[nodiscard]] std::string text() const { return directive_.empty() ? text_ : text_ + directive_ + '\n'; }

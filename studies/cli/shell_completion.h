@@ -1,5 +1,5 @@
 // What may come next on the command line, for the completion of bash and zsh. The shells ask the program
-// itself, so their scripts (completion/) know none of its commands, options and keys.
+// itself, so their scripts (marti.bash, marti.zsh) know none of its commands, options and keys.
 #pragma once
 
 #include <span>
@@ -19,10 +19,10 @@ namespace marti::studies {
 /// The script for "bash" or "zsh"; empty for another name.
 [[nodiscard]] std::string_view completion_script(std::string_view shell);
 
-/// What may stand in the place of the last of `words`, which is begun or empty, when the others stand before
-/// it: one candidate a line, in a fixed order. A candidate that ends in '=' goes on. A last line `:files`,
-/// followed by the endings that fit, or `:directories` says that such names fit too. `words` do not hold the
-/// program's own name. Whatever the words are, nothing is thrown: where nothing is known the answer is empty.
+/// The candidates for the last of `words`, which is empty or the beginning of a word; the others stand before
+/// it. One candidate a line, in a fixed order. After a candidate that ends in '=' a value follows. A last
+/// line `:files`, followed by the endings that fit, or `:directories` says that such names fit too. `words`
+/// do not hold the program's own name. Nothing is thrown, whatever the words are: the answer may be empty.
 [[nodiscard]] std::string completions(const CLI::App& app, const sim::Schema& schema,
                                       std::span<const std::string> words);
 

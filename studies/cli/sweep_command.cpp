@@ -26,7 +26,7 @@ namespace marti::studies {
 
 namespace {
 
-constexpr std::int64_t longest_file = 1 << 20;  // as sim::Config::from_file
+constexpr std::int64_t longest_file = 1 << 20;  // the limit of sim::Config::from_file
 
 std::string said(const SweepReport& report) {
   if (report.timed == 0 && report.traced == 0) {
@@ -46,13 +46,13 @@ SweepOptions options_of(const SweepArguments& arguments) {
   return options;
 }
 
-// The ranks of one computer share what it has; a limit that the user gives is each rank's.
+// The ranks on one computer share its memory; a limit that the user gives applies to each rank.
 sim::MemoryBudget memory_of(const sim::Config& config, const Ranks* ranks) {
   return read_memory(config, ranks == nullptr ? 1 : ranks->on_this_computer());
 }
 
-// A rank that was started beside rank 0. The file may not be there: rank 0 sends its text. What is wrong with
-// the arguments rank 0 says.
+// Runs a rank other than 0. Its computer may lack the configuration file: rank 0 sends the text. Errors in
+// the arguments are reported by rank 0 alone.
 void join(Ranks& ranks, const SweepArguments& arguments) {
   if (arguments.plan_only) {
     return;

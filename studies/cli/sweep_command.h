@@ -19,7 +19,7 @@ struct SweepArguments {
   std::optional<double> within;
 };
 
-/// Runs it; `print` writes to standard output. Throws UserError.
+/// Runs the command; `print` writes to standard output. Throws UserError.
 void sweep_command(const SweepArguments& arguments, void (*print)(const std::string&));
 
 }  // namespace marti::studies

@@ -73,7 +73,7 @@ std::string differences_text(const ComparedResult& a, const ComparedResult& b, c
   const std::size_t differ = found.numbers.size() + found.texts.size();
   fmt::format_to(out, "\nresults        {} differ{}, {} equal\n", count(differ, "figure"),
                  differ == 1 ? "s" : "", found.equal.size());
-  // What everybody asks first, wherever it stands in the order.
+  // The frame time comes first, whatever its place in the order.
   for (const Difference& difference : found.numbers) {
     if (difference.name == "machine.frame_time_ps" || difference.name == "end_ps") {
       fmt::format_to(out, "frame time     {} ps in A, {} ps in B, {}\n", text_of(difference.a),

@@ -8,7 +8,7 @@ namespace marti::studies {
 
 namespace {
 
-// Times say so in their names, as in result.json.
+// The name of a time ends in its unit, as in result.json.
 std::string name_of(const Column& column) { return column.name + (column.unit == "ps" ? "_ps" : ""); }
 
 void add(std::span<const Column> columns, const std::vector<std::optional<std::int64_t>>& counters,

@@ -23,7 +23,7 @@ struct ComparedResult {
 
 /// A `result.json`. Its figures have the names of its fields, joined by dots; over the objects of a list
 /// counters are summed, of peaks the largest is taken, and the list's name has "[]" behind it. Histograms are
-/// left out. Throws UserError for a file that cannot be read, is no such result, or is one of another schema.
+/// left out. Throws UserError for a file that cannot be read, is not a result, or is one of another schema.
 [[nodiscard]] ComparedResult read_run(const std::filesystem::path& file, const std::string& name);
 
 /// A point of a sweep: the counters of its machine, and those of its frame behind "frame.". Throws UserError

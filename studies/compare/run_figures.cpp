@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What the sums beside it say already, and sentences made of other figures.
+// Fields that repeat the sums beside them, and sentences made of other figures.
 bool is_left_out(const std::string& path) {
   for (const std::string_view prefix :
        {"machine.per_node[].steps", "machine.per_node[].time_ps", "machine.per_node[].hits",
@@ -150,7 +150,7 @@ constexpr Renamed renamed[] = {
     {"machine.contexts.counts.", "contexts_"},
     {"machine.counts.miss_classes.all.", "all_misses_"},
     {"machine.counts.sharing.", "sharing_"},
-    {"machine.nodes", ""},  // of one cluster there, of all here
+    {"machine.nodes", ""},  // of one cluster in a run, of all clusters in a sweep
     {"machine.clusters", "clusters"},
     {"machine.", ""},
     {"image.image_hash", "frame.image_hash"},
@@ -163,7 +163,7 @@ constexpr Renamed renamed[] = {
     {"work_log.", "frame.log_"},
 };
 
-// "machine.references.node.hits": "node_hits", and the like. Empty for what is no such name.
+// "machine.references.node.hits": "node_hits", and the like. Empty for any other name.
 std::string name_of_kind(std::string_view name) {
   constexpr Renamed kinds[] = {{"machine.references.", "_"},
                                {"machine.counts.miss_classes.", "_misses_"},

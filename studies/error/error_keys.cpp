@@ -31,7 +31,7 @@ std::vector<T> ascending(std::span<const sim::Value> values) {
   return numbers;
 }
 
-// Every machine can be built, and every method answers for it.
+// Refuses machines that cannot be built or that a method cannot answer for.
 void check_machines(const sim::Config& config, const ErrorConfig& error) {
   for (const std::uint64_t cache : error.caches) {
     const processors::MachineConfig machine = machine_with(error.machine, error.nodes.back(), cache);
@@ -53,7 +53,7 @@ void check_machines(const sim::Config& config, const ErrorConfig& error) {
   }
 }
 
-// Before anything is measured.
+// Opens every scene before anything is measured.
 void check_scenes(const sim::Config& config, const ErrorConfig& error) {
   for (const std::string& scene : error.scenes) {
     try {

@@ -64,7 +64,7 @@ class Measurement {
   }
 
  private:
-  // What a knob's settings are held against, and its samples.
+  // The image that a knob's settings are compared with, and its noise floor.
   struct Reference {
     Image image;
     double floor = 0.0;
@@ -92,7 +92,7 @@ class Measurement {
 
   // ---- References.
 
-  // The mean of as many renderings as it takes; `number` of several independent ones.
+  // The mean of as many renderings as the samples need; `number` tells independent references apart.
   [[nodiscard]] Image sampled_reference(std::uint32_t number) const {
     RenderOptions options = study_.plan.base;
     const std::uint32_t parts = (options_.reference_samples - 1) / processors::max_samples + 1;
@@ -141,7 +141,7 @@ class Measurement {
 
   // ---- Settings.
 
-  // Seeds of the references are none of the measured renderings'.
+  // References have other seeds than the measured renderings.
   [[nodiscard]] std::uint64_t reference_seed(std::uint32_t number) const {
     return study_.plan.base.seed + options_.repeats + number;
   }

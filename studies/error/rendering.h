@@ -18,8 +18,9 @@ namespace marti::studies {
 struct RenderingPoint {
   RenderingSetting setting;
   /// Against the knob's reference. Of several samples the squares are means over the seeds of all repeats
-  /// (A. Celarek et al., "Quantifying the error of light transport algorithms", CGF 38(4), 2019), the rest is
-  /// that of the first.
+  /// (A. Celarek et al., "Quantifying the error of light transport algorithms", CGF 38(4), 2019), all else is
+  /// that of the
+  /// first repeat.
   RenderingErrors errors;
   bool below_floor = false;    ///< not above the reference's own noise: the error is not known
   processors::LogTotals work;  ///< counted in the first rendering
@@ -49,7 +50,7 @@ struct RenderingStudy {
 /// The family of `marti study error`: tables that are the same always, host tables with run times, text.
 [[nodiscard]] StudyOutput output_of(const RenderingStudy& study);
 
-/// Both.
+/// Measures, and makes tables and text of it.
 [[nodiscard]] StudyOutput rendering_error(const FrameConfig& frame, const RenderingErrorOptions& options);
 
 }  // namespace marti::studies

@@ -13,8 +13,8 @@ namespace marti::studies {
 struct RenderingErrorOptions {
   std::uint32_t side = 64;             ///< pixels of the image's longer side at most
   std::vector<std::uint32_t> samples;  ///< a pixel; ascending, each once; not empty
-  /// Of each of the two references of `samples`; at least 16 times the largest of these. More than one
-  /// rendering may have are rendered in several.
+  /// Samples of each of the two references of knob `samples`; at least 16 times the largest of `samples`.
+  /// More than one rendering may have are split over several renderings.
   std::uint32_t reference_samples = 1024;
   std::vector<std::uint32_t> depths;  ///< ascending, each once, below reference_depth
   std::uint32_t reference_depth = 16;

@@ -17,8 +17,8 @@
 
 namespace marti::studies {
 
-/// What is turned. `exact`: structure, its limits, mailboxes, packets and machine, none of which may change a
-/// bit of the image.
+/// The parameter that is varied. `exact`: structure, its limits, mailboxes, packets and machine, none of
+/// which may change a bit of the image.
 enum class Knob : std::uint8_t { samples, depth, weight, precision, voxel_cut, exact };
 inline constexpr std::size_t knobs = 6;
 inline constexpr std::array<std::string_view, knobs> knob_names = {"samples",   "depth",     "weight",
@@ -41,7 +41,7 @@ struct StructurePlan {
 };
 
 struct RenderingPlan {
-  processors::RenderOptions base;          ///< the frame's, made small: what the knobs but theirs leave alone
+  processors::RenderOptions base;          ///< the frame's, made small; each knob changes its own part
   std::vector<StructurePlan> structures;   ///< the first is the frame's own
   std::vector<RenderingSetting> settings;  ///< knob by knob, in the order of Knob, by ascending value
   std::vector<std::string> notes;          ///< what was left out, and why

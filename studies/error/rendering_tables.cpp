@@ -20,7 +20,7 @@ std::vector<std::size_t> points_of(const RenderingStudy& study, Knob knob) {
   return points;
 }
 
-// What a knob's error is measured from: the setting that has none, else the one of most samples.
+// The setting that a knob's errors are measured against: its reference, or else the one of most samples.
 std::size_t dearest_of(const RenderingStudy& study, Knob knob) {
   const std::vector<std::size_t> points = points_of(study, knob);
   const auto reference = std::find_if(
@@ -28,7 +28,7 @@ std::size_t dearest_of(const RenderingStudy& study, Knob knob) {
   return reference != points.end() ? *reference : points.back();
 }
 
-// Where errors of nothing are drawn: a decade and more below all others.
+// Where charts draw an error of 0: at least a decade below all others.
 double exact_line(const RenderingStudy& study) {
   double least = 1.0;
   for (const RenderingPoint& point : study.points) {

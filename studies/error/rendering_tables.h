@@ -23,7 +23,7 @@ inline constexpr std::array<double, 4> rendering_targets = {0.10, 0.03, 0.01, 0.
 [[nodiscard]] std::optional<std::size_t> cheapest(const RenderingStudy& study, Knob knob, double target,
                                                   const std::vector<double>& costs);
 
-/// Counted steps of each point; medians of its run times in ms.
+/// For each point its counted steps, or the median of its run times in ms.
 [[nodiscard]] std::vector<double> counted_costs(const RenderingStudy& study);
 [[nodiscard]] std::vector<double> timed_costs(const RenderingStudy& study);
 
@@ -31,16 +31,17 @@ inline constexpr std::array<double, 4> rendering_targets = {0.10, 0.03, 0.01, 0.
 [[nodiscard]] double known_error(const RenderingStudy& study, const RenderingPoint& point);
 
 /// The exponent b of RMSE ~ samples^b, by least squares of logarithms over all settings of several samples
-/// above the noise floor; nothing for fewer than two.
+/// above the noise floor; std::nullopt for fewer than two.
 [[nodiscard]] std::optional<double> sample_exponent(const RenderingStudy& study);
 
 /// "rendering_error": a row for each setting. The same input gives the same rows.
 [[nodiscard]] Table rendering_error_table(const RenderingStudy& study);
-/// "rendering_cheapest": for each target and knob the setting of the fewest counted steps. Likewise.
+/// "rendering_cheapest": for each target and knob the setting of the fewest counted steps. Same input, same
+/// rows.
 [[nodiscard]] Table rendering_cheapest_table(const RenderingStudy& study);
 /// "host_rendering_time": a row for each setting, with its run time. Differs from run to run.
 [[nodiscard]] Table rendering_time_table(const RenderingStudy& study);
-/// "host_rendering_fastest": for each target and knob the fastest setting. Likewise.
+/// "host_rendering_fastest": for each target and knob the fastest setting. Differs from run to run.
 [[nodiscard]] Table rendering_fastest_table(const RenderingStudy& study);
 
 }  // namespace marti::studies

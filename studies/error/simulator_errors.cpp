@@ -19,7 +19,7 @@ struct Answer {
 std::vector<Answer> answers_of(const SimulatorStudy& study, std::size_t method, Figure figure) {
   std::vector<Answer> answers;
   for (std::size_t number = 0; number < study.cases.size(); ++number) {
-    // One node is as fast as itself, whatever a method says.
+    // One node has a speed-up of exactly 1, whatever a method says.
     if (figure == Figure::speed_up && study.cases[number].nodes == 1) {
       continue;
     }
@@ -31,7 +31,7 @@ std::vector<Answer> answers_of(const SimulatorStudy& study, std::size_t method, 
   return answers;
 }
 
-// Of the answers of a class, but for those of one scene.
+// The allowance by the answers of one class of nodes, without those of scene `without`.
 std::optional<double> allowance_of(const SimulatorStudy& study, const std::vector<Answer>& answers,
                                    std::size_t node_class, std::optional<std::size_t> without) {
   std::vector<double> excesses;

@@ -15,11 +15,13 @@ namespace marti::studies {
 /// One figure by one method, over all cases that it has an answer for.
 struct FigureErrors {
   ErrorSummary summary;           ///< worst_case is an index into SimulatorStudy::cases
-  std::optional<double> covered;  ///< share of cases in the method's own interval; nothing if it states none
-  /// The same of the interval widened by an allowance measured on the other scenes; nothing with one scene.
+  std::optional<double> covered;  ///< share of cases in the method's interval; std::nullopt if it states none
+  /// That share with the interval widened by an allowance measured on the other scenes; std::nullopt with one
+  /// scene.
   std::optional<double> covered_widened;
   /// What a half-width must be widened by, for each class, measured on all scenes: the conformal
-  /// stated_confidence quantile of what errors exceed the method's own half-widths by. Nothing without cases.
+  /// stated_confidence quantile of the amounts by which errors exceed the method's own half-widths.
+  /// std::nullopt without cases.
   std::array<std::optional<double>, node_classes.size()> allowance;
   std::array<double, node_classes.size()> mean_half_width{};  ///< the method's own
 };
@@ -29,8 +31,8 @@ struct MethodErrors {
   std::array<FigureErrors, figure_count> figures;
   double tau = 0.0;           ///< Kendall's, of frame times; mean over scenes
   double least_tau = 0.0;     ///< of all scenes
-  double regret = 0.0;        ///< of choosing the shortest frame; the worst scene's
-  double power_regret = 0.0;  ///< likewise, of the most speed-up times efficiency
+  double regret = 0.0;        ///< of choosing the shortest frame; that of the worst scene
+  double power_regret = 0.0;  ///< of choosing the most speed-up times efficiency; that of the worst scene
 };
 
 /// One for each of simulator_methods(). A machine that a method has no answer for keeps its exact time where

@@ -120,13 +120,13 @@ class SceneStudy {
           estimate_analytically(log_, machine(0, node), shapes, {methods[m].walked_nodes});
       study_.cpu_seconds[m][repeat] += thread_cpu_seconds() - begin;
       for (std::size_t cache = 0; cache < found.size(); ++cache) {
-        found[cache].words = cache == 0 ? found[cache].words : 0;  // one pass
+        found[cache].words = cache == 0 ? found[cache].words : 0;  // one pass for all caches
         study_.estimates[m][index(cache, node)] = found[cache];
       }
     }
   }
 
-  // Every other machine is timed, and the last.
+  // Whether interpolation has this machine timed: every other machine of a row, and the last.
   [[nodiscard]] bool is_timed(const Method& method, std::size_t cache, std::size_t node) const {
     const std::size_t at = method.over_caches ? cache : node;
     const std::size_t count = method.over_caches ? config_.caches.size() : config_.nodes.size();
@@ -146,7 +146,8 @@ class SceneStudy {
     }
   }
 
-  // Each machine between others, from all others of its row: as far apart as every other one is.
+  // Estimates each machine that has neighbours on both sides from all others of its row: these are as far
+  // apart as they are when every other machine is timed.
   void interpolate_all() {
     const std::span<const Method> methods = simulator_methods();
     for (std::size_t m = 0; m < methods.size(); ++m) {

@@ -33,15 +33,15 @@ struct LevelAccesses {
 struct SimulatorStudy {
   std::vector<ErrorCase> cases;  ///< scene by scene, cache by cache, by ascending nodes
   std::vector<Estimate> truth;   ///< of each case, by exact replay
-  /// [method][case], methods as in simulator_methods(); nothing where a method has no answer.
+  /// [method][case], methods as in simulator_methods(); std::nullopt where a method has no answer.
   std::vector<std::vector<std::optional<Estimate>>> estimates;
   /// [method][repeat]: processor seconds for an answer to every case, by interpolation too.
   std::vector<std::vector<double>> cpu_seconds;
   std::vector<LevelAccesses> levels;  ///< of octrees
 };
 
-/// Traces each scene and runs everything, measurements of run time interleaved. What it finds but for
-/// cpu_seconds is the same for the same configuration. Throws UserError.
+/// Traces each scene and runs everything, measurements of run time interleaved. The same configuration gives
+/// the same results, except for cpu_seconds. Throws UserError.
 [[nodiscard]] SimulatorStudy study_simulator(const ErrorConfig& config);
 
 }  // namespace marti::studies

@@ -32,7 +32,7 @@ double median_of(const SimulatorStudy& study, std::size_t method) {
   return median_interval(study.cpu_seconds[method]).median;
 }
 
-// Nothing where no interval could be tried on another scene.
+// A cell without value where no interval could be tried on another scene.
 Cell least_covered(const MethodErrors& errors) {
   std::optional<double> least;
   for (const FigureErrors& figure : errors.figures) {

@@ -11,12 +11,12 @@ namespace marti::studies {
 
 /// Kendall's rank correlation tau-b of two lists of equal length (M. G. Kendall, "The treatment of ties in
 /// ranking problems", Biometrika 33(3), 1945): 1 when both put all pairs in the same order, -1 when in the
-/// opposite, and a pair tied in one list only counts half. Nothing when one of the lists has no two different
-/// values.
+/// opposite, and a pair tied in one list only counts half. std::nullopt when all values of a list are equal.
 [[nodiscard]] std::optional<double> kendall_tau(std::span<const double> a, std::span<const double> b);
 
 /// What it costs to choose by an estimate: the true value at the least estimate, over the least true value,
-/// less 1. Of equal estimates the first is chosen. Values must be positive; throws InternalError for none.
+/// less 1. Of equal estimates the first is chosen. Values must be positive; throws InternalError without
+/// values.
 [[nodiscard]] double regret(std::span<const double> truth, std::span<const double> estimate);
 
 /// The indices of the points that no other beats in one coordinate without losing in the other, both of which
@@ -27,7 +27,7 @@ struct CostAndError {
 };
 [[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const CostAndError> points);
 
-/// Of signed errors.
+/// Statistics of signed errors.
 struct ErrorSummary {
   std::size_t cases = 0;
   double mean = 0.0;      ///< signed: the bias

@@ -11,7 +11,7 @@ namespace marti::studies {
 sim::Ticks schedule_packets(const processors::HostConfig& config, std::uint32_t nodes,
                             std::span<const sim::Ticks> packets) {
   processors::Host host(config, packets.size(), nodes);
-  using Free = std::pair<sim::Ticks, std::uint32_t>;  // when, and which node
+  using Free = std::pair<sim::Ticks, std::uint32_t>;  // when a node is free, and which node
   std::priority_queue<Free, std::vector<Free>, std::greater<>> free;
   for (std::uint32_t node = 0; node < nodes; ++node) {
     free.emplace(0, node);

@@ -1,4 +1,5 @@
-// When a frame ends whose packets take known times: the host hands them out to whoever is free.
+// The end of a frame whose packets take known times: the host gives each packet to the first node that is
+// free.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 
 namespace marti::studies {
 
-/// With dynamic assignment; a packet's time counts from its start. Without packets, 0.
+/// Assignment is dynamic; a packet's time counts from its start. Without packets, 0.
 [[nodiscard]] sim::Ticks schedule_packets(const processors::HostConfig& host, std::uint32_t nodes,
                                           std::span<const sim::Ticks> packets);
 

@@ -19,15 +19,15 @@ using processors::MachineConfig;
 
 namespace {
 
-// What one read or write of the interconnect takes, in ticks.
+// Times of one read or write over the interconnect, in ticks.
 struct Tenures {
   bool bus = false;
-  double read = 0.0;      // of the bus
-  double write = 0.0;     // of the bus
-  double per_read = 1.0;  // times a read asks for the bus
-  double miss = 0.0;      // a read that meets nobody
+  double read = 0.0;      // for which a read holds the bus
+  double write = 0.0;     // for which a write holds the bus
+  double per_read = 1.0;  // how often a read requests the bus
+  double miss = 0.0;      // of a read without contention
   double bank_busy = 0.0;
-  sim::Ticks last_write = 0;  // from a write to when it is done
+  sim::Ticks last_write = 0;  // from the start of a write to its end
 };
 
 Tenures tenures_of(const MachineConfig& machine, std::uint32_t pixel_bytes) {
@@ -54,13 +54,13 @@ Tenures tenures_of(const MachineConfig& machine, std::uint32_t pixel_bytes) {
   return tenures;
 }
 
-// The frame as far as it does not depend on the cache.
+// The part of the frame that does not depend on the cache.
 struct Work {
-  double scale = 1.0;  // all of the frame over what was walked
+  double scale = 1.0;  // the whole frame over the part that was walked
   std::vector<std::uint64_t> words;
   double packets = 0.0;
   double writes = 0.0;
-  double dispatch = 0.0;  // of a packet
+  double dispatch = 0.0;  // to dispatch a packet
 };
 
 sim::Ticks compute_ticks(const MachineConfig& machine, const processors::WorkLog& log,
@@ -70,11 +70,11 @@ sim::Ticks compute_ticks(const MachineConfig& machine, const processors::WorkLog
   return processors::sum_of(time);
 }
 
-// The nodes as customers of a closed network: how fast they go when so many of them work.
+// Contention of the nodes, as customers of a closed network.
 struct Contention {
   double interconnect = 0.0;   // busy time of the bus
-  double wait = 0.0;           // of a tenure, when all nodes work
-  std::vector<double> speeds;  // [n - 1]: of each of n nodes, 1 for one that meets nobody
+  double wait = 0.0;           // mean, of a request for the bus, when all nodes work
+  std::vector<double> speeds;  // [n - 1]: of each of n busy nodes; 1 without contention
 };
 
 Contention contention_of(const MachineConfig& machine, const Tenures& tenures, const Work& work, double alone,
@@ -87,8 +87,8 @@ Contention contention_of(const MachineConfig& machine, const Tenures& tenures, c
   if (!tenures.bus || misses == 0.0) {
     return contention;
   }
-  // A cycle is a miss; what posted writes take of the queues counts to the cycle that they belong to, and as
-  // much less is thought (as in processors::predict).
+  // One cycle of the network is one miss. What posted writes demand of the queues is added to the cycle that
+  // they belong to, and its think time is shorter by as much (as in processors::predict).
   std::vector<double> demands = {contention.interconnect / misses};
   if (tenures.bank_busy > 0.0) {
     const double each = (misses + work.writes) * tenures.bank_busy / machine.banks.count / misses;
@@ -116,14 +116,14 @@ Contention contention_of(const MachineConfig& machine, const Tenures& tenures, c
   return contention;
 }
 
-// When the frame ends: `alone`, the time of all packets where nobody waits, is dealt out to them by their
-// words, and nodes that are busy at the same time all go at the speed that so many of them have.
+// The frame's end. `alone`, the time of all packets without contention, is divided among the packets in
+// proportion to their words; while n nodes are busy, each runs at the speed of n nodes.
 double frame_end(const MachineConfig& machine, const Work& work, double alone, const Contention& contention) {
   const auto words = static_cast<double>(std::accumulate(work.words.begin(), work.words.end(), 0ULL));
   const auto time_of = [&](std::size_t packet) {
     return work.dispatch + (words > 0.0 ? alone * static_cast<double>(work.words[packet]) / words : 0.0);
   };
-  // Times of a clock that goes at the nodes' common speed; as many nodes as have packets.
+  // When each node with a packet is free, by a clock that runs at the nodes' common speed.
   std::priority_queue<double, std::vector<double>, std::greater<>> free;
   std::size_t packet = 0;
   while (packet < std::min<std::size_t>(machine.all_nodes(), work.words.size())) {
@@ -143,9 +143,9 @@ double frame_end(const MachineConfig& machine, const Work& work, double alone, c
   return end;
 }
 
-// The packets that each of `walked` nodes of `nodes` has: of every `nodes` packets in a row, one each. With
-// all nodes, node i has every nodes-th from i on; with fewer, they are drawn, because packets that are so far
-// apart often lie below each other in the image.
+// The packets of each of `walked` nodes out of `nodes`: one of every `nodes` consecutive packets for each
+// node. If all nodes are walked, node i has every nodes-th packet from i on; if fewer, packets are drawn at
+// random, because packets at a fixed distance often lie below each other in the image.
 std::vector<std::vector<std::uint64_t>> packets_to_walk(std::uint64_t packets, std::uint64_t nodes,
                                                         std::uint64_t walked) {
   std::mt19937_64 random(1);
@@ -153,7 +153,7 @@ std::vector<std::vector<std::uint64_t>> packets_to_walk(std::uint64_t packets, s
   for (std::uint64_t first = 0; first < packets; first += nodes) {
     std::uint64_t left = walked;
     for (std::uint64_t i = 0; i < nodes && left > 0; ++i) {
-      // Selection sampling (Knuth 3.4.2 S). A row that the frame ends in is drawn from as if it were whole.
+      // Selection sampling (Knuth 3.4.2 S). An incomplete last group is drawn from as if it were complete.
       if (random() % (nodes - i) < left) {
         --left;
         if (first + i < packets) {
@@ -215,7 +215,7 @@ std::vector<Estimate> estimate_analytically(const processors::WorkLog& log, cons
         work.scale * static_cast<double>(compute_ticks(machine, log, pass.steps, pass.references - missed));
     const double alone = compute + misses * tenures.miss;
     const Contention contention = contention_of(machine, tenures, work, alone, misses);
-    // One node's packets follow one another, so its time needs no dealing out.
+    // One node's packets follow one another, so its time need not be divided among them.
     const double end = machine.all_nodes() == 1 ? alone + work.packets * work.dispatch
                                                 : frame_end(machine, work, alone, contention);
     Estimate estimate;

@@ -19,16 +19,16 @@ namespace marti::studies {
 void check_analytic(const processors::MachineConfig& machine);
 
 struct AnalyticOptions {
-  /// Nodes whose packets are walked; more than there are: all.
+  /// Nodes whose packets are walked; at most all there are.
   std::uint32_t walked_nodes = 1;
 };
 
-/// One estimate for each cache shape in `caches` (of the machine's line) in the place of the machine's own,
-/// from one pass over the log. Of every n packets in a row each of n nodes is taken to have one. Contention:
-/// exact mean values (M. Reiser, S. S. Lavenberg, JACM 27(2), 1980) of the nodes as customers, the bus and
-/// the banks as queues, for every number of nodes that are busy at the same time; packets take times in
-/// proportion to their words in the log. The work that it took is that of the whole pass. One node with an
-/// ideal interconnect is exact unless its write buffer fills.
+/// One estimate for each cache shape in `caches` (with the machine's line size) in place of the machine's
+/// own, from one pass over the log. Of n consecutive packets each of the n nodes is assumed to have one.
+/// Contention: exact mean values (M. Reiser, S. S. Lavenberg, JACM 27(2), 1980) of the nodes as customers,
+/// the bus and the banks as queues, for every number of nodes that are busy at the same time; packets take
+/// times in proportion to their words in the log. Each estimate's work is that of the whole pass. The
+/// estimate for one node with an ideal interconnect is exact unless its write buffer fills.
 [[nodiscard]] std::vector<Estimate> estimate_analytically(const processors::WorkLog& log,
                                                           const processors::MachineConfig& machine,
                                                           std::span<const memory::CacheShape> caches,

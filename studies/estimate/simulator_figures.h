@@ -22,7 +22,7 @@ inline constexpr std::size_t figure_count = 5;
 inline constexpr std::array<std::string_view, figure_count> figure_names = {"end", "speed_up", "misses",
                                                                             "use", "wait"};
 
-/// One value for each figure. Of a machine alone the speed-up is 0: it takes two.
+/// One value for each figure. For a single machine the speed-up is 0: it compares two machines.
 class MachineFigures {
  public:
   double& operator[](Figure figure) { return values_[static_cast<std::size_t>(figure)]; }
@@ -43,7 +43,7 @@ struct Estimate {
   std::uint64_t words = 0;   ///< of the log, walked to get it
 };
 
-/// Of a replay of all packets.
+/// The figures of a replay of all packets.
 [[nodiscard]] MachineFigures figures_of(const processors::MachineConfig& machine,
                                         const processors::MachineResult& result);
 

@@ -18,8 +18,8 @@ enum class Curve : std::uint8_t { linear, cubic };
 [[nodiscard]] double interpolate(Curve curve, std::span<const double> xs, std::span<const double> ys,
                                  double x);
 
-/// All figures at `x`, of machines whose sizes are `xs`, all positive: over log x, and of log y where all
-/// values of a figure are positive; others by straight lines of y over log x.
+/// All figures at size `x`, between machines of sizes `xs`, all positive. A figure whose values are all
+/// positive is interpolated as log y over log x, any other by straight lines of y over log x.
 [[nodiscard]] Estimate estimate_between(Curve curve, std::span<const double> xs,
                                         std::span<const MachineFigures> machines, double x);
 

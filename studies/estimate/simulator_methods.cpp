@@ -16,13 +16,13 @@ namespace {
 constexpr std::uint64_t full_warming = processors::PacketSample::all_before;
 constexpr std::uint32_t all_nodes = std::numeric_limits<std::uint32_t>::max();
 
-// Nobody asks, so nobody is told.
+// No request is made, so no completion arrives.
 class NoClient final : public memory::InterconnectClient {
   void read_done(std::uint32_t /*port*/, const memory::Service& /*service*/) override {}
   void write_done(std::uint32_t /*port*/, sim::Ticks /*done*/) override {}
 };
 
-// What a miss takes that meets no other transaction.
+// The time of a miss without contention.
 sim::Ticks unloaded_miss(const processors::MachineConfig& machine) {
   sim::Engine engine;
   NoClient client;

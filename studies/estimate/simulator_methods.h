@@ -30,7 +30,7 @@ struct Method {
   MethodKind kind = MethodKind::exact;
   std::uint64_t one_in = 1;        ///< sampled
   std::uint64_t warm_up = 0;       ///< sampled
-  std::uint32_t quantum = 0;       ///< relaxed: in times of a read that meets nobody
+  std::uint32_t quantum = 0;       ///< relaxed: in units of the time of a read without contention
   std::uint32_t walked_nodes = 0;  ///< analytic
   bool all_caches = false;         ///< analytic: one pass for all sizes of caches
   bool over_caches = false;        ///< interpolated: over sizes of caches, else over numbers of nodes
@@ -48,8 +48,8 @@ struct Method {
   return method.kind != MethodKind::interpolated && !method.all_caches;
 }
 
-/// What a method that answers alone says of a machine, without the speed-up. `seed` draws the
-/// sample. Throws UserError for a machine that the method cannot answer for.
+/// The estimate for one machine, without the speed-up, by a method that answers alone. `seed` is that of the
+/// random sample. Throws UserError for a machine that the method cannot answer for.
 [[nodiscard]] Estimate estimate(const Method& method, const processors::WorkLog& log,
                                 const processors::MachineConfig& machine, std::uint64_t seed);
 

@@ -40,7 +40,7 @@ RatioEstimate ratio_estimate(std::span<const Stratum> strata, std::span<const st
   for (const std::uint64_t value : known) {
     all_known += static_cast<double>(value);
   }
-  // Means of a stratum times its size.
+  // Sums over the strata of a mean times the stratum's size.
   double sum_known = 0.0;
   double sum_measured = 0.0;
   std::size_t at = 0;
@@ -88,8 +88,8 @@ RatioEstimate ratio_estimate(std::span<const Stratum> strata, std::span<const st
 
 namespace {
 
-// Words of the packets replayed, and of those that about warm the caches before them: all up to the last with
-// full warming, else so many before each.
+// Words of the packets replayed, and roughly of those that warm the caches: with full warming all packets
+// before the last one, else `warm_up` packets before each.
 std::uint64_t words_walked(const processors::PacketSample& sample, std::span<const std::uint64_t> words,
                            std::uint32_t nodes, std::uint64_t warm_up) {
   std::uint64_t walked = 0;
@@ -144,7 +144,7 @@ Estimate estimate_by_sample(const processors::WorkLog& log, const processors::Ma
     return estimate;
   }
 
-  // Packets that were not replayed take what their words say.
+  // The time of packets that were not replayed is estimated from their words.
   double all_words = 0.0;
   for (const std::uint64_t count : words) {
     all_words += static_cast<double>(count);
@@ -161,7 +161,7 @@ Estimate estimate_by_sample(const processors::WorkLog& log, const processors::Ma
   const auto part =
       static_cast<double>(result.references().all_misses()) + static_cast<double>(result.pixels);
   const double whole = missed.total + static_cast<double>(log.width) * static_cast<double>(log.height);
-  // Nothing ends before the links have carried what there is.
+  // The frame cannot end before the links have carried all of its transfers.
   const double busy = estimate.value[Figure::use] * static_cast<double>(result.end) * whole / part;
   end = std::max(end, busy);
   estimate.value[Figure::use] = end > 0.0 ? busy / end : 0.0;

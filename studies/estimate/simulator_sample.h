@@ -21,9 +21,8 @@ struct Stratum {
 };
 
 /// Cuts `packets` packets into strata of nearly equal size and draws two from each at random, three from some
-/// when `wanted` is odd: the smallest number with which each stratum still says how much its packets differ.
-/// One that holds fewer packets than are drawn is taken whole. `wanted` from 1 on; with fewer than four there
-/// is one stratum.
+/// when `wanted` is odd: two are the fewest that show the variance in a stratum. A stratum of fewer packets
+/// than are drawn is taken whole. `wanted` is at least 1; if it is below 4, there is one stratum.
 [[nodiscard]] std::vector<Stratum> draw_strata(std::uint64_t packets, std::uint64_t wanted,
                                                std::uint64_t seed);
 
@@ -35,14 +34,15 @@ struct RatioEstimate {
 
 /// The combined ratio estimator (W. G. Cochran, "Sampling techniques", 3rd ed. 1977, section 6.11): `known`
 /// of all packets, `measured` of the strata's chosen ones, in order. Its variance is 6.51 there; the interval
-/// takes Student's distribution with as many degrees of freedom as there are packets more than strata. With
-/// all packets chosen, it is the total and the half-width is 0; with none more than strata, infinite.
+/// takes Student's distribution, with chosen packets less strata as its degrees of freedom. If all packets
+/// are chosen, the result is the total, with half-width 0; without a degree of freedom the half-width is
+/// infinite.
 [[nodiscard]] RatioEstimate ratio_estimate(std::span<const Stratum> strata,
                                            std::span<const std::uint64_t> known,
                                            std::span<const double> measured);
 
-/// A sample has at least so many packets for each node: with fewer, nodes do not meet each other as they do
-/// in the whole frame.
+/// A sample has at least so many packets for each node: with fewer, the contention between nodes is not that
+/// of the whole frame.
 inline constexpr std::uint64_t least_sampled_a_node = 2;
 
 struct SampleOptions {
@@ -51,11 +51,11 @@ struct SampleOptions {
   std::uint64_t seed = 1;
 };
 
-/// Replays a sample of `machine`'s packets, at least two and least_sampled_a_node; with one_in = 1, all, and
-/// the result is exact. What is known of every packet is the number of its words in the log, and the frame
-/// time is that of a host that hands out packets of the times estimated for them, or what the interconnect
-/// takes for all of it where that is longer. Throws UserError for a machine that processors::check_sampled()
-/// refuses.
+/// Replays a sample of `machine`'s packets, at least two and least_sampled_a_node. With one_in = 1 all
+/// packets are replayed, and the result is exact. Times of the other packets are estimated from the number of
+/// their words in the log. The frame time is that of a host that hands out packets of these times, or the
+/// time that the interconnect needs for all transfers, if that is longer. Throws UserError for a machine that
+/// processors::check_sampled() refuses.
 [[nodiscard]] Estimate estimate_by_sample(const processors::WorkLog& log,
                                           const processors::MachineConfig& machine,
                                           const SampleOptions& options);

@@ -23,18 +23,19 @@ namespace marti::studies {
 
 namespace {
 
-// The study's frames have so many packets, and so many for each of its nodes, at least.
+// The study's frames have at least so many packets, and at least so many for each node.
 constexpr std::uint64_t least_packets = 1024;
 constexpr std::uint64_t least_packets_a_node = 4;
 constexpr std::uint64_t sample_seed = 1;
-// A method whose intervals hold less often on scenes that they were not measured on is not taken.
+// The least share of a method's intervals that must hold on scenes that they were not measured on.
 constexpr double least_covered = 0.9;
-// Mean values take misses to come one by one. They come in bursts, whose queues on a busier bus depend on the
-// frame more than the study's small frames show (docs/error.md).
+// Mean values assume that misses come one by one. They come in bursts, and on a busier bus the queues of
+// these depend on the frame more than the study's small frames show (docs/error.md).
 constexpr double most_analytic_use = 0.25;
 
-// Both half-widths together. That of the interconnect's use is measured in points, on machines that may use
-// it less; it is at least what the misses and the frame time leave open, which are relative.
+// Adds the measured half-widths to the method's own. That of the interconnect's use was measured in
+// percentage points, on machines that may use it less; it is at least the use times the relative half-widths
+// of misses and frame time.
 void widen(Estimate& estimate, const MeasuredError& measured, std::uint32_t nodes) {
   MachineFigures& half = estimate.half_width;
   for (std::size_t i = 0; i < figure_count; ++i) {
@@ -44,7 +45,7 @@ void widen(Estimate& estimate, const MeasuredError& measured, std::uint32_t node
   half[Figure::use] =
       std::max(half[Figure::use], estimate.value[Figure::use] * (half[Figure::misses] + half[Figure::end]));
   if (nodes == 1) {
-    half[Figure::speed_up] = 0.0;  // a node is as fast as itself, whatever a method says
+    half[Figure::speed_up] = 0.0;  // one node has a speed-up of exactly 1
   }
 }
 
@@ -125,8 +126,8 @@ std::optional<EstimatedRun> estimate_within(const processors::WorkLog& log,
   const MeasuredError* const exact = find(errors, 0, machine.nodes);
   for (std::size_t method = 1; exact != nullptr && method < simulator_methods().size(); ++method) {
     const MeasuredError* const error = find(errors, method, machine.nodes);
-    // One that is no faster than exact replay is never better; one that is wider than asked for in what was
-    // measured alone never fits.
+    // A method that is not faster than exact replay is useless; one whose measured half-width alone exceeds
+    // the tolerance never fits.
     if (error != nullptr && error->covered >= least_covered && error->share < exact->share &&
         width_of(error->allowance) <= tolerance && find(errors, method, 1) != nullptr) {
       candidates.push_back(error);

@@ -16,12 +16,12 @@ namespace marti::studies {
 /// "2%", "2 %" or "0.02". Throws UserError unless it is from 0 to 100 %.
 [[nodiscard]] double parse_tolerance(std::string_view text);
 
-/// Why no method but exact replay is known to be good for a frame, by what the study measured: nothing when
-/// some are.
+/// The reason why only exact replay is known to be good for a frame, by what the study measured; std::nullopt
+/// when a cheaper method is.
 [[nodiscard]] std::optional<std::string> outside_measured(const FrameConfig& frame);
 
-/// Why no method but exact replay is known to be good for a machine, by what the study measured: nothing when
-/// some are. Packets are those of the frame.
+/// The reason why only exact replay is known to be good for a machine, by what the study measured;
+/// std::nullopt when a cheaper method is. `packets`: of the frame.
 [[nodiscard]] std::optional<std::string> outside_measured(const processors::MachineConfig& machine,
                                                           std::uint64_t packets);
 
@@ -34,9 +34,9 @@ struct EstimatedRun {
 };
 
 /// By the cheapest method whose half-widths of frame time and speed-up, its own and the measured ones
-/// together, are at most `tolerance`; a sample whose own turns out too wide gives way to the next method, and
-/// so does the analytic model where it finds the interconnect busy. Nothing when only exact replay is left.
-/// The machine must not be outside_measured().
+/// together, are at most `tolerance`. If a sample's own half-widths turn out too wide, or the analytic model
+/// finds the interconnect busy, the next method is tried. std::nullopt when only exact replay is left.
+/// outside_measured() must be std::nullopt for the machine.
 [[nodiscard]] std::optional<EstimatedRun> estimate_within(const processors::WorkLog& log,
                                                           const processors::MachineConfig& machine,
                                                           double tolerance);

@@ -20,8 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Where a figure's interval begins and ends: infinite where nothing bounds it, not a number where the error
-// is not known.
+// Both ends of a figure's interval: infinite where nothing bounds it, NaN where the error is not known.
 std::pair<double, double> interval(Figure figure, double value, double half_width) {
   if (!std::isfinite(half_width)) {
     return {NAN, NAN};

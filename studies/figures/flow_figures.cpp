@@ -63,7 +63,7 @@ const StageLoad& FlowFigures::slowest() const {
 
 namespace {
 
-// What contributions take of the link into the host, of a network that has one for it alone.
+// The share of the frame in which contributions occupy the link into the host, if the host has its own link.
 double host_link(const MachineConfig& machine, const MachineResult& result) {
   const memory::NetworkConfig& network = machine.network;
   if (network.kind == memory::NetworkKind::ideal || network.kind == memory::NetworkKind::bus) {
@@ -110,7 +110,7 @@ FlowFigures flow_figures(const MachineConfig& machine, const MachineResult& resu
   }
   const double ways = static_cast<double>(result.end) * machine.clusters;
   if (ways > 0.0) {
-    // The last ray sent may keep the host beyond the end.
+    // Sending the last ray may keep the host busy beyond the frame's end.
     figures.host = std::min(1.0, static_cast<double>(result.host.busy) / ways);
     figures.host_link = host_link(machine, result) / ways;
   }

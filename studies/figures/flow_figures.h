@@ -13,12 +13,12 @@ namespace marti::studies {
 struct StageLoad {
   std::string name;  ///< "search", "nearest", "shade"; "nodes" where there are no stages
   std::uint64_t nodes = 0;
-  double busy = 0.0;     ///< mean share of the frame that a node neither waits for rays or queues nor idles
-  double busiest = 0.0;  ///< of the busiest node
-  double queue_full = 0.0;  ///< mean share of the frame that a node waits for a full queue
+  double busy = 0.0;        ///< mean share of the frame without waits for rays or queues and without idling
+  double busiest = 0.0;     ///< that share for the busiest node
+  double queue_full = 0.0;  ///< mean share of the frame in which a node waits for a full queue
   std::int64_t longest_queue = 0;
 
-  /// Largest over mean busy time; nothing when no node was busy.
+  /// Largest over mean busy time; std::nullopt when no node was busy.
   [[nodiscard]] std::optional<double> imbalance() const {
     return busy > 0.0 ? std::optional(busiest / busy) : std::nullopt;
   }
@@ -30,10 +30,10 @@ struct FlowFigures {
   std::int64_t messages = 0;      ///< that went through the networks
   std::int64_t bytes = 0;
   double hops_a_message = 0.0;
-  /// Busy time over links times frame time, of the busiest cluster's network; nothing for an ideal one.
+  /// Busy time / (links * frame time) of the busiest cluster's network; std::nullopt for an ideal network.
   std::optional<double> network;
-  double host = 0.0;       ///< share of the frame that the host is kept by camera rays, mean of the clusters
-  double host_link = 0.0;  ///< of its link, that contributions take; 0 for an ideal network or a bus
+  double host = 0.0;       ///< share of the frame in which the host sends camera rays, mean of the clusters
+  double host_link = 0.0;  ///< share in which contributions occupy its link; 0 for an ideal network or a bus
   std::uint64_t least_memory = 0;  ///< bytes of the database in a node's own memory: least, mean, most
   double mean_memory = 0.0;
   std::uint64_t most_memory = 0;
@@ -42,7 +42,7 @@ struct FlowFigures {
   [[nodiscard]] const StageLoad& slowest() const;
 };
 
-/// `result` is of a scheme in which rays move.
+/// `result` must be of a scheme in which rays move.
 [[nodiscard]] FlowFigures flow_figures(const processors::MachineConfig& machine,
                                        const processors::MachineResult& result);
 
@@ -63,7 +63,7 @@ enum class Bottleneck : std::uint8_t { none, host, network };
 [[nodiscard]] Bottleneck bottleneck_of(const processors::MachineConfig& machine,
                                        const processors::MachineResult& result);
 
-/// From this share of the frame on a shared resource counts as full.
+/// A shared resource that is busy for this share of the frame or longer counts as full.
 inline constexpr double full = 0.9;
 /// Above this share of the frame a stage or a node counts as always busy.
 inline constexpr double always_busy = 0.8;

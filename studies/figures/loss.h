@@ -1,4 +1,4 @@
-// Where the speed-up that a machine lacks has gone.
+// The lost speed-up by cause.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace marti::studies {
 
-/// Why n nodes spend more time than one. Each part is the difference of some activities of all n nodes and
-/// of those of the one node, so it may be negative: n caches can hold more than one.
+/// Why n nodes together spend more time than one node. Each part is the time of some activities summed over
+/// all n nodes, less that of the one node. It may be negative: n caches can hold more than one.
 enum class Loss : std::uint8_t {
   extra_misses,  ///< traversal, intersection, shading, cache_access, transfer, bank_access
   contention,    ///< interconnect_wait, bank_wait

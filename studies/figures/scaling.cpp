@@ -15,7 +15,7 @@ using processors::Activity;
 
 namespace {
 
-// Waits for what is always busy are named from this share of the nodes' time on.
+// Waits for a part that is always busy are named if they take at least this share of the nodes' time.
 constexpr double worth_naming = 0.1;
 
 double share(sim::Ticks part, double whole) { return whole > 0.0 ? static_cast<double>(part) / whole : 0.0; }
@@ -232,8 +232,9 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
   finding.share = largest->second / all;
   const double flow = waits.slowest + waits.queues + waits.messages;
   if (machine.scheme != processors::Scheme::image && flow >= worth_naming * all) {
-    // Whatever else takes more time, the frame cannot be shorter than what is always busy: first what all
-    // nodes share, then the slowest part, whose nodes may be busy waiting for just that.
+    // A resource that is always busy bounds the frame even if the nodes spend more time on something else.
+    // First come shared resources, then the slowest part, whose nodes may be busy waiting for a shared
+    // resource.
     const Bottleneck bottleneck = bottleneck_of(machine, result);
     if (utilisation_of(machine, result).interconnect.value_or(0.0) >= full) {
       finding = {Limit::interconnect, part({Activity::interconnect_wait}) / all, ""};

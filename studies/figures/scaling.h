@@ -12,25 +12,25 @@ namespace marti::studies {
 struct Scaling {
   std::uint32_t nodes = 1;  ///< of all clusters
   sim::Ticks one_node_end = 0;
-  std::optional<double> speed_up;    ///< nothing when the frame takes no time
+  std::optional<double> speed_up;    ///< std::nullopt when the frame takes no time
   std::optional<double> efficiency;  ///< speed_up / nodes
   /// Karp and Flatt 1990: the serial fraction (1/s - 1/n) / (1 - 1/n) that would explain the speed-up by
-  /// Amdahl's law; nothing for one node.
+  /// Amdahl's law; std::nullopt for one node.
   std::optional<double> serial_fraction;
 };
 
 [[nodiscard]] Scaling scaling_of(sim::Ticks one_node_end, sim::Ticks end, std::uint32_t nodes);
 
-/// What connects the nodes to their memory: "ideal interconnect", "bus", "crossbar", or of a distributed
+/// What connects the nodes to their memory: "ideal interconnect", "bus", "crossbar", or for a distributed
 /// database "mesh network" and the like.
 [[nodiscard]] std::string interconnect_name(const processors::MachineConfig& machine);
 
 /// How busy interconnects and banks were, as shares of the frame time.
 struct Utilisation {
-  /// Transfer time over links times frame time, the busiest cluster's; nothing for an ideal interconnect or
+  /// Transfer time / (links * frame time) of the busiest cluster; std::nullopt for an ideal interconnect or
   /// network, which has no links to be busy.
   std::optional<double> interconnect;
-  double bank = 0.0;  ///< the busiest bank's; of a distributed database, the busiest node's memory's
+  double bank = 0.0;  ///< of the busiest bank; with a distributed database, of the busiest node's memory
   double mean_bank = 0.0;
 };
 

@@ -4,8 +4,8 @@
 // the records and lists of all its children. So a node whose moved triangles alone are sorted anew
 // (accel::NodeUpdate::resorted) is charged as if it were split: more than it takes, unless almost all of its
 // triangles moved.
-// What it charges for neither: finding what moved, and gathering again the list of a branch from the leaves
-// below it.
+// It charges nothing for finding out what moved, and nothing for gathering again the list of a branch from
+// the leaves below it.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,7 @@ double share(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// By how much a time is shorter than the whole rebuild's, as a fraction of that.
+/// The time saved against rebuilding the whole tree, as a fraction of the rebuild's time.
 double saved(sim::Ticks time, sim::Ticks rebuild) {
   return rebuild == 0 ? 0.0 : static_cast<double>(rebuild - time) / static_cast<double>(rebuild);
 }

@@ -13,14 +13,14 @@ namespace marti::studies {
 /// What an update did to a tree. In a first frame everything was made anew.
 struct TreeChange {
   std::uint64_t nodes = 0;       ///< of the new tree
-  std::uint64_t branches = 0;    ///< of these
-  std::uint64_t moved = 0;       ///< primitives; 0 in a first frame
+  std::uint64_t branches = 0;    ///< among these nodes
+  std::uint64_t moved = 0;       ///< primitives that moved; 0 in a first frame
   std::uint64_t altered = 0;     ///< nodes whose record or list had to be made anew
   std::uint64_t resorted = 0;    ///< branches in which only moved primitives were sorted anew
   std::uint64_t split = 0;       ///< branches whose children were made anew
   std::uint64_t sorted = 0;      ///< primitives sorted by the update, each once a node
   std::uint64_t tests = 0;       ///< overlap tests run by it
-  std::uint64_t all_sorted = 0;  ///< the same of a build from nothing
+  std::uint64_t all_sorted = 0;  ///< primitives sorted by a build from nothing
   std::uint64_t all_tests = 0;
 };
 [[nodiscard]] TreeChange change_of(const FrameTree& tree);

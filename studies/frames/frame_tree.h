@@ -14,7 +14,7 @@ namespace marti::studies {
 struct FrameTree {
   std::shared_ptr<const accel::TriangleSet> triangles;
   std::shared_ptr<const accel::StructureOf<accel::Octree>> octree;
-  /// From the frame before. Nothing for the first frame.
+  /// The update from the tree of the frame before; std::nullopt for the first frame.
   std::optional<accel::OctreeUpdate> update;
   double build_seconds = 0.0;   ///< host: building it from nothing, on all threads
   double update_seconds = 0.0;  ///< host: updating it, on one thread; 0 for the first frame

@@ -1,4 +1,4 @@
-// The four ways to come by a frame's tree, each timed on the configured machine.
+// The four ways to get a frame's tree, each timed on the configured machine.
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@
 
 namespace marti::studies {
 
-/// rebuild_all: the whole tree is built before each frame, and paid. partial: only altered branches are split
-/// before the frame, the rest is kept. dynamic: the initial tree is built before each frame, the rest on
-/// demand, from nothing each time. partial_dynamic: what is there from the frame before is kept, altered
-/// branches are split on demand (frame_starts.h); its first frame is that of `dynamic`.
+/// rebuild_all: the whole tree is built before each frame, and its time counts. partial: only altered
+/// branches are split before the frame, the rest is kept. dynamic: the initial tree is built before each
+/// frame, the rest on demand, from nothing each time. partial_dynamic: what the frame before has built is
+/// kept, altered branches are split on demand (frame_starts.h); its first frame is that of `dynamic`.
 enum class FrameWay : std::uint8_t { rebuild_all, partial, dynamic, partial_dynamic };
 inline constexpr std::size_t frame_ways = 4;
 inline constexpr std::array<std::string_view, frame_ways> frame_way_names = {"rebuild_all", "partial",

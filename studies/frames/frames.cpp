@@ -24,8 +24,9 @@ namespace marti::studies {
 
 namespace {
 
-/// With a tree of this frame alone: its root is tight around it, as in a run of one frame. The voxel cut's
-/// cells must be the same, or the image is another approximation.
+/// Renders the frame again with a tree of its own, whose root fits it tightly as in a run of one frame: the
+/// image must be the same. With the voxel cut the cells must be those of `tree`, or the image is another
+/// approximation.
 void verify(const FramesConfig& config, const PosedFrame& pose, const FrameTree& tree,
             const processors::Frame& frame) {
   accel::OctreeOptions options = config.frame.structure_options.octree;

@@ -22,10 +22,10 @@ namespace marti::studies {
 
 namespace {
 
-// Beside the pools: one that waits for signals, and one that talks to other ranks.
+// Threads outside the pools: one waits for signals, one talks to other ranks.
 constexpr std::size_t others = 2;
 
-// As many as can be there at a time, of those that are wanted.
+// How many of `wanted` threads can exist at the same time, found by starting them.
 std::size_t started_at_once(std::size_t wanted) {
   std::latch over(1);
   std::vector<std::jthread> threads;
@@ -41,7 +41,7 @@ std::size_t started_at_once(std::size_t wanted) {
   return threads.size();
 }
 
-// Address space that is free now may be taken when oneTBB starts its threads at its leisure: let it do so.
+// oneTBB starts its threads late, and other memory may have taken the address space by then: start them now.
 void start_pool(std::size_t threads) {
   rlimit space{};
   if (threads < 2 || getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur == RLIM_INFINITY) {

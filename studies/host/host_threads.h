@@ -4,9 +4,9 @@
 namespace marti::studies {
 
 /// Finds out, by starting some, whether as many threads can be made as there are processors, for oneTBB and
-/// again for the workers of a sweep. Where they cannot (a limit of processes, of a container's tasks, or of
-/// address space), oneTBB is told to take fewer: it would abort the program. Call it once, before the first
-/// parallel work; results are the same with any number.
+/// again for the workers of a sweep. If they cannot (a limit of processes, of a container's tasks, or of
+/// address space), tells oneTBB to take fewer, because it would abort the program. Call it once, before the
+/// first parallel work; results are the same with any number.
 void take_only_threads_there_are();
 
 }  // namespace marti::studies

@@ -102,7 +102,7 @@ void write_png(const processors::Image& image, const std::filesystem::path& file
 
 namespace {
 
-// An image file in memory, opened; its head is read and can be a texture's.
+// An image file in memory, opened; its header has been read and is that of a possible texture.
 struct OpenImage {
   OpenImage(std::span<const std::byte> file, std::string_view name)
       : memory(file.data(), file.size()), label(name) {

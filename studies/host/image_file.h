@@ -19,15 +19,16 @@ namespace marti::studies {
 /// files. Throws UserError when the file cannot be written.
 void write_exr(const processors::Image& image, const std::filesystem::path& file);
 
-/// "3 of 256 pixels ...": how many have a channel that is infinite or no number, which an EXR file holds as
-/// it is and a PNG file as its brightest or darkest value; empty when none has.
+/// "3 of 256 pixels ...": how many have a channel that is infinite or NaN, which an EXR file holds unchanged
+/// and a PNG file as its brightest or darkest value; empty when no pixel has one.
 [[nodiscard]] std::string note_of_infinities(const processors::Image& image);
 
 /// Writes an OpenEXR of 32-bit float channels, each with a name and width * height figures.
 void write_channels(std::uint32_t width, std::uint32_t height, std::span<const std::string> names,
                     std::span<const std::vector<float>> channels, const std::filesystem::path& file);
 
-/// Writes 8-bit sRGB-encoded PNG; values are clamped to 0..1. Throws UserError likewise.
+/// Writes 8-bit sRGB-encoded PNG; values are clamped to 0..1. Throws UserError when the file cannot be
+/// written.
 void write_png(const processors::Image& image, const std::filesystem::path& file);
 
 /// A scenes::ImageDecoder. Reads PNG and JPEG; refuses more than 65,536 pixels a side or 2^28 in all.

@@ -1,4 +1,4 @@
-// Which program this is, for whatever keeps results for later runs.
+// The identity of the program's build, so that results kept from another build are recognised.
 #pragma once
 
 #include <string_view>

@@ -23,18 +23,18 @@ std::function<void(int)>& action() {
   return function;
 }
 
-// Every thread blocks the signals, because each inherits the mask of the one that starts it; so they come
-// here.
+// Waits for one of the signals. All threads block them, because a thread inherits the mask of the one that
+// starts it; so only sigwait() receives them.
 void watch(const sigset_t& signals) {
   int signal = 0;
   if (sigwait(&signals, &signal) != 0) {
     return;
   }
-  held().lock();  // for good: nothing else is to begin
+  held().lock();  // never unlocked: no output may begin any more
   sim::abandon_pending_files();
   if (action()) {
     action()(signal);
-    _exit(128 + signal);  // as a shell would say it
+    _exit(128 + signal);  // the status that a shell reports for a signal
   }
   std::signal(signal, SIG_DFL);
   sigset_t mine;
@@ -51,7 +51,7 @@ void end_cleanly_on_signals() {
   sigemptyset(&signals);
   bool any = false;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    // One that is ignored, as by nohup, would come to sigwait all the same.
+    // sigwait() would also receive an ignored signal, such as SIGHUP under nohup.
     struct sigaction now {};
     if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) {
       sigaddset(&signals, signal);

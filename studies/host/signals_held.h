@@ -7,8 +7,8 @@
 namespace marti::studies {
 
 /// To be called by main() before it starts any thread. From then on SIGINT, SIGTERM and SIGHUP, unless they
-/// are ignored, end the program as they always do, but first the temporary files of unfinished output are
-/// removed, and while a SignalsHeld lives they wait.
+/// are ignored, still end the program, but first the temporary files of unfinished output are removed; and
+/// while a SignalsHeld lives, the signals wait.
 void end_cleanly_on_signals();
 
 /// Keeps such a signal from splitting a set of files into old and new ones.
@@ -20,12 +20,12 @@ class SignalsHeld {
   std::unique_lock<std::recursive_mutex> lock_;
 };
 
-/// What is to be done when such a signal comes while this lives: it is called once, in a thread of its own,
-/// after temporary files are removed; then the program exits with status 128 + signal. One at a time.
+/// An action for the case that such a signal comes while this lives: it is called once, in a thread of its
+/// own, after temporary files are removed; then the program exits with status 128 + signal. One at a time.
 class AtSignal {
  public:
   explicit AtSignal(std::function<void(int signal)> action);
-  /// Waits for the action, which does not return here, if it has begun.
+  /// If the action has begun, waits for it and does not return: the program exits.
   ~AtSignal();
   AtSignal(const AtSignal&) = delete;
   AtSignal& operator=(const AtSignal&) = delete;

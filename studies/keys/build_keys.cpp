@@ -35,7 +35,7 @@ void read_initial_level(const sim::Config& config, BuildConfig& build) {
   }
 }
 
-// Where the initial tree ends, in all its keys.
+// Reads all keys that say where the initial tree ends.
 void read_initial_tree(sim::Config& config, BuildConfig& build) {
   read_initial_level(config, build);
   if (build.initial == InitialTree::rule) {

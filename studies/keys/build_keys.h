@@ -14,9 +14,9 @@ void declare_build_keys(sim::Schema& schema);
 /// tree to share.
 [[nodiscard]] processors::BuildConfig read_build(sim::Config& config);
 
-/// For studies that build on demand whatever the machine does by itself: as read_build, but without
-/// `build.sharing` the tree is shared, or private where each node has a database. Throws UserError too when
-/// it is "given" or "none". Call it after read_machine.
+/// For studies that always build on demand: like read_build, but if `build.sharing` is not given, the tree is
+/// shared, or private where each node has a database of its own. Also throws UserError when `build.sharing`
+/// is "given" or "none". Call it after read_machine.
 [[nodiscard]] processors::BuildConfig read_dynamic_build(sim::Config& config);
 
 }  // namespace marti::studies

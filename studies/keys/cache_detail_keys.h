@@ -15,8 +15,8 @@ void read_second_level(sim::Config& config, processors::MachineConfig& machine);
 
 void declare_count_keys(sim::Schema& schema);
 
-/// Reads what `machine`, which is known but for it, is asked to count. Throws UserError naming file, line and
-/// key.
+/// Reads into `machine`, which is otherwise complete, what it is asked to count. Throws UserError naming
+/// file, line and key.
 void read_count(sim::Config& config, processors::MachineConfig& machine);
 
 }  // namespace marti::studies

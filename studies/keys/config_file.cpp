@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Names in `directory` of that kind, in alphabetical order; nothing where it cannot be read.
+// The names of the directories, or of the other files, in `directory`; sorted, empty if it cannot be read.
 std::vector<std::string> names_in(const fs::path& directory, bool directories) {
   std::vector<std::string> names;
   std::error_code error;
@@ -41,7 +41,7 @@ fs::path nearest_file(const fs::path& file) {
       return near / file.filename();
     }
   }
-  // Called from a directory below the one that the name is relative to, or without the directory's name.
+  // The program may run below the directory that the name is relative to, or the name may lack its directory.
   if (file.is_relative()) {
     for (const fs::path above : {"configs", "..", "../..", "../configs", "../../.."}) {
       if (fs::is_regular_file(above / file, error)) {

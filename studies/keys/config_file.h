@@ -1,4 +1,4 @@
-// What is said when the configuration that was named is not there.
+// The error message for a configuration file that does not exist.
 #pragma once
 
 #include <filesystem>

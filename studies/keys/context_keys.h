@@ -7,13 +7,13 @@
 
 namespace marti::studies {
 
-/// Those of the section `node`.
+/// Declares these keys of section `node`.
 void declare_context_keys(sim::Schema& schema);
-/// The section `prefetch`.
+/// Declares section `prefetch`.
 void declare_prefetch_keys(sim::Schema& schema);
 
-/// Reads both into a machine whose cache, placement and building have been read, and marks those without
-/// effect. Throws UserError naming file, line and key.
+/// Reads both sections into a machine whose cache, placement and building have been read, and marks keys
+/// without effect. Throws UserError naming file, line and key.
 void read_contexts(sim::Config& config, processors::MachineConfig& machine);
 
 }  // namespace marti::studies

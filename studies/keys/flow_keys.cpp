@@ -27,7 +27,7 @@ void read_messages(const sim::Config& config, processors::MessageConfig& message
   messages.receive_cycles = config.integer("messages.receive_cycles");
 }
 
-// The nodes of each stage as given, or all three shares.
+// Reads the nodes of each stage; if no stage has any, the default shares are taken.
 void read_stages(const sim::Config& config, PipelineConfig& pipeline, std::uint32_t nodes) {
   const PipelineConfig shares = processors::default_stages(nodes);
   std::size_t given = 0;

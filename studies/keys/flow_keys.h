@@ -9,8 +9,8 @@ namespace marti::studies {
 
 void declare_flow_keys(sim::Schema& schema);
 
-/// Reads what the machine's scheme uses of these keys and marks the others. `machine` has its scheme and its
-/// nodes.
+/// Reads the keys that the machine's scheme uses and marks the others as unused. Scheme and nodes of
+/// `machine` must have been read.
 void read_flow(sim::Config& config, processors::MachineConfig& machine);
 
 }  // namespace marti::studies

@@ -37,7 +37,7 @@ struct FrameConfig {
   processors::RenderOptions render;
   bool exact_too = false;    ///< with the voxel cut: render the exact image beside it
   sim::MemoryBudget memory;  ///< of scene, structure, image and work log together
-  KeptItems keep;            ///< of the plan; not a key of the configuration: it decides no result
+  KeptItems keep;            ///< plan items to keep; no configuration key, as it changes no result
 };
 
 /// The options with the image made so small that its longer side has at most `side` pixels.
@@ -45,17 +45,17 @@ struct FrameConfig {
 
 void declare_frame_keys(sim::Schema& schema);
 
-/// By host_machine.memory_limit; where that is 0, this process' share of the host's memory, of which
-/// `processes` equal ones run there. Throws UserError naming file, line and key.
+/// The budget by host_machine.memory_limit; if that is 0, an equal share of the host's memory for each of the
+/// `processes` that run on it. Throws UserError naming file, line and key.
 [[nodiscard]] sim::MemoryBudget read_memory(const sim::Config& config, std::uint64_t processes = 1);
 
-/// Whichever structure is built may take what is left of it.
+/// Lets the structure, whichever is built, take what is left of the budget.
 void give_memory(const sim::MemoryBudget& memory, accel::StructureOptions& options);
 
 /// Throws UserError naming file, line and key.
 [[nodiscard]] FrameConfig read_frame(sim::Config& config);
 
-/// The same for a study of one frame: refuses several.
+/// Like read_frame, for a study of one frame: refuses several.
 [[nodiscard]] FrameConfig read_one_frame(sim::Config& config);
 
 }  // namespace marti::studies

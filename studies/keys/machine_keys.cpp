@@ -180,7 +180,7 @@ void declare_host(Schema& schema) {
          "cycles that one request, or one camera ray, keeps the host from the next");
 }
 
-// A size that only a power of two can be.
+// A size that must be a power of two.
 std::uint32_t power_of_two(const sim::Config& config, std::string_view key) {
   const std::int64_t bytes = config.size(key);
   if (!std::has_single_bit(static_cast<std::uint64_t>(bytes))) {
@@ -216,7 +216,7 @@ void read_layout(const sim::Config& config, memory::LayoutConfig& layout) {
   layout.node_order = config.choice_as<memory::NodeOrder>("layout.node_order");
 }
 
-// One cache of a checked shape; a shape that cannot be built is laid at the size's door.
+// Reads the size of one cache. A cache shape that cannot be built is reported under the size key.
 void read_cache_size(const sim::Config& config, std::string_view key, const memory::CacheConfig& rest,
                      std::uint64_t& size) {
   memory::CacheConfig cache = rest;

@@ -9,9 +9,9 @@ namespace marti::studies {
 
 void declare_space_keys(sim::Schema& schema);
 
-/// Reads the scheme's keys when `machine` has it, and marks what it makes useless: itself with another
-/// scheme, shared memory and where the database is with this one. `machine` has its scheme and its nodes.
-/// Throws UserError naming file, line and key.
+/// Reads the scheme's keys if `machine` has the space scheme, and marks those without effect: with another
+/// scheme these keys; with the space scheme the keys of shared memory and of the database's placement. Scheme
+/// and nodes of `machine` must have been read. Throws UserError naming file, line and key.
 void read_space(sim::Config& config, processors::MachineConfig& machine);
 
 }  // namespace marti::studies

@@ -17,7 +17,7 @@ namespace marti::studies {
 namespace {
 
 constexpr std::uint32_t longest_side = 64;
-// Tests that brute force may be asked for.
+// The most tests that brute force may take.
 constexpr double most_tests = 0x1p26;
 constexpr std::uint32_t deepest = 8;
 constexpr std::uint32_t unit_length_rays = 4000;
@@ -66,7 +66,7 @@ OperationsStudy count_operations(sim::Config& config) {
     for (const bool mailboxes : {false, true}) {
       render.mailboxes = mailboxes;
       if (mailboxes && structure->kind() == "none") {
-        break;  // one list has nothing twice
+        break;  // brute force has one list, which names nothing twice
       }
       WalkRow& row = study.walks.emplace_back();
       row.name = plan.name;

@@ -40,7 +40,7 @@ struct OperationsStudy {
 /// and structure.
 [[nodiscard]] StudyOutput output_of(const OperationsStudy& study);
 
-/// The study: both, and where its numbers come from.
+/// Runs the study: its report, its tables, and the provenance of its numbers.
 [[nodiscard]] StudyOutput run_operations(sim::Config& config);
 
 }  // namespace marti::studies

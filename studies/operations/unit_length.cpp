@@ -66,8 +66,8 @@ struct Crossing {
   double length;
 };
 
-/// Uniform in position and direction: a uniform point of the surface and a direction into the cube whose
-/// chance is as the cosine of its slope.
+/// Uniform in position and direction: a uniform point of the surface and a direction into the cube with a
+/// probability in proportion to the cosine of its angle to the normal.
 class IsotropicRays {
  public:
   Crossing next() {

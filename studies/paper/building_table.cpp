@@ -12,7 +12,7 @@ namespace {
 
 std::uint64_t ticks(sim::Ticks time) { return static_cast<std::uint64_t>(time); }
 
-/// By how much a time is longer than the whole tree's, as a fraction of that.
+/// The additional time compared with that of the whole tree, as a fraction of the latter.
 double change(sim::Ticks time, sim::Ticks whole) {
   return whole == 0 ? 0.0 : static_cast<double>(time - whole) / static_cast<double>(whole);
 }

@@ -22,7 +22,7 @@ struct InitialLevel {
   bool whole = false;         ///< the whole tree is built before the frame
   std::vector<double> rules;  ///< k of the rules that choose this level
 
-  /// "whole tree", "k = 3", "k = 3, k = 10", or nothing.
+  /// "whole tree", "k = 3", "k = 3, k = 10", or empty.
   [[nodiscard]] std::string note() const;
 };
 

@@ -16,7 +16,7 @@ namespace {
 
 // The paper's second teapot, on which most of its statements rest.
 constexpr std::string_view pot = "teapot:12:pot";
-// What stands in for its largest scene, of about 19,000 polygons, on which its savings rest.
+// The scene that stands in for the paper's largest, of about 19,000 polygons, on which its savings rest.
 constexpr std::string_view large = "large";
 
 const SceneTrees* find(std::span<const SceneTrees> scenes, std::string_view name) {
@@ -184,7 +184,8 @@ double operations(const TracedRun& run) {
   return thousandths / 1000.0;
 }
 
-/// The paper does not say of which scene: it agrees when its second teapot takes within a quarter of it.
+/// The paper does not name the scene; the claim agrees when the second teapot takes within a quarter of the
+/// paper's number.
 Claim frame_operations(std::span<const TracedRun> runs) {
   constexpr double published = 900e6;
   constexpr double pixels = 1024.0 * 1024.0;

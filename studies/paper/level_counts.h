@@ -23,7 +23,7 @@ struct LevelCount {
   std::uint64_t partial_entries = 0;  ///< triangles listed by partially built nodes
 
   [[nodiscard]] std::uint64_t nodes() const { return branches + leaves + partial; }
-  /// L / (B + P); infinite when all nodes are leaves, nothing when there is no node.
+  /// L / (B + P); infinite when all nodes are leaves, std::nullopt when there is no node.
   [[nodiscard]] std::optional<double> leaf_ratio() const;
   bool operator==(const LevelCount&) const = default;
 };
@@ -40,7 +40,7 @@ struct LevelCount {
 
 /// The first level n with L_n > k (B_n + P_n), at which building before the frame stops by the rule of the
 /// 1992 paper (k = 3 after its worst case, in which a ray enters four children of a branch; k = 10 is what it
-/// recommends). Nothing when there is no such level.
+/// recommends). std::nullopt when there is no such level.
 [[nodiscard]] std::optional<std::uint32_t> rule_level(std::span<const LevelCount> levels, double k);
 
 /// What a frame did with each node: a pass over its log.

@@ -29,7 +29,7 @@ namespace marti::studies {
 
 namespace {
 
-/// Opens a scene and lays a fault at the key that named it.
+/// Opens a scene and reports errors under the key that named it.
 scenes::Scene open(const sim::Config& config, const PaperConfig& paper, const std::string& name,
                    std::string_view key) {
   try {
@@ -70,8 +70,8 @@ std::string head_of(const sim::Config& config, const PaperConfig& paper) {
       sim::print_frequency(config.frequency("node.clock")), config.choice_name("costs.preset"));
 }
 
-/// The tables for people: those with a row for each level get a column for each instead. The claims have a
-/// text of their own, and the table behind a chart repeats what stands in others.
+/// The tables for people: those with a row for each level get a column for each level instead. Left out are
+/// the claims, which have a text of their own, and the table behind a chart, which repeats others.
 std::string text_of_tables(std::span<const Table> tables) {
   std::string text;
   for (const Table& table : tables) {

@@ -16,7 +16,7 @@ struct OwnKey {
   std::string_view from;
 };
 
-// Keys of a run that the study sets itself, and from what.
+// Keys of a run that the study sets itself, and the keys of the study that decide them.
 constexpr OwnKey own_keys[] = {
     {"scene.source", "paper.scenes and paper.run_scenes"},
     {"scene.scene", "paper.scenes and paper.run_scenes"},

@@ -17,8 +17,9 @@ struct AxisColumn {
   std::vector<std::size_t> index;      ///< of each point's value among them
 };
 
-/// `points[i][j]` is point i's value of `names[j]`. A name whose value follows from another's belongs to that
-/// one; of two that follow from each other the earlier leads. Names with a single value are no axes.
+/// `points[i][j]` is point i's value of `names[j]`. A name whose value is determined by another's is a
+/// follower of that one; of two that determine each other the earlier leads. Names with a single value are
+/// not axes.
 [[nodiscard]] std::vector<AxisColumn> order_axes(std::span<const std::string> names,
                                                  std::span<const std::vector<Cell>> points);
 

@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// A chart of marti has some hundred values beside its rows. Each costs as much as the chart has rows, or
-// more.
+// A chart of marti has some hundred values beside its rows. The cost of each grows with the number of rows,
+// or faster.
 constexpr std::size_t most_values = 2000;
 constexpr int deepest = 32;
 
@@ -117,9 +117,9 @@ std::span<const Field> fields_of(Part part) {
 
 bool is_letter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '$'; }
 
-// What an expression calls that is not arithmetic: sequence(0, 1e9) alone would take all of the memory. Also
-// what would hide a call from this look at its text: a regular expression, which may hold quotes, and an
-// escape outside of them. Empty when there is none.
+// What an expression calls beside arithmetic functions: sequence(0, 1e9) alone would take all of the memory.
+// Also found is what could hide a call from this search of the text: a regular expression, which may hold
+// quotes, and an escape outside of quotes. Empty when there is none.
 std::string foreign_call(std::string_view text) {
   constexpr std::string_view allowed[] = {"abs",     "ceil", "exp", "floor", "if",  "isFinite", "isNaN",
                                           "isValid", "log",  "max", "min",   "pow", "round",    "sqrt"};

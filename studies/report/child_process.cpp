@@ -50,7 +50,7 @@ struct Channel {
   std::array<int, 2> ends{-1, -1};
 };
 
-/// Ours with `added` before it, which getenv() finds first.
+/// Our environment with `added` before it, so that getenv() finds `added` first.
 std::vector<std::string> environment_with(const std::vector<std::string>& added) {
   std::vector<std::string> all = added;
   for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {
@@ -80,7 +80,7 @@ pid_t start(const ChildProcess& child, const std::array<Channel, 3>& channels) {
   for (int number = 0; number < 3; ++number) {
     posix_spawn_file_actions_adddup2(&actions, channels[static_cast<std::size_t>(number)].theirs(), number);
   }
-  // Our threads block the signals that one thread waits for; the other program is to hear them.
+  // A child inherits our signal mask, which blocks the signals that one thread waits for: unblock them.
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
@@ -99,7 +99,7 @@ pid_t start(const ChildProcess& child, const std::array<Channel, 3>& channels) {
   return process;
 }
 
-/// Ends the process, unless it has ended and its status has been taken.
+/// Kills the process, unless wait_until() has seen its end.
 class Running {
  public:
   explicit Running(pid_t process) : process_(process) {}
@@ -177,7 +177,7 @@ std::string run_child(const ChildProcess& child, std::string_view input, std::si
     if (ready[0].revents != 0) {
       const ssize_t count =
           ::send(channels[0].ours(), input.data(), input.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-      // One that reads no further says itself why, by its status.
+      // A child that stops reading tells the reason by its exit status.
       input.remove_prefix(count < 0 && errno != EAGAIN && errno != EINTR
                               ? input.size()
                               : static_cast<std::size_t>(std::max<ssize_t>(count, 0)));

@@ -11,14 +11,14 @@ namespace marti::studies {
 struct ChildProcess {
   std::vector<std::string> command;      ///< the program, found by PATH, and its arguments
   std::string package;                   ///< the Debian package that has it, for the message
-  std::vector<std::string> environment;  ///< NAME=VALUE, in place of ours or in addition
-  std::chrono::seconds limit;            ///< by then it is ended
+  std::vector<std::string> environment;  ///< NAME=VALUE, added to our environment or in place of its own
+  std::chrono::seconds limit;            ///< after which the program is killed
 };
 
-/// Runs the program with `input` as its standard input and returns its standard output. It ends with ours
-/// when a signal ends that. Throws UserError when there is no such program, when it does not end with status
-/// 0 (the message passes on what it says), when it takes longer than its limit, or when it writes more than
-/// `most` bytes.
+/// Runs the program with `input` as its standard input and returns its standard output. A signal that ends
+/// this program ends the child, too. Throws UserError when there is no such program, when it does not end
+/// with status 0 (the message passes on what it says), when it takes longer than its limit, or when it writes
+/// more than `most` bytes.
 std::string run_child(const ChildProcess& child, std::string_view input, std::size_t most = 256U << 20U);
 
 }  // namespace marti::studies

@@ -24,7 +24,7 @@ double factor_of(const ModelError* errors, Zone zone) {
   return 1.0 + errors[static_cast<std::size_t>(zone)].p95;
 }
 
-// Speed-up that is the number of nodes: how many of them a unit of the axis is.
+// The slope of the ideal speed-up on an axis of nodes: nodes for each unit of the axis; 0 on other axes.
 double ideal_of(const ReportPoint& point, const ReportAxis& axis, std::size_t place) {
   const double efficiency = point.figure("efficiency");
   return axis.name == "machine.nodes" && efficiency > 0.0
@@ -108,7 +108,7 @@ void add_sample(Table& table, const AxisModel& model, const Modelled& sample, do
                  ideal > 0.0 ? Cell(ideal * x) : Cell()});
 }
 
-// The outer points are in two zones, so that their curves meet.
+// The outer points are rows of both zones, so that the zones' curves meet.
 void add_model_rows(Table& table, const AxisModel& model, const ModelCurve& curve, double first, double last,
                     double ideal) {
   for (std::size_t i = 0; i < model.x.size(); ++i) {
@@ -137,7 +137,7 @@ void add_mark(Table& table, const std::string& kind, const std::string& zone, do
   table.add_row(std::move(row));
 }
 
-// Where the curve leaves its exact points behind.
+// Adds the ranges in which the curve extrapolates, and the place from which a queue limits.
 void add_zones(Table& table, const AxisModel& model, const ModelCurve& curve, double first, double last) {
   double low = first;
   double high = last;

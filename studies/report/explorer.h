@@ -22,10 +22,10 @@ struct ExplorerField {
   bool exact = false;  ///< all its digits are shown
 };
 
-/// The figure as it is shown; nothing where the point has none.
+/// The figure as it is shown; std::nullopt where the point lacks it.
 [[nodiscard]] std::optional<double> shown(const ExplorerField& field, const ReportPoint& point);
 
-/// Those that at least one point has.
+/// The fields that at least one point has.
 [[nodiscard]] std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep);
 
 /// "explorer": exact points of the line through `through` along `axis`, the model's curve with its band, and

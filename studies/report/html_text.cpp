@@ -6,7 +6,7 @@ namespace marti::studies {
 
 namespace {
 
-// The same text as UTF-8, by the rules of the JSON library.
+// The text as UTF-8; the JSON library replaces bytes that are not.
 std::string as_utf8(std::string_view text) {
   using Json = nlohmann::json;
   const std::string quoted = Json(std::string(text)).dump(-1, ' ', false, Json::error_handler_t::replace);

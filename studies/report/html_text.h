@@ -7,12 +7,12 @@
 
 namespace marti::studies {
 
-/// As the content of an element or of an attribute between double quotation marks. Bytes that are no UTF-8
-/// and control characters become the replacement character.
+/// The text as the content of an element or of an attribute between double quotation marks. Control
+/// characters and bytes that are not UTF-8 become the replacement character.
 [[nodiscard]] std::string html_text(std::string_view text);
 
-/// As the content of a <script type="application/json">: no text in it can end the element or begin a
-/// comment.
+/// The value as the content of a <script type="application/json">: no text in it can end the element or begin
+/// a comment.
 [[nodiscard]] std::string script_json(const nlohmann::ordered_json& json);
 
 }  // namespace marti::studies

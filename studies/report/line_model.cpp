@@ -22,10 +22,10 @@ double customers_of(const PointCounters& counters) {
   return nodes / std::max(1.0, counters.clusters);
 }
 
-// Each queue has a number of its own in the network, and no configuration has more of them (memory.banks).
+// The most queues of a network, which has an entry for each: no configuration has more (memory.banks).
 constexpr double most_queues = 65536.0;
 
-// Of a cluster. Counts are interpolated, or those of a store that somebody may have changed.
+// The queues of a cluster. `count` may be interpolated, or of a store that somebody may have changed.
 std::size_t queues_of(double count, const PointCounters& counters) {
   const double each = std::round(count / std::max(1.0, counters.clusters));
   return each > 0.0 ? static_cast<std::size_t>(std::min(each, most_queues)) : 0;
@@ -49,12 +49,12 @@ processors::ClosedNetwork network_of(const PointCounters& counters) {
   return network;
 }
 
-// Cycles of a cluster: reads, or with none one for all of its work.
+// Cycles of a cluster's closed network: its reads or, without reads, one for all of its work.
 double cycles_of(const PointCounters& counters) {
   return (counters.reads > 0.0 ? counters.reads : 1.0) / std::max(1.0, counters.clusters);
 }
 
-// Straight in the logarithms where both are above 0.
+// Interpolates linearly in the logarithms if both are above 0.
 double interpolate(double a, double b, double share) {
   if (a > 0.0 && b > 0.0) {
     return a == b ? a : std::exp(std::lerp(std::log(a), std::log(b), share));
@@ -86,8 +86,8 @@ double closed_network_end(const PointCounters& counters) {
 double asymptotic_end(const PointCounters& counters) {
   const processors::ClosedNetwork network = network_of(counters);
   const double cycles = cycles_of(counters);
-  // A part of a node is a node here: with fewer the work would take longer, and this be no bound. What
-  // interpolation has rounded up is none.
+  // Rounded up to a whole node: with fewer nodes the work takes longer, so this stays a lower bound. A
+  // fraction of 1e-12 comes from rounding in the interpolation and does not count.
   const double customers = std::max(1.0, std::ceil(customers_of(counters) * (1.0 - 1e-12)));
   return std::max(counters.work / std::max(1.0, counters.clusters) / customers, network.largest() * cycles);
 }
@@ -125,8 +125,8 @@ Modelled LineModel::at(double x) const {
   const PointCounters counters = interpolate(a, b, share);
   Modelled modelled;
   modelled.asymptote = asymptotic_end(counters);
-  // Exact frames are never below their bound; the product of two interpolations may be. The ratio corrects
-  // the network, and what it corrects is not known beyond the points.
+  // Exact frames never lie below their bound, but the product of two interpolations may. The ratio corrects
+  // the network model; beyond the points it is not known, and that of the last point is used.
   modelled.end = std::max(closed_network_end(counters) *
                               interpolate(ratios_[right - 1], ratios_[right], std::clamp(share, 0.0, 1.0)),
                           modelled.asymptote);
@@ -147,7 +147,7 @@ double steps_beyond(std::span<const PointCounters> rest, double x, bool logarith
   return x > rest[last].x ? distance(x, rest[last].x) / distance(rest[last].x, rest[last - 1].x) : 0.0;
 }
 
-constexpr double most_steps = 2.0 + 1e-6;  // places are rounded
+constexpr double most_steps = 2.0 + 1e-6;  // two steps, and room for the rounding of places
 
 }  // namespace
 

@@ -14,16 +14,16 @@ namespace marti::studies {
 struct PointCounters {
   double x = 0.0;         ///< the point's place on the axis
   double end = 0.0;       ///< frame time, above 0
-  double base_end = 0.0;  ///< of the machine that its speed-up is measured against; 0: not there
+  double base_end = 0.0;  ///< of the machine that its speed-up is measured against; 0: not known
   double nodes = 1.0;
   double clusters = 1.0;
   double packets = 1.0;    ///< of the frame: no more nodes can have work; 0: not known
   double work = 0.0;       ///< time of all nodes without waits and idling
   double delays = 0.0;     ///< of all nodes for locks, messages and packets
   double reads = 0.0;      ///< of the interconnect
-  double links = 1.0;      ///< of the interconnect that are queues: 1 of a bus, 0 when it is none
+  double links = 1.0;      ///< queues of the interconnect: 1 for a bus, 0 if it has no queue
   double link_busy = 0.0;  ///< of all queues of the interconnect
-  double banks = 0.0;      ///< that are queues
+  double banks = 0.0;      ///< banks that are queues
   double bank_busy = 0.0;  ///< of all banks
 };
 
@@ -32,17 +32,18 @@ struct PointCounters {
 /// work above 0.
 [[nodiscard]] double closed_network_end(const PointCounters& counters);
 
-/// No frame is shorter: the work shared by all nodes, the busiest link, the busiest bank.
+/// A lower bound of the frame: the largest of the work shared by all nodes, the busiest link, the busiest
+/// bank; ps.
 [[nodiscard]] double asymptotic_end(const PointCounters& counters);
 
-/// The number of nodes of a cluster from which on the busiest queue limits; nothing when there is no queue.
+/// The number of nodes of a cluster from which the busiest queue limits; std::nullopt when there is no queue.
 [[nodiscard]] std::optional<double> saturation_nodes(const PointCounters& counters);
 
 enum class Zone : std::uint8_t { between, beyond };
 
 struct Modelled {
   double end = 0.0;        ///< ps
-  double base_end = 0.0;   ///< ps; 0: not there
+  double base_end = 0.0;   ///< ps; 0: not known
   double asymptote = 0.0;  ///< ps, asymptotic_end() of the interpolated counters
   Zone zone = Zone::between;
 };
@@ -72,10 +73,10 @@ class LineModel {
 struct ModelError {
   std::size_t points = 0;
   double mean = 0.0;  ///< as a share: exp of the mean, less 1
-  double p95 = 0.0;   ///< the 95th percentile by nearest rank, likewise
+  double p95 = 0.0;   ///< the 95th percentile by nearest rank, as a share
 
-  /// May a modelled figure be shown? Not without a measured error, and not with one that says nothing any
-  /// more.
+  /// Whether a modelled figure may be shown: only with a measured error, and only if that is small enough to
+  /// mean anything.
   [[nodiscard]] bool is_known() const { return points > 0 && p95 <= 2.0; }
 };
 
@@ -84,9 +85,9 @@ class LeaveOneOut {
  public:
   /// Leaves every point of the line out once; of lines with fewer than three points nothing can be left out.
   /// An outer point counts only if it is at most two steps beyond the rest, a step being that of the two
-  /// beside it: of more the model is never asked.
+  /// beside it: the model is never evaluated farther out.
   void add(const LineModel& line, bool logarithmic);
-  /// Of frame times between other points, and beyond them, one step of the axis away.
+  /// The error of frame times between other points, or one step of the axis beyond them.
   [[nodiscard]] ModelError of_end(Zone zone) const { return summary(end_[static_cast<std::size_t>(zone)]); }
   [[nodiscard]] ModelError of_speed_up(Zone zone) const {
     return summary(speed_up_[static_cast<std::size_t>(zone)]);

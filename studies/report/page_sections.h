@@ -14,7 +14,7 @@ struct PageSection {
   std::string html;   ///< what it holds
 };
 
-/// In the order of the page; parts that the report has nothing for are left out.
+/// In the order of the page; parts for which the report has no data are left out.
 [[nodiscard]] std::vector<PageSection> page_sections(const ReportData& report);
 
 }  // namespace marti::studies

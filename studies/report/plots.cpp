@@ -14,7 +14,7 @@
 
 namespace marti::studies {
 
-// Of studies/report/draw.js, by cmake/embed_text.cmake.
+// The text of studies/report/draw.js, embedded by cmake/embed_text.cmake.
 std::string_view draw_script();
 
 namespace {
@@ -64,7 +64,7 @@ std::string drawing_program(std::span<const ReportChart> charts) {
   for (const ReportChart& chart : charts) {
     all.push_back({{"name", chart.name}, {"spec", chart.spec}});
   }
-  // As a text to be parsed: in an object written out, "__proto__" would be more than a name.
+  // Passed as a text to be parsed: in an object literal "__proto__" would set the prototype.
   const std::string text = all.dump(-1, ' ', true, Json::error_handler_t::replace);
   program += "const marti_charts = JSON.parse(" + Json(text).dump() + ");\n";
   program += draw_script();

@@ -49,8 +49,8 @@ struct ReportData {
 };
 
 /// Reads the directory that `marti run -o`, `marti sweep -o` or `marti study ... -o` has written. The same
-/// files give the same data. Throws UserError, naming the file and what to do, for a directory that is none
-/// of them, and for what cannot be read, is damaged, of another version or too large for a page.
+/// files give the same data. Throws UserError, naming the file and what to do, for any other directory, and
+/// for what cannot be read, is damaged, of another version or too large for a page.
 [[nodiscard]] ReportData read_report(const std::filesystem::path& directory);
 
 }  // namespace marti::studies

@@ -13,8 +13,8 @@ struct ReportArguments {
 };
 
 /// Writes the page, and with `plots` the charts, and prints which files. Throws UserError for a directory
-/// that is no result, a program that was built without the scripts of the page, and files that cannot be
-/// written; older files stay as they were then, and none is new. A file that is no HTML page is not replaced.
+/// that is not a result, a program that was built without the scripts of the page, and files that cannot be
+/// written; then no file is changed or added. A file that is not an HTML page is not replaced.
 void report_command(const ReportArguments& arguments, void (*print)(const std::string&));
 
 }  // namespace marti::studies

@@ -18,8 +18,8 @@ constexpr std::string_view expected =
     "... -o "
     "DIR`";
 
-// Both have a results.sqlite, with other columns in the table that describes the others. Whoever reads the
-// file says what else is wrong with it.
+// Sweeps and studies both have a results.sqlite; its table `columns` differs. Other faults of the file are
+// reported by the code that reads it.
 bool is_study(const fs::path& file) {
   (void)check_store_file(file);
   SqliteConnection connection(file, SqliteConnection::Access::read);

@@ -8,15 +8,15 @@
 
 namespace marti::studies {
 
-/// A directory of `marti run -o`: result.json, and beside it image.png, heat-*.png, working_set.vl.json and
-/// attribution.csv where they are there.
+/// A directory of `marti run -o`: result.json, and if they exist image.png, heat-*.png, working_set.vl.json
+/// and attribution.csv beside it.
 [[nodiscard]] ReportData read_run_report(const std::filesystem::path& directory);
 
 /// A directory of `marti sweep -o`: results.sqlite.
 [[nodiscard]] ReportData read_sweep_report(const std::filesystem::path& directory);
 
-/// A directory of `marti study ... -o`: results.sqlite, and beside it *.vl.json, *.png and report.txt where
-/// they are there.
+/// A directory of `marti study ... -o`: results.sqlite, and if they exist *.vl.json, *.png and report.txt
+/// beside it.
 [[nodiscard]] ReportData read_study_report(const std::filesystem::path& directory);
 
 }  // namespace marti::studies

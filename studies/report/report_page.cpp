@@ -40,13 +40,14 @@ std::vector<std::string_view> page_scripts(std::span<const Script> scripts) {
   return all;
 }
 
-// Rows of charts that the explorer fills stand in its columns already.
+// The data of the page's scripts. A chart that the explorer fills has no rows: the explorer's columns hold
+// them.
 Json data_of(const ReportData& report) {
   Json data = {{"kind", report.kind}, {"charts", Json::array()}};
   for (const ReportChart& chart : report.charts) {
     Json& each =
         data["charts"].emplace_back(Json{{"name", chart.name}, {"title", chart.title}, {"spec", chart.spec}});
-    // By this name rows are exchanged.
+    // The page replaces rows by this data name.
     each["spec"]["data"]["name"] = "rows";
     if (chart.live.is_object() && report.explorer.is_object()) {
       each["live"] = chart.live;

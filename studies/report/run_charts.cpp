@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Counts of a file that somebody may have changed; add_run_charts() says which file.
+// Adds counts of a file that somebody may have changed; if they overflow, add_run_charts() names the file.
 std::int64_t plus(std::int64_t a, std::int64_t b) {
   std::int64_t sum = 0;
   if (__builtin_add_overflow(a, b, &sum)) {
@@ -108,7 +108,7 @@ std::int64_t size_of(const RunJson& run, const std::string& key) {
   try {
     return sim::parse_size(text);
   } catch (const sim::UserError&) {
-    return 0;  // the field is not what a run writes: nothing is shown of it
+    return 0;  // not what a run writes: the chart leaves it out
   }
 }
 

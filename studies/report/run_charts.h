@@ -12,7 +12,7 @@ namespace marti::studies {
 /// The field if it is a whole number from 0 on that fits; else 0.
 [[nodiscard]] std::int64_t whole(const RunJson& part, std::string_view path);
 
-/// Adds those whose data the result has. UserError, naming the file, when its counts are too large.
+/// Adds the charts for which the result has data. UserError, naming the file, when its counts are too large.
 void add_run_charts(const RunJson& run, ReportData& report);
 
 }  // namespace marti::studies

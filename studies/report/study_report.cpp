@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t largest_text = std::int64_t{4} << 20U;
-constexpr std::size_t most_rows = 20'000;  // of all tables: more is no page for people
+constexpr std::size_t most_rows = 20'000;  // of all tables together: people read no more
 constexpr std::string_view remedy = "; run the study again into an empty directory";
 
 struct Described {
@@ -60,7 +60,7 @@ bool is_plain(const std::string& name) {
          name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
 }
 
-// SQLite keeps what was put in, whatever its column says.
+// SQLite stores a value of any type, whatever type the column declares.
 Cell as_type(const Cell& cell, ColumnType type) {
   const auto* integer = std::get_if<std::int64_t>(&cell);
   if (type == ColumnType::real && integer != nullptr) {
@@ -127,7 +127,7 @@ void take_settings(const Table& table, ReportData& report) {
   }
 }
 
-// What the study itself says first, as far as it is a paragraph.
+// Takes the report's first paragraph as the title, if it is short.
 void take_text(const fs::path& file, ReportData& report) {
   report.text = sim::read_file(file, largest_text);
   const std::size_t end = report.text.find("\n\n");

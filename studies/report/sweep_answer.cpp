@@ -108,7 +108,8 @@ std::string frame_text(const ReportPoints& sweep, std::size_t frame) {
   return text;
 }
 
-// As much of the machine as find_limit looks at; what it looks at in sums only is one node's.
+// What limits the point, by a machine with only the parts that find_limit() reads; what it reads only as a
+// sum is given to one node.
 std::optional<Finding> limit_of(const ReportPoint& point) {
   constexpr double most_nodes = 65'536;  // each takes memory
   const double nodes = point.figure("nodes");

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int samples_a_step = 4;
 
-// What a configuration may have for the axis; everything if the axis is no key.
+// The range that a configuration allows for the axis; unlimited if the axis is not a key.
 std::pair<double, double> range_of(const ReportAxis& axis, const sim::Schema& schema) {
   const auto number = [](const std::optional<sim::Value>& value, double otherwise) {
     const auto* integer = value ? std::get_if<std::int64_t>(&*value) : nullptr;
@@ -32,8 +32,8 @@ std::pair<double, double> range_of(const ReportAxis& axis, const sim::Schema& sc
             : std::pair(-infinity, infinity);
 }
 
-// Between neighbours, and from the outer values one step as long as the one beside it, but not out of the
-// range of the key.
+// Between neighbouring values, and beyond the outer ones by one step as long as the step beside it, within
+// the range of the key.
 std::vector<double> samples_of(const ReportAxis& axis, const sim::Schema& schema) {
   std::vector<double> values;
   for (std::size_t i = 0; i < axis.values.size(); ++i) {
@@ -61,7 +61,8 @@ std::vector<double> samples_of(const ReportAxis& axis, const sim::Schema& schema
   }
   std::sort(x.begin(), x.end());
   x.erase(std::unique(x.begin(), x.end()), x.end());
-  // Nothing that is counted or measured is below what the whole numbers begin with.
+  // Extrapolation stops at 1 for whole numbers and at 0 for other values, unless the axis itself starts
+  // lower.
   const double least = values.front() > 0.0 ? (axis.integer ? 1.0 : 0.0) : values.front();
   std::erase_if(x, [&](double each) { return each < least || (axis.logarithmic && each <= 0.0); });
   return x;

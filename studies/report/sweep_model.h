@@ -14,7 +14,7 @@
 
 namespace marti::studies {
 
-/// Samples of the model along a line; nothing where it does not reach.
+/// Samples of the model along a line; std::nullopt where it does not reach.
 struct ModelCurve {
   std::vector<std::optional<Modelled>> samples;  ///< one for each of AxisModel::x
   std::optional<double> saturation;              ///< nodes of a cluster, on an axis of nodes

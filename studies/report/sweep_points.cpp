@@ -68,7 +68,7 @@ std::vector<std::string> wanted_figures(const SweepReader& reader) {
     wanted.insert(std::string(kind) + "_hits");
     wanted.insert(std::string(kind) + "_misses");
   }
-  // Those that a store of another version has not got are left out.
+  // Figures that a store of another version lacks are left out.
   std::vector<std::string> names = reader.figures();
   std::erase_if(names, [&](const std::string& name) { return !wanted.contains(name); });
   return names;
@@ -89,7 +89,7 @@ std::string shown(const Cell& cell) {
   return number ? fmt::format("{:g}", *number) : "missing";
 }
 
-// What the page and its model reckon with has to be a number that they can reckon with.
+// Refuses a point with figures outside the range in which the page and its model can calculate.
 void check_point(const std::filesystem::path& store, const StoredPoint& point,
                  std::span<const std::string> axes) {
   for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -229,7 +229,7 @@ std::map<std::string, std::string> settings_of(const SweepReader& reader, const 
   return {settings.begin(), settings.end()};
 }
 
-// Settings that all machines of the sweep share, and what each says of its queues.
+// Collects the settings that all machines of the sweep share, and notes for each point what its queues are.
 class Settings {
  public:
   void add(ReportPoint& point, const std::map<std::string, std::string>& by_key) {

@@ -32,7 +32,7 @@ struct ReportAxis {
   [[nodiscard]] double number(std::size_t value) const;  ///< of a numeric axis
 };
 
-/// What it takes, beside figures, to say what limits a machine of the image scheme.
+/// What is needed, beside figures, to say what limits a machine of the image scheme.
 struct ImageMachine {
   processors::Placement placement = processors::Placement::shared;
   memory::InterconnectKind interconnect = memory::InterconnectKind::bus;
@@ -47,9 +47,9 @@ struct ReportPoint {
   std::vector<std::size_t> place;                      ///< for each axis the index of its value
   std::map<std::string, double, std::less<>> figures;  ///< those that the point has
   std::size_t frame = 0;                               ///< which of the sweep's frames it renders, from 0
-  std::optional<ImageMachine> image_machine;           ///< nothing of another scheme
-  bool links_are_queues = false;                       ///< its interconnect is a bus or a crossbar
-  bool banks_are_queues = false;                       ///< and is not held while a bank works
+  std::optional<ImageMachine> image_machine;           ///< std::nullopt for another scheme
+  bool links_are_queues = false;                       ///< its interconnect is a bus or a crossbar,
+  bool banks_are_queues = false;                       ///< and it is not held while a bank works
 
   /// 0 when the point has none of this name.
   [[nodiscard]] double figure(std::string_view name) const;

@@ -187,7 +187,7 @@ class Charts {
     }
   }
 
-  // In a layered chart each layer has its own.
+  // In a layered chart each layer has its own title of the x axis.
   static void set_x_title(Json& spec, const ReportAxis& axis) {
     for (Json* view : {&spec}) {
       if (view->contains("encoding") && (*view)["encoding"].contains("x")) {

@@ -21,7 +21,7 @@ struct Script {
 /// False when the program was built without npm, or with MARTI_REPORT=OFF.
 [[nodiscard]] bool have_vega_scripts();
 
-/// What a user is told then.
+/// The message for a program without the scripts.
 inline constexpr const char* no_vega_scripts =
     "this marti was built without the scripts that draw charts; install node and npm (Debian: nodejs, npm), "
     "with "

@@ -18,9 +18,9 @@ namespace marti::studies {
 
 namespace {
 
-// A rendering of at most this many pixels a side is made without asking what it takes.
+// An image of at most this many pixels a side is rendered without estimating its memory first,
 constexpr std::uint32_t sample_side = 64;
-// And with as many samples of each.
+// if it also has at most this many samples a pixel.
 constexpr std::uint32_t sample_rays = 4;
 constexpr std::string_view smaller_scene = "take a smaller scene";
 
@@ -37,8 +37,8 @@ std::uint64_t image_hash(const processors::Image& image) {
   return hash;
 }
 
-// Bytes of log and image, scaled up from a small rendering of the same view. Doubled, because a row grows
-// by doubling and the coarse sample may miss what is expensive.
+// Estimates the bytes of log and image from a small rendering of the same view. They are doubled, because a
+// row grows by doubling and the coarse sample may miss what is expensive.
 void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
                           const accel::TriangleSet& triangles, const accel::Structure& structure) {
   processors::RenderOptions sample = config.render;
@@ -67,8 +67,8 @@ void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
 
 namespace {
 
-// A tree that was cut is not the one that was asked for. Dividing a node never lists less than before, so the
-// limit, once met, stays met.
+// Notes that the tree was cut at its limit, so that it is not the tree that was asked for. Dividing a node
+// never lessens the entries listed, so a limit once met stays met.
 void note_cut_tree(const FrameConfig& config, const accel::Structure& structure,
                    std::vector<std::string>& notes) {
   const accel::StructureOptions& options = config.structure_options;
@@ -83,7 +83,7 @@ void note_cut_tree(const FrameConfig& config, const accel::Structure& structure,
   }
 }
 
-// The structures that nobody asks for, where the user wants them kept.
+// Structures that the frame does not use, built only if the user wants plan item `structures` kept.
 std::vector<std::unique_ptr<accel::Structure>> kept_structures(
     const FrameConfig& config, const std::shared_ptr<const accel::TriangleSet>& triangles) {
   std::vector<std::unique_ptr<accel::Structure>> kept;
@@ -95,7 +95,7 @@ std::vector<std::unique_ptr<accel::Structure>> kept_structures(
   return kept;
 }
 
-// All textures, and the samples of the largest as its decoder gives them.
+// Requires memory for all textures, and for the largest once more, as its decoder returns it.
 void require_textures(const FrameConfig& config, const scenes::Scene& scene, std::uint64_t texels) {
   constexpr std::uint64_t bytes_a_texel = 4;
   std::uint64_t largest = 0;
@@ -106,7 +106,7 @@ void require_textures(const FrameConfig& config, const scenes::Scene& scene, std
                         config.scene + ": the scene with its textures takes", smaller_scene);
 }
 
-// A frame of an open scene and, where there are facts, by the run's plan.
+// Renders a frame of an open scene; by the run's plan if `facts` is not null.
 FunctionalRun render_and_record(const FrameConfig& config, scenes::SceneFacts scene_facts,
                                 const scenes::Scene& scene, const PlanFacts* facts, FunctionalRun run) {
   FrameConfig planned = config;

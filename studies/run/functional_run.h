@@ -36,13 +36,13 @@ void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
                           const accel::TriangleSet& triangles, const accel::Structure& structure);
 
 /// Opens the scene, plans what the frame does not need, builds the structure, renders and records. Throws
-/// UserError when the scene cannot be
-/// used or the frame would take more than the memory limit, which it estimates from a small rendering.
+/// UserError when the scene cannot be used or the frame would take more than the memory limit, which it
+/// estimates from a small rendering.
 [[nodiscard]] FunctionalRun run_functional(const FrameConfig& config);
-/// The same of a scene that is open already, whose textures may still be files.
+/// Like run_functional, of a scene that is open already, whose textures may still be files.
 [[nodiscard]] FunctionalRun run_planned(const FrameConfig& config, scenes::Scene scene,
                                         scenes::FileUse file = {});
-/// The same of a scene that is open already: the one that `config` names. Nothing of it is left out.
+/// Like run_functional above, of the open scene that `config` names. Nothing of it is left out.
 [[nodiscard]] FunctionalRun run_functional(const FrameConfig& config, const scenes::Scene& scene);
 
 }  // namespace marti::studies

@@ -1,4 +1,4 @@
-// The scene of a frame, its faults laid at the key that asks for it.
+// Opening the scene of a frame, with errors reported under the key that asks for it.
 #pragma once
 
 #include "scenes/open.h"
@@ -8,8 +8,8 @@
 
 namespace marti::studies {
 
-/// Calls `work`; a UserError out of it that names no key becomes a sim::KeyError about the key that asks for
-/// the part that is not there, or about scene.source.
+/// Calls `work`. If a UserError from it names no key, it becomes a sim::KeyError about the key that asks for
+/// the missing part of the scene, or about scene.source.
 template <class Work>
 decltype(auto) with_scene_keys(const Work& work) {
   return sim::KeyError::laid_at("scene.source", [&]() -> decltype(auto) {

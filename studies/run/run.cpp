@@ -30,7 +30,7 @@ void refuse_several_frames(const sim::Config& config, const FrameRange& frames) 
 
 namespace {
 
-// A sweep's sections as free ones: a machine's own commands pass over what they hold.
+// Declares the sections of a sweep as free: commands for a single machine ignore what they hold.
 void declare_sweep_sections(sim::Schema& schema) {
   schema.free_section(
       "sweep",
@@ -48,7 +48,7 @@ void refuse_maps_beyond_memory(const sim::Config& config, const RecordConfig& re
   }
 }
 
-// Times the machine, watched by what is asked for, and finds out afterwards what watching it makes known.
+// Times the machine with the observers that are asked for, then evaluates what they have seen.
 processors::MachineResult watched_replay(const RecordConfig& record, const std::filesystem::path& directory,
                                          RunResult& result) {
   Observers observers;
@@ -80,7 +80,7 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
   return timed;
 }
 
-// Times the frame on the machine, and on one node; everything that follows from that.
+// Times the frame on the machine and on one node, and derives all other figures.
 void time_frame(const RecordConfig& record, const std::filesystem::path& directory, RunResult& result) {
   result.plan = result.functional.plan;
   const processors::WorkLog& log = *result.functional.frame.log;
@@ -99,7 +99,7 @@ void time_frame(const RecordConfig& record, const std::filesystem::path& directo
   result.prediction = processors::predict(result.machine, result.timed);
 }
 
-// The same configuration, of which nothing has been run.
+// A result with the configuration of `first`, for which nothing has been run yet.
 RunResult described_by(const RunResult& first, const KeptItems& keep) {
   RunResult result;
   result.config_name = first.config_name;

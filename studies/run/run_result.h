@@ -40,16 +40,16 @@ struct RunResult {
   std::unique_ptr<HeatMap> heat_map;   ///< null: not asked for
 };
 
-/// Runs a configuration: one functional run, the machine and the same machine with one node. Throws
-/// UserError for anything wrong with the input, before it has written anything. What is recorded while the
-/// machine runs goes to `directory`, which must exist; without one nothing may be recorded.
-/// `functional`, where it is given, is what the functional run of the frame that `config` describes has made.
+/// Runs a configuration: one functional run, the machine and the same machine with one node. Throws UserError
+/// for anything wrong with the input, before it has written anything. What is recorded while the machine runs
+/// goes to `directory`, which must exist; without a directory nothing may be recorded. `functional`, if
+/// given, is the functional run of the frame that `config` describes.
 [[nodiscard]] RunResult run(sim::Config& config, const std::filesystem::path& directory = {},
                             const KeptItems& keep = {}, std::optional<FunctionalRun> functional = {});
 
-/// The same frame on the same machine with these items of the plan kept. Nothing is recorded.
+/// Runs the frame and the machine of `first` again, with these items of the plan kept. Nothing is recorded.
 [[nodiscard]] RunResult run_again(const RunResult& first, const KeptItems& keep);
-/// The same, but the frame is not rendered again.
+/// Like run_again, but the frame is not rendered again.
 [[nodiscard]] RunResult time_again(const RunResult& first, const KeptItems& keep);
 
 /// Throws UserError when the simulated machine would take more of the computer's memory than the frame may.
@@ -68,7 +68,7 @@ void refuse_several_frames(const sim::Config& config, const FrameRange& frames);
 [[nodiscard]] std::string summary_of(const RunResult& result);
 
 /// The result for programs, as docs/result-schema.md describes it. The same run gives the same bytes.
-/// `files`: hashes (SHA-256, 64 hexadecimal digits) of the files that it belongs with, by name.
+/// `files`: hashes (SHA-256, 64 hexadecimal digits) of the files written beside it, by name.
 [[nodiscard]] std::string json_of(const RunResult& result,
                                   const std::map<std::string, std::string>& files = {});
 

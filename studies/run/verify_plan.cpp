@@ -17,12 +17,12 @@ namespace marti::studies {
 
 namespace {
 
-// The words of one row without what is to go, and where each pixel begins in them.
+// One row without the shadow rays and lights at points of these materials, and where each pixel begins in it.
 processors::LogRow strip_row(const std::vector<bool>& materials, const processors::LogRow& row) {
   using processors::Step;
   processors::LogRow kept;
-  bool unlit = false;    // the point at hand is one of these materials
-  bool leaving = false;  // inside a ray that goes
+  bool unlit = false;    // the current point has one of these materials
+  bool leaving = false;  // inside a ray that is left out
   std::size_t pixel = 0;
   std::size_t at = 0;
   for (; at < row.words.size(); at += processors::step_words(&row.words[at])) {
@@ -62,8 +62,8 @@ std::string difference_of_images(const processors::Image& a, const processors::I
   return different == 0 ? "" : fmt::format("{} pixels differ", different);
 }
 
-// What differs between the planned frame and one with more kept; `unlit`: the shadow rays that only the
-// latter may have.
+// What differs between the planned frame and one with more items kept. `unlit`: the materials at which only
+// the latter may have shadow rays.
 std::string difference_of_frames(const FunctionalRun& planned, const FunctionalRun& kept,
                                  const std::vector<bool>* unlit) {
   if (std::string pixels = difference_of_images(planned.frame.image, kept.frame.image); !pixels.empty()) {
@@ -109,7 +109,7 @@ class Verifier {
                                  difference.empty() ? std::string(proof) : "DIFFERS: " + difference);
   }
 
-  // What is kept may be a part of a file that cannot be read: then there is nothing to compare with.
+  // Keeping an item may need a part of a file that cannot be read: then there is nothing to compare with.
   template <class Check>
   void attempt(std::string_view what, const Check& compare) {
     try {
@@ -135,7 +135,7 @@ class Verifier {
                                 more));
   }
 
-  // Items of the machine change nothing of the frame, which need not be rendered again.
+  // Items of the machine do not change the frame, so it is not rendered again.
   void check_machine(PlanItem item) {
     const auto& entries = result_.plan.entries;
     const bool left_out = std::any_of(entries.begin(), entries.end(), [&](const PlanEntry& entry) {

@@ -15,19 +15,19 @@ struct PlanVerdict {
   std::string text;  ///< a line for each proof; a faulty one says what differs
 };
 
-/// Runs as often again as there are items left out, and once more. What must be equal: the bits of all
-/// pixels, the hits of all rays, the work log word by word, and with all items kept every figure of the
-/// machine. Where shadow rays were left out that no light could show, the log without them must be equal, and
-/// the machine's figures may differ, as its rays do. Where a part of a file that was not read is broken, the
-/// verdict says that there is nothing to compare with.
+/// Repeats the run once for each item left out, with that item kept, and once with all items kept. Must be
+/// equal: the bits of all pixels, the hits of all rays, the work log word by word, and with all items kept
+/// every figure of the machine. Where shadow rays were left out that no light could show, the log without
+/// them must be equal, and the machine's figures may differ, because its rays do. If a part of a file that
+/// was not read is broken, the verdict says that there is nothing to compare with.
 [[nodiscard]] PlanVerdict verify_plan(const RunResult& result);
 
-/// The log without the shadow rays, and the lights added, at points of these materials (by index; averaged
-/// materials have no entry).
+/// The log without the shadow rays and the lights at points of these materials (by index; averaged materials
+/// have no entry).
 [[nodiscard]] processors::WorkLog without_shadows_at(const std::vector<bool>& materials,
                                                      const processors::WorkLog& log);
 
-/// The materials of a scene that ask for lights, though none adds anything.
+/// For each material of a scene: whether it asks for lights although none adds anything.
 [[nodiscard]] std::vector<bool> unlit_materials(const scenes::Scene& scene);
 
 /// What differs between two logs, or an empty text.

@@ -13,7 +13,7 @@ namespace {
 
 using processors::Scheme;
 
-// A machine that is timed with fewer numbers of nodes says nothing about growth.
+// A machine must be timed with at least so many numbers of nodes to say anything about growth.
 constexpr std::size_t fewest_points = 3;
 
 enum class Kind { naive, cached, space };
@@ -30,7 +30,7 @@ bool is(Kind kind, const ScalingPoint& point) {
   return false;
 }
 
-// The points of the first machine of that kind; nothing when it is not there or was timed too few times.
+// The points of the first machine of that kind; empty when it is missing or was timed too few times.
 std::vector<ScalingPoint> find(Kind kind, std::span<const ScalingPoint> points) {
   const auto first = std::find_if(points.begin(), points.end(), [&](const auto& p) { return is(kind, p); });
   if (first == points.end()) {

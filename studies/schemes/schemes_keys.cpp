@@ -26,7 +26,7 @@ std::vector<std::uint32_t> ascending(const sim::Config& config, std::string_view
   return values;
 }
 
-// A file that the configuration names, from the directory it is in itself.
+// A file that the configuration names, relative to the configuration's own directory.
 std::filesystem::path beside(const sim::Config& config, const std::string& name) {
   return std::filesystem::path(config.name()).parent_path() / name;
 }
@@ -42,7 +42,7 @@ NamedMachine read_with(const std::filesystem::path& file, const std::vector<std:
   return machine;
 }
 
-// Calls `work`, which reads a file that the key names: what is wrong with the file is told with the key.
+// Calls `work`, which reads a file that the key names; errors in that file are reported under the key.
 template <class Work>
 decltype(auto) named_by(const sim::Config& config, std::string_view key, const Work& work) {
   return sim::placed(config, [&]() -> decltype(auto) { return sim::KeyError::laid_at(key, work); });

@@ -48,8 +48,8 @@ void declare_schemes_keys(sim::Schema& schema);
 /// UserError.
 [[nodiscard]] NamedMachine read_machine_file(const std::filesystem::path& file);
 
-/// The same with so many nodes in each cluster. A pipeline's are shared out among its stages in the
-/// proportions of `shares`, each stage at least one; it needs as many nodes as stages.
+/// The machine of a file, with so many nodes in each cluster. A pipeline's are shared out among its stages in
+/// the proportions of `shares`, each stage at least one; it needs as many nodes as stages.
 [[nodiscard]] NamedMachine read_machine_file(const std::filesystem::path& file, std::uint32_t nodes,
                                              const processors::PipelineConfig& shares);
 

@@ -1,4 +1,4 @@
-// What is said about the building of the tree: in the summary and in result.json.
+// The building of the tree in the summary and in result.json.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,4 +1,4 @@
-// What is said about the second level of caches: in the summary and in result.json.
+// The second level of caches in the summary and in result.json.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,4 +1,4 @@
-// What is said about contexts and prefetching: in the summary and in result.json.
+// Contexts and prefetching in the summary and in result.json.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,5 +1,5 @@
-// What is said about classes of misses, sharing of lines and attribution: in the summary, in result.json and
-// as a table of its own.
+// Classes of misses, sharing of lines and attribution, which are counted on request, in the summary, in
+// result.json and as a table of its own.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,4 +1,4 @@
-// What is said about the schemes in which rays move: in the summary and in result.json.
+// The schemes in which rays move, in the summary and in result.json.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

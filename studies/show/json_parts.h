@@ -27,7 +27,7 @@ namespace marti::studies {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-/// The name of a counter in results for programs; times say so in theirs.
+/// The name of a counter in results for programs; the name of a time ends in its unit, "_ps".
 template <class S>
 [[nodiscard]] std::string json_name(const sim::Counter<S>& counter) {
   return std::string(counter.name) + (counter.unit == "ps" ? "_ps" : "");

@@ -19,8 +19,8 @@ struct WrittenRun {
 
 /// Writes image.exr, image.png and result.json, and exact.exr and exact.png of a run with
 /// image.voxel_cut_reference, and what the run has recorded, under temporary names and renames them together
-/// at the end; then files of an earlier run go that this one has not. Signals that end the program wait until
-/// that is done. Throws UserError with the reason; older results stay as they were then.
+/// at the end; then removes the files of an earlier run that this one lacks. Signals that end the program
+/// wait until that is done. Throws UserError with the reason; older results are unchanged then.
 WrittenRun write_output(const RunResult& result, const std::filesystem::path& directory);
 
 }  // namespace marti::studies

@@ -1,4 +1,4 @@
-// What is said about speed-up and bounds: in the summary and in result.json.
+// Speed-up and bounds in the summary and in result.json.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,7 +12,7 @@ namespace marti::studies {
 [[nodiscard]] nlohmann::ordered_json loss_json(const RunResult& result);
 [[nodiscard]] nlohmann::ordered_json bounds_json(const RunResult& result);
 
-/// Lines of the summary. The loss has none on one node, or when the frame takes no time.
+/// Lines of the summary. Those of the loss are empty on one node, or when the frame takes no time.
 [[nodiscard]] std::string loss_lines(const RunResult& result);
 [[nodiscard]] std::string bound_lines(const RunResult& result);
 /// What was recorded; empty when nothing was.

@@ -64,7 +64,8 @@ std::vector<Point> thinned(const memory::StackHistogram& distances) {
   });
 }
 
-// What a cache of the machine's number of sets misses with 1, 2, ... ways; the same as sizes with one set.
+// Misses of caches with the machine's number of sets and 1, 2, ... ways. With one set these are all the
+// sizes.
 std::vector<Point> all_ways(const CacheWorkingSet& cache) {
   std::vector<Point> points;
   std::int64_t misses = cache.ways.references;

@@ -1,5 +1,5 @@
-// What is said about the misses of caches of other sizes and ways: in the summary, in result.json, as a table
-// and as a chart.
+// The misses of caches of other sizes and ways in the summary and in result.json, as a table and as a chart,
+// from one pass over a run's references.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -11,9 +11,9 @@
 
 namespace marti::studies {
 
-/// D/D/1//N: every node computes for `think`, then reads from a held bus for `service`, `reads` times. A
-/// node has one pixel; it shades `reads` points and then adds lights for `after`: unless their number is
-/// given, for so long that no pixel is written before the last node's reads are over.
+/// D/D/1//N: every node computes for `think`, then reads from a held bus for `service`, `reads` times. A node
+/// has one pixel; it shades `reads` points and then adds `lights` lights, which takes `after`. If `lights` is
+/// 0, so many are taken that no pixel is written before the last node's reads are over.
 struct Cyclic {
   Cyclic(std::uint32_t nodes, std::uint32_t reads, std::int64_t bank_cycles, std::size_t lights = 0) {
     machine.nodes = nodes;

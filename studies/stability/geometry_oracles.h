@@ -27,7 +27,7 @@ using Tracer = std::function<accel::Hit(const accel::Ray&)>;
                                   const std::vector<std::unique_ptr<accel::Structure>>& structures,
                                   const scenes::Bounds& box, Aim aim, std::uint32_t rays, std::uint64_t seed);
 
-/// The same of all structures over these triangles, rays of all classes in equal parts.
+/// Like the function above, for all structures over these triangles and rays of all classes in equal parts.
 [[nodiscard]] Tally disagreements(std::vector<accel::TriangleCorners> corners, std::uint32_t rays,
                                   std::uint64_t seed, bool deep = true);
 
@@ -46,7 +46,7 @@ struct PlacedSphere {
   PlacedSphere(int times, double offset, double scale);
 };
 
-/// Rays from inside at vertices, edges and faces by turns; those that `trace` says hit nothing leak.
+/// Rays from inside at vertices, edges and faces by turns; a ray that hits nothing, by `trace`, is a leak.
 [[nodiscard]] Tally leaks(const PlacedSphere& mesh, const Tracer& trace, std::uint32_t rays,
                           std::uint64_t seed);
 

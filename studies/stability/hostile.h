@@ -204,7 +204,7 @@ class RayMaker {
   }
 
  private:
-  /// Not of unit length, now and then.
+  /// Half of the directions are not of unit length.
   glm::dvec3 aim_at(const glm::dvec3& from, const glm::dvec3& at) {
     const glm::dvec3 d = at - from;
     return random_.below(2) != 0 ? d : d * (1.0 / std::sqrt(std::max(glm::dot(d, d), 1e-300)));
@@ -227,7 +227,7 @@ class RayMaker {
     }
     return point;
   }
-  /// A quarter of the rays begin or end somewhere.
+  /// A quarter of the rays get a random t_min or t_max.
   void limit(accel::Ray& ray) {
     const double length = std::sqrt(glm::dot(ray.direction, ray.direction));
     const double reach = 2.0 * std::sqrt(glm::dot(box_.hi - box_.lo, box_.hi - box_.lo)) / length;

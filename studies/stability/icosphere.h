@@ -1,4 +1,4 @@
-// A closed, convex mesh: what no ray from inside may leave, and no ray from its surface may hit again.
+// A closed, convex mesh: no ray from inside may leave it, and no ray from its surface may hit it again.
 #pragma once
 
 #include <array>

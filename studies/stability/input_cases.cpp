@@ -66,7 +66,7 @@ std::string glb_of(const std::vector<float>& coordinates) {
   return file;
 }
 
-/// A directory of its own among the temporary files, which goes with it.
+/// A directory of its own among the temporary files, removed with this object.
 class OwnDirectory {
  public:
   OwnDirectory() : path_((std::filesystem::temp_directory_path() / "marti-stability-XXXXXX").string()) {
@@ -95,7 +95,8 @@ scenes::Scene opened(const std::vector<float>& coordinates) {
   return scenes::open_scene(path.string(), {}, {});
 }
 
-/// One corner of 10,000 triangles is no number: the scene is that of the other 9,999, and says so once.
+/// One corner of 10,000 triangles has a coordinate that is not finite: the scene is the other 9,999, with one
+/// note.
 CaseOutcome gltf_with(float value, const CaseSize& size) {
   constexpr std::size_t triangles = 10'000;
   Random random(62);
@@ -135,7 +136,7 @@ CaseOutcome gltf_with(float value, const CaseSize& size) {
   return outcome;
 }
 
-/// Every structure must say that it is no ray, and not walk for ever.
+/// Every structure must refuse the ray, and not walk for ever.
 CaseOutcome bad_ray(const Ray& ray) {
   const auto triangles = std::make_shared<const TriangleSet>(hostile_soup(0.0, 64));
   Tally tally;
@@ -151,7 +152,7 @@ CaseOutcome bad_ray(const Ray& ray) {
   return none_wrong(tally, "structures took it");
 }
 
-/// The recommendation follows what floats do to the scene.
+/// Double precision must be recommended just where triangles collapse in floats.
 CaseOutcome recommendation() {
   const scenes::Scene teapot = scenes::make_procedural("teapot:4");
   std::string asked;

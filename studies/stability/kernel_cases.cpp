@@ -1,4 +1,5 @@
-// Cases of the ray/triangle kernel by itself: signs, watertightness, and what must change nothing.
+// Cases of the ray/triangle kernel by itself: signs, watertightness, and changes of input that must not
+// matter.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -180,7 +181,7 @@ CaseOutcome degenerate_triangles(const CaseSize& size) {
   return none_wrong(tally, "hit");
 }
 
-/// A closed mesh somewhere, through every structure.
+/// A closed mesh at some place, traced through every structure.
 struct LeakPlace {
   const char* id;
   double offset;

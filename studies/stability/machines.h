@@ -23,17 +23,17 @@ struct NamedTiming {
 [[nodiscard]] std::vector<NamedTiming> machines_of_every_kind(
     processors::Assignment assignment = processors::Assignment::dynamic);
 
-/// Every duration of the machine times `factor`; false when a clock's period would not fit.
+/// Multiplies every duration of the machine by `factor`; false when a clock's period would not fit.
 [[nodiscard]] bool stretch(processors::MachineConfig& machine, std::int64_t factor);
 
 /// Whether `long_one` is `short_one` with every time multiplied by `factor`, and everything else equal.
 [[nodiscard]] bool is_stretched(const processors::MachineResult& short_one,
                                 const processors::MachineResult& long_one, std::int64_t factor);
 
-/// Every duration of a machine 0, except those that hold no cycles: they are all in cycles.
+/// Sets all cycle counts of a machine to 0, and with them every duration that is given in cycles.
 void take_all_time_away(processors::MachineConfig& machine);
 
-/// The same hits and misses at every node.
+/// Whether both have the same hits and misses at every node.
 [[nodiscard]] bool same_references(const processors::MachineResult& a, const processors::MachineResult& b);
 
 }  // namespace marti::studies

@@ -16,13 +16,13 @@ namespace {
 using processors::MachineConfig;
 using processors::MachineResult;
 
-/// Sums of waits reach beyond the frame's end: so many may wait at a time, all frame long.
+/// Sums of waits exceed the frame time: up to so many requests may wait at a time, all frame long.
 constexpr sim::Ticks most_waiting = std::int64_t{1} << 20;
 
 /// A machine with all durations times 2^k, for every k: a frame that fits is timed exactly, one that does not
-/// is refused as the user's.
+/// is refused as an error of the user's.
 CaseOutcome up_to_the_end(const MachineConfig& machine) {
-  // The events are what is tried here.
+  // Keeps all events, which are what this case tests.
   const processors::ReplayOptions all = {.keep_lookups = true, .keep_read_events = true};
   const MachineResult base = processors::replay(small_log(), machine, all);
   Tally tally;

@@ -31,8 +31,8 @@ CaseOutcome cyclic(const std::vector<std::uint32_t>& node_counts, std::int64_t b
     const Cyclic machine(nodes, reads, bank_cycles);
     const sim::Ticks n = nodes;
     const MachineResult result = processors::replay(machine.log, machine.machine);
-    // Everybody asks at Z; so node i waits for i others. Then the bus is free again in time, or every read
-    // waits until the bus has been round all the others.
+    // All nodes first ask at the same time, so node i waits for i others. After that either the bus is free
+    // in time, or every read waits until the bus has served all other nodes.
     const sim::Ticks each = std::max<sim::Ticks>(0, n * machine.service - machine.service - machine.think);
     for (std::uint32_t i = 0; i < nodes; ++i) {
       const sim::Ticks wait = i * machine.service + (reads - 1) * each;

@@ -21,7 +21,8 @@ namespace {
 using processors::MachineConfig;
 using processors::MachineResult;
 
-/// What does not depend on the machine is the same; what does stays above its bounds.
+/// Whether the counts that do not depend on the machine are right; also checks that no time is below its
+/// bounds.
 bool whole_frame(const MachineConfig& machine, const MachineResult& result) {
   const processors::LogTotals totals = processors::totals_of(small_log());
   const processors::StepCounts steps = result.steps();
@@ -52,7 +53,7 @@ CaseOutcome node_counts(const CaseSize& size) {
   return none_wrong(tally, fmt::format("machines differ, up to {} nodes", grouped(size.nodes)));
 }
 
-/// Looks for numbers that are none in everything that `marti run` prints.
+/// Looks for NaN and infinities in everything that `marti run` prints.
 CaseOutcome printed(const CaseSize& size) {
   const std::uint32_t nodes = std::min(size.nodes, 4096U);
   const std::string text =

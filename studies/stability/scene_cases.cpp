@@ -80,7 +80,7 @@ CaseOutcome coincident(const CaseSize& size) {
       ray.direction = glm::dvec3(0.45, 0.42, 0.45) + 0.1 * random.direction() - ray.origin;
       const accel::Hit hit = structure->closest(ray);
       const accel::Hit alone = one_of_them->closest(ray);
-      tally.add(same_hit(hit, alone));  // of equals the lowest id
+      tally.add(same_hit(hit, alone));  // of equal hits, that of the lowest id
     }
   }
   CaseOutcome outcome = none_wrong(tally, "hits not of the lowest id");

@@ -13,7 +13,7 @@ namespace marti::studies {
 /// the input.
 [[nodiscard]] StudyOutput run_stability(sim::Config& config);
 
-/// The same of other cases than stability_cases().
+/// Like the function above, with other cases than stability_cases().
 [[nodiscard]] StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> cases);
 
 }  // namespace marti::studies

@@ -62,7 +62,7 @@ struct Tally {
 /// `call` must refuse its input by a UserError that says `words`.
 [[nodiscard]] CaseOutcome refuses(const std::function<void()>& call, std::string_view words);
 
-/// Runs a case. What it throws is a failure that says so.
+/// Runs a case. An exception from it becomes a failure with the exception's message.
 [[nodiscard]] CaseOutcome run_case(const StabilityCase& one, const CaseSize& size);
 
 /// All cases, in the order of the table.

@@ -17,7 +17,7 @@ void declare_stability_keys(sim::Schema& schema);
 
 struct StabilityConfig {
   CaseSize size;
-  std::vector<StabilityCase> cases;  ///< of those that there are, in their order
+  std::vector<StabilityCase> cases;  ///< those chosen, in the order of all cases
 };
 
 /// Throws UserError naming file, line and key.

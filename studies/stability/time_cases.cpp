@@ -21,7 +21,7 @@ sim::Ticks spent(const processors::NodeStatistics& node, Activity activity) {
   return node.time[static_cast<std::size_t>(activity)];
 }
 
-/// Nothing is left out because it is known beforehand: the events are what is tried here.
+/// Keeps all events, also those whose result is known beforehand: they are what these cases test.
 MachineResult replay_all(const processors::WorkLog& log, const MachineConfig& machine) {
   return processors::replay(log, machine, {.keep_lookups = true, .keep_read_events = true});
 }
@@ -102,7 +102,7 @@ CaseOutcome without_time() {
     take_all_time_away(machine);
     const MachineResult result = replay_all(small_log(), machine);
     // Where rays move, contexts take turns or a tree is shared, the order of events decides what a cache
-    // holds; and who builds a branch reads more.
+    // holds; and a node that builds a branch reads more.
     const bool own_order = machine.scheme == processors::Scheme::image && machine.contexts == 1;
     const bool given = machine.build.sharing == processors::Sharing::given;
     tally.add(result.end == 0 &&
@@ -122,7 +122,7 @@ CaseOutcome without_time_dynamic() {
   return none_wrong(tally, "machines differ");
 }
 
-/// Each duration on its own is 0, the others are not.
+/// One duration after the other is 0, while the others are not.
 CaseOutcome without_one_time() {
   Tally tally;
   const auto differs = [&](auto&& change) {

@@ -17,7 +17,7 @@ struct JoinedSweep {
 };
 
 /// Takes part until rank 0 says that all is done. Work logs that do not fit in memory go to the directory of
-/// the results, or where this computer does not have that one, to that of temporary files.
+/// the results or, if this computer does not have it, to the directory of temporary files.
 void join_sweep(Ranks& ranks, const SweepOptions& options,
                 const std::function<JoinedSweep(const std::string& configuration)>& read);
 

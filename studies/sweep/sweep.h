@@ -22,7 +22,7 @@ struct SweepOptions {
   std::string configuration;        ///< for them: the text of the file
 };
 
-/// What is known of the sweep before it runs, also of what its store holds already. Writes nothing. Throws
+/// What is known of the sweep before it runs, including what its store holds already. Writes nothing. Throws
 /// UserError when the store cannot be read.
 [[nodiscard]] SweepOutlook look_ahead(const SweepPlan& plan, const SweepOptions& options);
 
@@ -34,9 +34,9 @@ struct SweepReport {
   std::filesystem::path points;  ///< the table as CSV
 };
 
-/// Runs what of the plan is not in the store yet. `announce` is called with the plan as text before anything
-/// is done. A program that is ended by a signal says what is saved and exits with 128 + signal. Throws
-/// UserError; what is done by then is saved.
+/// Runs the part of the plan that is not in the store yet. `announce` is called with the plan as text before
+/// anything is done. A program that is ended by a signal says what is saved and exits with 128 + signal.
+/// Throws UserError; what is done by then is saved.
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
                       const std::function<void(const std::string&)>& announce);
 

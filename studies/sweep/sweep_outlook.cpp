@@ -25,7 +25,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 using Machines = std::vector<const processors::MachineConfig*>;
 
-// Will the sweep strip the log for this one of a frame's machines?
+// Whether the sweep will strip the log for this machine, one of those of a frame.
 bool shares_stripped(const processors::MachineConfig& machine, const Machines& machines) {
   const std::string key = processors::StrippedLog::key_of(machine);
   const auto sharing = std::count_if(
@@ -34,7 +34,7 @@ bool shares_stripped(const processors::MachineConfig& machine, const Machines& m
   return !key.empty() && static_cast<std::size_t>(sharing) >= StripShelf::fewest_machines;
 }
 
-// Of one frame and one of its machines, scaled up from a small image.
+// Estimates for one frame and one of its machines, scaled up from a small image.
 struct Sample {
   double trace_seconds = 0.0;
   double machine_seconds = 0.0;

@@ -7,7 +7,7 @@
 
 namespace marti::studies {
 
-/// An integer or a real as a real; nothing for a text and for a cell without value.
+/// An integer or a real as a real; std::nullopt for a text and for a cell without value.
 [[nodiscard]] inline std::optional<double> number_of(const Cell& cell) {
   if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
     return static_cast<double>(*integer);

@@ -50,7 +50,7 @@ void remove_run_file(const fs::path& file, const std::string& hash) {
       fs::remove(file, stays);
     }
   } catch (const sim::UserError&) {
-    // It is not there, or no regular file.
+    // The file is missing, or not a regular file.
   }
 }
 

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t most_bytes = std::int64_t{256} << 20U;
 constexpr int schema = 1;
-// A result is not nearly as deep, and its objects have not nearly as many fields.
+// A result is far less deep, and its objects have far fewer fields.
 constexpr std::size_t deepest = 32;
 constexpr std::size_t most_fields = 2000;
 
@@ -27,8 +27,8 @@ const Json none;
                        "; expected is the result.json of `marti run CONFIG -o DIR`: run it again");
 }
 
-// Whoever walks a result may do so by recursion, and an object that keeps its fields in order takes them in
-// by the square of their number.
+// Limits depth and number of fields: readers may walk a result by recursion, and filling an object that keeps
+// its fields in order takes time quadratic in their number.
 void check_shape(const std::string& file, const std::string& text) {
   std::array<std::size_t, deepest + 1> fields{};  // [depth] of the object there
   std::size_t depth = 0;

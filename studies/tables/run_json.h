@@ -16,22 +16,23 @@ class RunJson {
  public:
   RunJson(nlohmann::ordered_json json, std::string file) : json_(std::move(json)), file_(std::move(file)) {}
 
-  /// The field; null when it is not there.
+  /// The field; null when it is missing.
   [[nodiscard]] const nlohmann::ordered_json& find(std::string_view path) const;
-  /// An object that has to be there. Throws UserError, naming the file and the field, when it is not.
+  /// An object that must be there. Throws UserError, naming the file and the field, when it is missing.
   [[nodiscard]] const nlohmann::ordered_json& at(std::string_view path) const;
-  /// Nothing when it is not there or no finite number.
+  /// std::nullopt when the field is missing or not a finite number.
   [[nodiscard]] std::optional<double> number(std::string_view path) const;
-  /// Both throw UserError, naming the file and the field, when it is there and no number from `low` to
-  /// `high`; the first also when it is missing or null, where the second gives nothing.
+  /// Both throw UserError, naming the file and the field, when the field is present and not a number from
+  /// `low` to `high`. If it is missing or null, the first throws as well and the second returns std::nullopt.
   [[nodiscard]] double required_number(std::string_view path, double low, double high) const;
   [[nodiscard]] std::optional<double> optional_number(std::string_view path, double low, double high) const;
-  /// 0 when it is not there or no number.
+  /// 0 when the field is missing or not a number.
   [[nodiscard]] double count(std::string_view path) const { return number(path).value_or(0.0); }
-  /// Empty when it is not there or no text.
+  /// Empty when the field is missing or not a text.
   [[nodiscard]] std::string text(std::string_view path) const;
   [[nodiscard]] bool boolean(std::string_view path) const;
-  /// The objects of a list; none when it is not there or no list. Whatever else is in it is passed over.
+  /// The objects of a list; empty when the field is missing or not a list. Items that are not objects are
+  /// ignored.
   [[nodiscard]] std::vector<RunJson> list(std::string_view path) const;
 
   /// Throws UserError: the file's name, `reason`, and what file is expected.
@@ -45,7 +46,7 @@ class RunJson {
   std::string file_;
 };
 
-/// A `result.json`. Throws UserError when the file cannot be read, is no result of a run, is one of another
+/// A `result.json`. Throws UserError when the file cannot be read, is not the result of a run, has another
 /// schema, or lacks one of the objects `parts`.
 [[nodiscard]] RunJson read_run_json(const std::filesystem::path& file,
                                     std::initializer_list<const char*> parts = {});

@@ -14,8 +14,8 @@ namespace marti::studies {
 /// running out of memory is std::bad_alloc.
 class Database {
  public:
-  /// Makes the file, which must be new or empty. It is not journalled: whoever writes it does so under a
-  /// temporary name (sim::PendingFile).
+  /// Makes the file, which must be new or empty. It is not journalled, so give it a temporary name until it
+  /// is complete (sim::PendingFile).
   explicit Database(const std::filesystem::path& file);
 
   /// Runs statements without parameters and without results.
@@ -24,7 +24,8 @@ class Database {
   /// Makes a table of this name with the columns and rows of `table`. NaN becomes NULL, as SQLite has none.
   void add(const Table& table);
 
-  /// Ends the connection; a failure to do so is a UserError. The destructor only lets go.
+  /// Ends the connection; a failure to do so is a UserError. The destructor ends it without reporting
+  /// failures.
   void close() { connection_.close(); }
 
  private:

@@ -12,7 +12,7 @@ namespace marti::studies {
 
 namespace {
 
-// A reader may meet a writer that is just tidying up.
+// How long to wait for a lock: another process may just be writing or cleaning up.
 constexpr int patience_ms = 5000;
 
 // A file's name as the path of a URI.
@@ -31,7 +31,7 @@ std::string uri_of(const std::filesystem::path& file) {
   return uri + "?immutable=1";
 }
 
-// Where the file itself is: what belongs to it lies beside it and not beside a link to it.
+// The file's own path, links resolved: a journal or log lies beside the file and not beside a link to it.
 std::filesystem::path place_of(const std::filesystem::path& file) {
   std::error_code error;
   const std::filesystem::path place = std::filesystem::canonical(file, error);
@@ -88,7 +88,7 @@ void SqliteConnection::check(int status) const {
   if (status == SQLITE_OK || status == SQLITE_DONE || status == SQLITE_ROW) {
     return;
   }
-  const int kind = status & 0xff;  // without what is extended
+  const int kind = status & 0xff;  // without the bits of the extended code
   if (kind == SQLITE_NOMEM || connection_ == nullptr) {
     throw std::bad_alloc();
   }
@@ -187,7 +187,7 @@ bool SqliteStatement::next() {
 
 void SqliteStatement::run() {
   const int status = sqlite3_step(statement_);
-  const int again = sqlite3_reset(statement_);  // repeats what has gone wrong
+  const int again = sqlite3_reset(statement_);  // returns the error of the last step once more
   connection_.check(status);
   connection_.check(again);
 }

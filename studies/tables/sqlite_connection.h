@@ -19,12 +19,11 @@ namespace marti::studies {
 class SqliteConnection {
  public:
   enum class Access : std::uint8_t {
-    write,        ///< the file is made if it is not there
-    write_alone,  ///< it has a name that nobody else knows: it is written without any lock
-    /// The file must be there; others may write it. What a writer that was killed has left beside it (a
-    /// journal, a log) is taken in first, where the file and its directory may be written. Where they may
-    /// not, such a rest that cannot be read is a UserError that says what to do, and a file without one is
-    /// read without any lock.
+    write,        ///< the file is made if it is missing
+    write_alone,  ///< written without any lock: nobody else knows the file's name
+    /// The file must exist; others may write it. A journal or log that a killed writer has left beside it is
+    /// applied first, if the file and its directory may be written. If they may not, a journal or log that
+    /// cannot be read is a UserError that says what to do, and a file without one is read without any lock.
     read
   };
   SqliteConnection(const std::filesystem::path& file, Access access);
@@ -34,13 +33,14 @@ class SqliteConnection {
 
   /// Runs statements without parameters; their results are dropped.
   void execute(const std::string& sql);
-  /// The first column of a statement's first row; nothing without a row.
+  /// The first column of a statement's first row; a cell without value if there is no row.
   [[nodiscard]] Cell value(const std::string& sql);
   [[nodiscard]] std::int64_t integer(const std::string& sql);
 
   /// Is a transaction open?
   [[nodiscard]] bool in_transaction() const;
-  /// Ends the connection; a failure to do so is a UserError. The destructor only lets go.
+  /// Ends the connection; a failure to do so is a UserError. The destructor ends it without reporting
+  /// failures.
   void close();
 
  private:
@@ -49,7 +49,7 @@ class SqliteConnection {
 
   std::string name_;
   bool writes_;
-  bool cannot_recover_ = false;  // something lies beside the file, and it cannot be taken in
+  bool cannot_recover_ = false;  // a journal or log lies beside the file and cannot be applied
   sqlite3* connection_ = nullptr;
 };
 
@@ -70,9 +70,9 @@ class SqliteStatement {
 
   /// The next row, if there is one.
   [[nodiscard]] bool next();
-  /// Runs a statement that has no rows, and makes it ready for the next parameters.
+  /// Runs a statement that returns no rows, and makes it ready for the next parameters.
   void run();
-  /// Makes it ready for other parameters. Those bound stay.
+  /// Makes the statement ready to run again. Parameters stay bound.
   void reset();
 
   // The present row, columns counted from 0. NULL reads as 0 or as an empty text; a value of another type is

@@ -13,7 +13,7 @@ namespace marti::studies {
 [[nodiscard]] std::string text_of(const Table& table);
 
 /// One figure of `table` side by side: a row for each value of column `row`, a column for each value of
-/// `across`, which must be plain names (results/table.h). (results/wide_table.h)
+/// `across`, which must be plain names (tables/table.h, tables/wide_table.h).
 [[nodiscard]] std::string side_by_side(const Table& table, std::string_view row, std::string_view across,
                                        std::string_view value, std::string_view title);
 

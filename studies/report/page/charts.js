@@ -81,7 +81,7 @@ marti.charts = (() => {
     if (!link) return;
     event.preventDefault();
     const chart = charts.get(link.dataset.chart);
-    // Where a slider stands is no figure.
+    // The row that marks the slider's position is not a figure.
     const figures = () => chart.spec.data.values.filter(({ kind }) => kind !== "cursor");
     if (link.dataset.save === "csv") save(`${chart.name}.csv`, "text/csv", csv(figures()));
     else saveSvg(chart);

@@ -72,7 +72,7 @@ void count_saved(Plan& plan, const SceneNeeds& needs, const scenes::Scene& scene
     if (entry.decision != PlanDecision::left_out) {
       continue;
     }
-    PlanCost counted = entry.saved;  // what is left out whole is counted before as well as after
+    PlanCost counted = entry.saved;  // already exact for an item that is left out as a whole
     switch (entry.item) {
       case PlanItem::shadow_rays: {
         std::uint64_t asked = 0;

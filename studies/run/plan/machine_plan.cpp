@@ -52,7 +52,7 @@ std::vector<PlanEntry> machine_plan(const KeptItems& kept, const processors::Mac
   contention.unit = "read events";
   if (waits == nullptr) {
     contention.fact = "over an ideal interconnect every read takes the same time and nothing waits";
-    // Without a cache every reference is a read; how many are with one is what the run finds out.
+    // Without a cache every reference is a read; with a cache only the run tells how many are.
     if (contention.decision == PlanDecision::left_out &&
         machine.cache.organisation == processors::CacheOrganisation::none) {
       contention.saved.operations = records;

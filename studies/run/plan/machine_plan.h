@@ -10,11 +10,11 @@
 
 namespace marti::studies {
 
-/// Sets of the replay what the user wants kept.
+/// Sets the options of the replay that keep what the user wants kept.
 void keep(const KeptItems& kept, processors::ReplayOptions& options);
 
 /// Both items for this machine, decided from its configuration and the size of its database, before it runs.
-/// Estimated are the records that the log refers to.
+/// The estimated saving is the number of records that the log refers to.
 [[nodiscard]] std::vector<PlanEntry> machine_plan(const KeptItems& kept,
                                                   const processors::MachineConfig& machine,
                                                   const processors::WorkLog& log, bool observed);

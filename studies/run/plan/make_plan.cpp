@@ -23,7 +23,7 @@ std::string of(std::uint64_t part, std::uint64_t whole, std::string_view what) {
 
 std::int64_t integer(std::uint64_t value) { return static_cast<std::int64_t>(value); }
 
-// Why not, or that it is left out unless the user wants it.
+// Whether an item exists and is needed, and the reason. Others are left out unless the user wants them kept.
 struct Choice {
   bool exists = true;
   bool needed = false;
@@ -261,11 +261,11 @@ bool is_left_out(const Plan& plan, PlanItem item) {
 
 processors::RenderOptions planned_options(const Plan& plan, const PlanFacts& facts) {
   processors::RenderOptions options = facts.render;
-  // A chain of rays ends with the first that no material lengthens.
+  // No material continues a chain of rays, so each chain is a single ray.
   if (is_left_out(plan, PlanItem::reflection_rays) && is_left_out(plan, PlanItem::refraction_rays)) {
     options.max_depth = 1;
   }
-  // Without shadows there is no such ray to keep.
+  // Without shadows there are no shadow rays to keep.
   options.unlit_shadows = facts.render.shadows && facts.keep.has(PlanItem::shadow_rays);
   options.keep_mailboxes = !is_left_out(plan, PlanItem::mailboxes);
   return options;

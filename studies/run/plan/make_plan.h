@@ -1,9 +1,8 @@
 // The plan of a frame: decided from facts before the frame is rendered, counted afterwards.
 //
-// What only this computer's work and memory depend on is left out of these; the simulated machine's database
-// and its work log are those of the scene that the user describes, so that all its statistics are the same.
-// The one exception is a shadow ray whose light could add nothing: the ray tracer does not send it, on any
-// machine.
+// Only work and memory of this computer are saved: the simulated machine's database and its work log are
+// those of the scene that the user describes, so that all its statistics are the same. The one exception is a
+// shadow ray whose light could add nothing: the ray tracer does not send it, on any machine.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +30,8 @@ struct PlanFacts {
   // Of the scene as it was opened.
   std::uint64_t texels = 0;
   std::uint64_t texels_needed = 0;
-  std::uint64_t coordinates = 0;  ///< of how many vertices
-  std::uint64_t normals = 0;      ///< likewise
+  std::uint64_t coordinates = 0;  ///< vertices that have texture coordinates
+  std::uint64_t normals = 0;      ///< vertices that have normals
 };
 
 [[nodiscard]] PlanFacts facts_of_frame(const scenes::Scene& scene, const processors::RenderOptions& render,

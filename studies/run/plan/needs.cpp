@@ -31,7 +31,7 @@ class Finder {
   }
 
  private:
-  // An average may have what one of its materials lacks for being black and another for having no weight.
+  // An average may reflect although one of its materials is black and another has no weight.
   [[nodiscard]] bool reflects(const scenes::Material& material) const {
     return material.reflection > 0.0 && (everything_ || !is_zero(material.specular_color));
   }

@@ -13,19 +13,19 @@
 
 namespace marti::studies {
 
-/// Sizes say "of how many", whether needed or not.
+/// `primitives` and `lights` count all there are, needed or not.
 struct SceneNeeds {
   std::uint64_t primitives = 0;
   std::uint64_t in_view = 0;    ///< that a camera ray may meet
   std::vector<bool> materials;  ///< that may be shaded, by index
   std::vector<bool> textures;   ///< whose texels may count in the image, by index
   std::uint64_t lights = 0;
-  std::uint64_t shining_lights = 0;  ///< of any intensity
-  bool shadow_rays = false;          ///< one may be sent that matters
+  std::uint64_t shining_lights = 0;  ///< with an intensity other than 0
+  bool shadow_rays = false;          ///< some may be sent that can change the image
   bool reflection_rays = false;
   bool refraction_rays = false;
   bool coordinates = false;  ///< texture coordinates decide a texel, of which the work log keeps the number
-  bool normals = false;      ///< normals of vertices decide something
+  bool normals = false;      ///< vertex normals can change something
 
   // Of the materials that may be shaded:
   std::uint64_t shaded = 0;
@@ -33,10 +33,10 @@ struct SceneNeeds {
   std::uint64_t transmitting = 0;
   std::uint64_t textured = 0;             ///< with texture coordinates to go with the texture
   std::uint64_t unlit = 0;                ///< ask for lights, though none adds anything
-  std::uint64_t reflecting_beside = 0;    ///< of those that may not be shaded
-  std::uint64_t transmitting_beside = 0;  ///< likewise
-  /// Triangles that may be shaded with the normals of their vertices. Where these are the triangle's own, or
-  /// not given, they count all the same: mixing them at a point rounds.
+  std::uint64_t reflecting_beside = 0;    ///< reflecting materials among those that may not be shaded
+  std::uint64_t transmitting_beside = 0;  ///< transmitting materials among those that may not be shaded
+  /// Triangles that may be shaded with the normals of their vertices. They count even if these equal the
+  /// triangle's own normal or are not given: interpolating them at a point rounds.
   std::uint64_t smooth = 0;
 
   [[nodiscard]] bool secondary_rays() const { return reflection_rays || refraction_rays; }

@@ -1,7 +1,7 @@
 // The plan of a run: what this scene and machine do not need, and what that rests on.
 //
-// An item is left out only when it is sure that nothing a run reports can differ; whatever is only nearly so
-// is no item of the plan but an approximation, which `marti study error` measures.
+// An item is left out only when it is sure that nothing a run reports can differ. Whatever could differ a
+// little is not an item of the plan but an approximation, which `marti study error` measures.
 #pragma once
 
 #include <array>
@@ -42,7 +42,7 @@ inline constexpr std::array<std::string_view, plan_items> plan_item_names = {
 /// How it is known that an item is not needed.
 enum class PlanClass : std::uint8_t {
   proved,     ///< before the run, from facts of the scene and the machine
-  on_demand,  ///< during the run, which does what it turns out to need and nothing else
+  on_demand,  ///< during the run, which does only what turns out to be needed
 };
 
 inline constexpr std::array<std::string_view, 2> plan_class_names = {"proved", "on demand"};
@@ -51,7 +51,7 @@ enum class PlanDecision : std::uint8_t {
   left_out,
   needed,    ///< could not be left out
   kept,      ///< could be left out, but the user wants it kept
-  no_matter  ///< there is nothing of it in this scene or machine
+  no_matter  ///< does not occur in this scene or machine
 };
 
 inline constexpr std::array<std::string_view, 4> plan_decision_names = {"left out", "needed", "kept",
@@ -67,17 +67,17 @@ struct PlanEntry {
   PlanItem item{};
   PlanClass kind = PlanClass::proved;
   PlanDecision decision = PlanDecision::needed;
-  std::string fact;                 ///< what the decision rests on, as "0 of 12 materials reflect"
+  std::string fact;                 ///< what the decision rests on, for example "0 of 12 materials reflect"
   std::string unit;                 ///< of PlanCost::operations; empty without any
   PlanCost saved;                   ///< estimated before the run; all 0 unless left out
-  std::optional<PlanCost> counted;  ///< after the run; nothing where it cannot be counted
+  std::optional<PlanCost> counted;  ///< after the run; std::nullopt if it cannot be counted
 };
 
 /// Items that the user wants kept.
 class KeptItems {
  public:
   KeptItems() = default;
-  /// Of names of items, or "all". Throws UserError for another name, with the nearest.
+  /// `names`: of items, or "all". Throws UserError for another name, with the nearest.
   explicit KeptItems(std::span<const std::string> names);
   static KeptItems all();
 

@@ -9,10 +9,10 @@ namespace marti::studies {
 
 namespace {
 
-// Of the distance and the coordinates. The kernels see hits up to some 2^-41 of that beside a primitive
-// (accel/octree.h).
+// Relative to the distance and the coordinates. The kernels find hits up to some 2^-41 of these beside a
+// primitive (accel/octree.h).
 constexpr double margin = 0x1p-36;
-// Of the distance, between the outermost rays and the sides; below it the sides are not known well enough.
+// Least gap between the outermost rays and the sides, relative to the distance; below it rounding matters.
 constexpr double thinnest = 0x1p-32;
 
 }  // namespace
@@ -22,7 +22,7 @@ View::View(const scenes::ImagePlane& plane, std::uint32_t width, std::uint32_t h
   const auto at = [&](double x, double y) { return plane.corner + plane.step_x * x + plane.step_y * y; };
   const double w = width;
   const double h = height;
-  // Half a pixel beyond the outermost rays, whose cone no rounding then crosses.
+  // The sides lie half a pixel outside the outermost rays, so that rounding cannot make a ray cross them.
   const double ray = several_samples ? 0.0 : 0.5;
   const double edge = ray - 0.5;
   const auto corners = [&](double in) {

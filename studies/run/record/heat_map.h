@@ -11,12 +11,12 @@
 
 namespace marti::studies {
 
-/// The three figures of a pixel. Time that is nobody's (waiting for a packet, building before the frame,
-/// idling) is in none.
+/// The three figures of a pixel. Time that belongs to no pixel (waiting for a packet, building before the
+/// frame, idling) is not counted.
 enum class Heat : std::uint8_t {
   cycles,  ///< all time that nodes spent for it: working and waiting
   misses,  ///< references that missed the node's cache
-  waits,   ///< of the time, that in states other than `working`
+  waits,   ///< the part of `cycles` in states other than `working`
 };
 inline constexpr std::size_t heats = 3;
 inline constexpr std::array<std::string_view, heats> heat_names = {"cycles", "misses", "waits"};
@@ -37,7 +37,7 @@ class HeatMap final : public processors::Observer {
   [[nodiscard]] const std::vector<std::int64_t>& values(Heat heat) const {
     return values_[static_cast<std::size_t>(heat)];
   }
-  /// The same, times in cycles of the nodes' clock.
+  /// Like values(), but times are in cycles of the nodes' clock.
   [[nodiscard]] std::vector<float> figures(Heat heat) const;
 
  private:

@@ -1,4 +1,4 @@
-// Several observers as one, and a check that the nodes tell all of their time.
+// Several observers as one, and a check that the nodes report all of their time.
 #pragma once
 
 #include <vector>
@@ -24,7 +24,7 @@ class Observers final : public processors::Observer {
 
  private:
   std::vector<processors::Observer*> observers_;
-  std::vector<sim::Ticks> told_;  // until when, of each node
+  std::vector<sim::Ticks> told_;  // end of the last piece, of each node
 };
 
 }  // namespace marti::studies

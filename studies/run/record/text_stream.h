@@ -18,11 +18,11 @@ class TextStream {
   explicit TextStream(const std::filesystem::path& file);
 
   void write(std::string_view text);
-  /// Everything is in the file, under its temporary name.
+  /// Completes the file, which keeps its temporary name.
   void close();
-  /// Where it stands until then.
+  /// The file's name until commit().
   [[nodiscard]] const std::filesystem::path& temporary() const { return pending_.temporary(); }
-  /// After close().
+  /// Gives the file its own name. Call it after close().
   void commit() { pending_.commit(); }
 
  private:

@@ -15,8 +15,8 @@
 namespace marti::studies {
 
 struct TimelineOptions {
-  sim::Ticks from = 0;                                     ///< what lies before is left out
-  sim::Ticks to = std::numeric_limits<sim::Ticks>::max();  ///< and what lies from here on
+  sim::Ticks from = 0;                                     ///< earlier slices are left out
+  sim::Ticks to = std::numeric_limits<sim::Ticks>::max();  ///< slices from here on are left out
   std::int64_t most_events = 1'000'000;                    ///< slices written at most
 };
 
@@ -39,7 +39,8 @@ class Timeline final : public processors::Observer {
   void commit() { stream_.commit(); }
 
   [[nodiscard]] std::int64_t events() const { return events_; }
-  /// When a slice was left out because there were too many: that of those left out that began first.
+  /// The begin of the earliest slice left out because there were too many; std::nullopt if there was room for
+  /// all.
   [[nodiscard]] std::optional<sim::Ticks> cut_at() const { return cut_at_; }
 
  private:

@@ -87,7 +87,7 @@ std::string write_traces(sim::Config& config, const TraceOptions& options,
   const FrameConfig frame = read_frame(config);
   refuse_several_frames(config, frame.frames);
   const processors::MachineConfig machine = read_machine(config);
-  (void)read_record(config, true);  // what `marti run` would record is no error here
+  (void)read_record(config, true);  // reads the keys, so that what `marti run` would record is no error here
   config.refuse_unused();
   refuse_beyond_memory(config, frame, machine);
   refuse_other_machines(config, machine);

@@ -181,7 +181,7 @@ std::vector<sim::Setting> range_values(const sim::Config& config, std::size_t in
   bool rounded = false;
   std::vector<sim::Setting> settings;
   for (sim::Value& step : steps_of(range, rounded)) {
-    // Steps rise or fall: equal ones are neighbours.
+    // Steps ascend or descend, so equal ones are neighbours.
     if (settings.empty() || settings.back().values.front() != step) {
       settings.push_back({index, {std::move(step)}, range.line, {}});
     }

@@ -63,7 +63,8 @@ class ByteReader {
       std::memcpy(values.data(), bytes.data(), bytes.size());
     }
   }
-  /// How many items follow, each of at least `item_bytes`: not more than there is room for.
+  /// The number of items that follow, each of at least `item_bytes`. Throws if they cannot fit in the bytes
+  /// left.
   [[nodiscard]] std::size_t count(std::size_t item_bytes) {
     const auto items = number<std::uint64_t>();
     if (items > left_.size() / item_bytes) {

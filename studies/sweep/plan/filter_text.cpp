@@ -129,7 +129,7 @@ class Translator {
     if (function_depth_ != 0 && depth_ < function_depth_) {
       function_depth_ = 0;
     }
-    // Behind other operators stands a part of a computation.
+    // What follows an arithmetic operator is part of a computation.
     if (std::string_view("+-*/%|&~").find(c) != std::string_view::npos) {
       compared_.reset();
     }
@@ -218,7 +218,7 @@ class Translator {
       }
       column(found, *key);
     } else if (holds(words, lower(found))) {
-      // The "and" of "between 1 and 2" belongs to it; any other begins something new.
+      // The "and" of "between 1 and 2" belongs to it; any other "and" begins a new condition.
       const bool second = lower(found) == "and" && std::exchange(between_, false);
       between_ = between_ || lower(found) == "between";
       if (!second && !holds(comparing, lower(found))) {

@@ -12,7 +12,7 @@ namespace marti::studies {
 
 /// An expression whose columns are quoted names: of keys, or "point".
 struct FilterText {
-  /// Index of a column that is no key but the name of a named point.
+  /// Index of the column that is not a key but holds the name of a named point.
   static constexpr std::size_t point = static_cast<std::size_t>(-1);
 
   std::string sql;

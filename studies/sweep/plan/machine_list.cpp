@@ -48,7 +48,7 @@ void MachineList::move_into(SweepPlan& plan) && {
   for (std::size_t i = 0; i < order.size(); ++i) {
     place[order[i]] = i;
   }
-  // In place, cycle by cycle: a second list would take as much again.
+  // Permutes the list in place, cycle by cycle: a second list would take as much memory again.
   std::vector<std::size_t> to = place;
   for (std::size_t i = 0; i < to.size(); ++i) {
     while (to[i] != i) {
@@ -68,7 +68,7 @@ void MachineList::move_into(SweepPlan& plan) && {
 }
 
 std::size_t MachineList::enter_frame(const ReadPoint& read) {
-  // A file of the same name is another one in another directory.
+  // The same file name means another file in another base directory.
   const bool file = scenes::names_a_file(read.frame.scene);
   const std::string known = read.frame_digest + (file ? read.frame.open.base_directory.string() : "");
   if (const auto found = frame_of_digest_.find(known); found != frame_of_digest_.end()) {
@@ -81,7 +81,7 @@ std::size_t MachineList::enter_frame(const ReadPoint& read) {
     const scenes::Scene scene = sim::placed(read.config, [&] { return open_frame(read.frame); });
     hash = scene_hash(scene);
     digest.add("\n" + std::to_string(*hash) + " " + std::to_string(scenes::facts_of(scene).polygons));
-    // What a frame's row says of the scene is part of it.
+    // The notes are kept with the frame's row, so they are part of its key.
     for (const std::string& note : scene.notes) {
       digest.add("\n" + note);
     }

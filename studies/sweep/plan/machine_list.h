@@ -14,15 +14,16 @@ namespace marti::studies {
 
 class MachineList {
  public:
-  /// For as many machines as may come: a list that grows by doubling takes three times as much for a while.
+  /// Makes room for as many machines as there may be: a list that grows by doubling takes thrice that for a
+  /// while.
   void reserve(std::size_t machines);
   /// The machine's number, in the order of entering; equal machines have one. Takes the settings out of
   /// `read`. Opens a scene that is a file when its frame is new. Throws UserError when it cannot be used.
   std::size_t enter(ReadPoint& read);
-  /// The machine is that of the point of this number, not only one to measure others against.
+  /// Says that a point asks for the machine, which is then not only one to measure others against.
   void used_by_point(std::size_t machine, std::size_t point);
-  /// Moves everything into the plan, whose points and comparison have the numbers of enter(): machines by
-  /// frame, those of the points in the points' order, then the others.
+  /// Moves everything into the plan, whose points and comparison have the numbers of enter(). Machines are
+  /// ordered by frame, those of the points in the points' order, then the others.
   void move_into(SweepPlan& plan) &&;
 
  private:

@@ -18,12 +18,12 @@ struct ReadPoint {
       frame_digest;  ///< 32 hexadecimal digits of the frame's keys and values, host_machine.* left out
   std::vector<bool> frame_keys;  ///< for each key of the schema: has the frame read it?
   processors::MachineConfig machine;
-  std::string machine_digest;                 ///< the same of the keys that only the machine has read
+  std::string machine_digest;                 ///< digest of the keys that only the machine has read
   std::vector<sim::EffectiveValue> settings;  ///< these keys and values, in the order of the schema
 };
 
 /// Reads and checks frame and machine. Throws UserError naming file, line and key; keys that this machine
-/// does not use are no error.
+/// does not use are allowed.
 [[nodiscard]] ReadPoint read_point(sim::Config config);
 
 /// The keys and values of the frame's digest, in the order of the schema.

@@ -38,7 +38,7 @@ class RowParts {
     sim::ensure(!value || *value <= static_cast<std::uint64_t>(INT64_MAX), "a counter of a row overflowed");
     add("", name, unit, description, value ? std::optional(static_cast<std::int64_t>(*value)) : std::nullopt);
   }
-  /// Every declared counter, or nothing in its place. `whose` goes before the descriptions.
+  /// Every declared counter; without values for std::nullopt. `whose` goes before the descriptions.
   template <class S>
   void add_all(std::string_view prefix, std::string_view whose, const std::optional<S>& statistics) {
     const S counted = statistics.value_or(S{});

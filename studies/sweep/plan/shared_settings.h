@@ -22,7 +22,7 @@ using SharedSettings = std::vector<SettingsPart>;
 /// The section of a key: what is before its last dot.
 [[nodiscard]] std::string_view section_of(std::string_view key);
 
-/// Makes parts, equal ones once. The settings of a section must stand together.
+/// Makes parts; equal parts are stored once. The settings of a section must stand together.
 class SettingsPool {
  public:
   [[nodiscard]] SharedSettings share(std::vector<sim::EffectiveValue> settings);
@@ -31,7 +31,7 @@ class SettingsPool {
   std::unordered_map<std::string, SettingsPart> parts_;
 };
 
-/// All of them again, in their order.
+/// All settings of a machine, in the order of the schema.
 [[nodiscard]] std::vector<sim::EffectiveValue> all_of(const SharedSettings& settings);
 
 }  // namespace marti::studies

@@ -43,7 +43,7 @@ double node_cost(const Prices& prices, const MachineConfig& machine) {
   return cost;
 }
 
-// The way to a cluster's shared memory, and that memory.
+// The cost of a cluster's interconnect to shared memory, and of that memory.
 double memory_cost(const Prices& prices, const MachineConfig& machine) {
   const bool shared = machine.scheme != processors::Scheme::space &&
                       machine.placement != processors::Placement::distributed &&

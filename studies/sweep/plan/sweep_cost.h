@@ -5,8 +5,8 @@
 
 namespace marti::studies {
 
-/// Prices of a machine's parts, at least 0, in any unit. By default a node costs 1 and the others what they
-/// might beside it.
+/// Prices of a machine's parts, at least 0, in any unit. By default a node costs 1 and the other parts a
+/// plausible fraction of that.
 struct Prices {
   double cluster = 0.0;
   double node = 1.0;

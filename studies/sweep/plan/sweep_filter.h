@@ -15,7 +15,7 @@ namespace marti::studies {
 /// Decides point by point. The expression is SQLite's, over values and functions only: no table can be read.
 class SweepFilter {
  public:
-  /// See translate_filter. Throws the UserError "place: message" for what is no expression.
+  /// See translate_filter. Throws the UserError "place: message" for a text that is not an expression.
   SweepFilter(const sim::Schema& schema, std::string_view text, bool points, std::string_view place);
   ~SweepFilter();
   SweepFilter(SweepFilter&&) noexcept;

@@ -7,13 +7,13 @@
 
 namespace marti::studies {
 
-/// The keys of both sections; what else [sweep] holds is read by read_sweep_table (sweep/sweep_table.h).
+/// The keys of both sections; read_sweep_table (sweep/plan/sweep_table.h) reads what else [sweep] holds.
 void declare_sweep_keys(sim::Schema& schema);
 
 /// The schema of `marti sweep`.
 [[nodiscard]] sim::Schema sweep_schema();
 
-/// Throws UserError for a key of [prices] that there is not.
+/// Throws UserError for an unknown key of [prices].
 [[nodiscard]] Prices read_prices(const sim::Config& config);
 
 /// Throws UserError when something is to be recorded: a sweep has no directory for each machine.

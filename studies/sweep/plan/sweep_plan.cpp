@@ -24,14 +24,14 @@ namespace {
 // machines have become one.
 constexpr std::size_t points_at_once = 256;
 
-// As a user reads it: quantities without the quotation marks of TOML.
+// Values as a user reads them: quantities without the quotation marks of TOML.
 std::string plain_values(const sim::Key& key, const std::vector<sim::Value>& values) {
   std::string text = print_values(key, values);
   const bool quoted = !key.is_list && key.type != sim::ValueType::text && text.front() == '"';
   return quoted ? text.substr(1, text.size() - 2) : text;
 }
 
-// What a point asks for, or why it cannot be had.
+// The frame and the machine of a point, or why they cannot be had.
 struct Outcome {
   std::optional<ReadPoint> read;
   std::string error;
@@ -144,7 +144,7 @@ class Planner {
     return passing;
   }
 
-  // Points that differ only in what their base machine overrides have one base machine.
+  // Points that differ only in what their base machine overrides share one base machine.
   void find_strides_of_bases() {
     for (const SweepAxis& axis : table_.axes) {
       const bool overridden = std::all_of(axis.keys.begin(), axis.keys.end(), [&](std::size_t key) {
@@ -201,7 +201,7 @@ class Planner {
       ReadPoint& point = *read[i].point.read;
       const std::uint64_t group = base_group(points[i]);
       if (!bases_.contains(group)) {
-        // The first point of the group could not be built.
+        // Only the group's first point reads the base; that point could not be built, so it is read here.
         enter_base(group, points[i],
                    read[i].wants_base ? std::move(read[i].base) : read_base(points[i], point));
       }
@@ -277,7 +277,7 @@ class Planner {
     }
   }
 
-  // A key that one point uses and another does not is none of the user's faults.
+  // A key is unused only if no point uses it.
   void refuse_unused() {
     for (std::size_t key = 0; key < used_.size(); ++key) {
       if (used_[key]) {
@@ -290,7 +290,8 @@ class Planner {
       }
     }
     refuse_unused(table_.base, config_, "any machine of the sweep");
-    // As an assignment may, an axis may switch off what the file's own machine has.
+    // An axis may, like an assignment, switch off a part of the file's own machine: that part's keys are no
+    // error.
     if (const Outcome own = read_outcome(config_.with({})); own.read) {
       for (std::size_t key = 0; key < used_.size(); ++key) {
         if (own.read->config.used_at(key)) {
@@ -318,13 +319,13 @@ class Planner {
 
 std::uint64_t plan_bytes(std::uint64_t points, std::size_t axes) {
   constexpr std::uint64_t overhead = 16;  // of an allocation
-  constexpr std::uint64_t key = 48;       // of 32 digits, beside its string
-  constexpr std::uint64_t sections = 16;  // of a configuration, at most, that a machine reads
+  constexpr std::uint64_t key = 48;       // a string of 32 digits, beside its object
+  constexpr std::uint64_t sections = 16;  // at most so many sections of a configuration are read by a machine
   const std::uint64_t machine =
       sizeof(SweepMachine) + key + overhead + sections * sizeof(SettingsPart) + sizeof(std::size_t);
   const std::uint64_t known = sizeof(std::pair<std::string, std::size_t>) + key + 4 * overhead;
   const std::uint64_t point = sizeof(SweepPoint) + overhead + axes * sizeof(sim::Value);
-  // And the numbers by which machines are put in order.
+  // The last term is for the numbers by which machines are put in order.
   return points * (machine + known + point + 4 * sizeof(std::size_t));
 }
 

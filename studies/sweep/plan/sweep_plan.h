@@ -16,12 +16,12 @@ namespace marti::studies {
 
 /// One functional run: equal values give the same image and the same work log.
 struct SweepFrame {
-  /// 32 hexadecimal digits of the settings, of the program that it is (program_build.h) and, where the scene
-  /// is a file, of the scene in it.
+  /// 32 hexadecimal digits of the settings, of the program's build (program_build.h) and, where the scene is
+  /// a file, of the scene in it.
   std::string key;
   FrameConfig config;
   std::vector<sim::EffectiveValue> settings;  ///< that a frame reads, without host_machine.*
-  /// Of the scene as it was planned, where it is a file; it must be the same when it is traced.
+  /// Hash of the scene as it was planned, where it is a file; the scene must be the same when it is traced.
   std::optional<std::uint64_t> scene_hash{};
 };
 
@@ -59,8 +59,8 @@ struct SweepPlan {
   /// a list is a text.
   std::vector<std::string> axes;
   std::vector<SweepFrame> frames;
-  /// No two with equal keys. Ordered by frame; those of the points in the points' order, then base machines
-  /// that are no point's.
+  /// All keys differ. Ordered by frame; those of the points in the points' order, then base machines that no
+  /// point asks for.
   std::vector<SweepMachine> machines;
   std::vector<SweepPoint> points;      ///< that pass the filter; the last axis changes fastest
   std::uint64_t filtered_out = 0;      ///< points that do not pass
@@ -78,13 +78,13 @@ struct SweepPlan {
 /// host_machine.memory_limit, before its points are read.
 [[nodiscard]] SweepPlan plan_sweep(sim::Config& config);
 
-/// What is known besides the plan before it runs.
+/// What is known before the plan runs, beside the plan itself.
 struct SweepOutlook {
   std::size_t machines_done = 0;               ///< whose results are there already
   std::size_t frames_done = 0;                 ///< whose logs are kept, or that no machine needs any more
   std::optional<double> seconds;               ///< estimated time of what is left
   std::optional<std::uint64_t> log_bytes;      ///< estimated memory of the work logs in use
-  std::optional<std::uint64_t> machine_bytes;  ///< and of the machines that are timed at once
+  std::optional<std::uint64_t> machine_bytes;  ///< estimated memory of the machines that are timed at once
 };
 
 /// Host bytes that a plan takes, about, in which each of `points` points has `axes` values and a machine of

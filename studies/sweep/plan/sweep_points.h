@@ -11,7 +11,7 @@
 
 namespace marti::studies {
 
-/// Both outlive this.
+/// Refers to both constructor arguments, which must outlive it.
 class SweepPoints {
  public:
   SweepPoints(const sim::Config& config, const SweepTable& table);

@@ -16,7 +16,7 @@ using processors::ClusterResult;
 using processors::MachineConfig;
 using processors::MachineResult;
 
-// All of a machine's statistics of one kind together; nothing where there are none.
+// All of a machine's statistics of one kind together; std::nullopt if the machine has none.
 template <class S>
 struct Sum {
   std::optional<S> counters;

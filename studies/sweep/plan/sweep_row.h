@@ -29,7 +29,7 @@ struct SweepHistogram {
 };
 
 struct SweepRow {
-  /// One for each of sweep_columns(), whatever the machine; nothing where the machine has no such part.
+  /// One for each of sweep_columns(), whatever the machine; std::nullopt where the machine has no such part.
   std::vector<std::optional<std::int64_t>> counters;
   std::vector<SweepHistogram> histograms;
   bool operator==(const SweepRow&) const = default;
@@ -47,7 +47,7 @@ struct SweepRow {
                                  const processors::MachineResult& result);
 
 /// The row as bytes, to send it to another process of the same program; and back. Throws InternalError for
-/// bytes that are no row.
+/// bytes that are not a row.
 [[nodiscard]] std::string encode(const SweepRow& row);
 [[nodiscard]] SweepRow decode_sweep_row(std::string_view bytes);
 
@@ -55,7 +55,7 @@ struct SweepRow {
 struct FrameRow {
   std::vector<std::optional<std::int64_t>> counters;  ///< one for each of frame_columns()
   std::string scene;                                  ///< its name
-  std::string scene_hash;                             ///< 16 hexadecimal digits, as are the others
+  std::string scene_hash;                             ///< 16 hexadecimal digits, like the other hashes
   std::string image_hash;
   std::string hit_hash;
   std::vector<std::string> notes;

@@ -120,7 +120,7 @@ class TableReader {
     }
   }
 
-  // Notes that the key is swept over, and refuses a second time.
+  // Notes that the key is swept over, and refuses a key that already is.
   void enter(std::size_t key, int line) {
     const std::string& name = config_.schema().names()[key];
     const auto [place, fresh] = swept_.emplace(key, line);

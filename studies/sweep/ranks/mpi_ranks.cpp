@@ -32,7 +32,7 @@ bool joined() {
 
 }  // namespace
 
-/// What is being sent. MPI may read it until it says otherwise.
+/// Messages being sent. MPI may read them until it reports their completion.
 struct Ranks::Outbox {
   struct Item {
     std::uint64_t size = 0;
@@ -51,7 +51,7 @@ struct Ranks::Outbox {
   }
 };
 
-// A fault of MPI itself ends the job, with its message: the default.
+// MPI's default stays in force: an error of MPI itself ends the job, with MPI's message.
 Ranks::Ranks() : outbox_(std::make_unique<Outbox>()) {
   int provided = 0;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);

@@ -7,7 +7,7 @@
 
 namespace marti::studies {
 
-/// Of program, frames and machines, the content of scenes included: 32 hexadecimal digits.
+/// A digest of program, frames and machines, the content of scenes included: 32 hexadecimal digits.
 [[nodiscard]] std::string digest_of(const SweepPlan& plan);
 
 }  // namespace marti::studies

@@ -21,7 +21,7 @@ using Kind = SweepMessage::Kind;
 
 constexpr auto patience = std::chrono::seconds(30);  // for rank 0 to end the job
 
-/// Between the workers and the main thread: tasks one way, results the other.
+/// Between the workers and the main thread: tasks go one way, results the other.
 class Tray final : public TaskSource {
  public:
   // For the workers.
@@ -55,7 +55,7 @@ class Tray final : public TaskSource {
       return;
     }
     if (task.kind == SweepTask::Kind::trace) {
-      tasks_.push_front(std::move(task));  // others wait for it
+      tasks_.push_front(std::move(task));  // other tasks wait for a trace
     } else {
       tasks_.push_back(std::move(task));
     }
@@ -123,7 +123,7 @@ class RankClient {
         if (state.finished && error != nullptr) {
           std::rethrow_exception(error);
         }
-        // A task for each worker is there while they are at work on others.
+        // Asks ahead, so that each worker finds its next task when it has done one.
         std::size_t known = state.tasks + asked_;
         for (; !ended_ && known < work_.workers; ++known, ++asked_) {
           tell({.kind = Kind::ask});

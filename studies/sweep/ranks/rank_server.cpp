@@ -19,7 +19,7 @@ namespace {
 
 using Kind = SweepMessage::Kind;
 
-// A task takes much longer than a message, and a small part of what is left.
+// A task should take much longer than a message, but only a small part of the work that is left.
 constexpr std::int64_t longest_task = 250'000'000;  // ns
 constexpr std::int64_t tasks_left = 4;              // for each worker, at least
 
@@ -86,7 +86,7 @@ class RankServer::Desk {
                        [](const Client& client) { return client.left; });
   }
 
-  /// Whether anything was to be done.
+  /// Does what there is to do; returns whether there was anything.
   bool step(const SweepSite& site, Coordinator& coordinator) {
     bool busy = forget_logs();
     while (std::optional<Ranks::Message> message = ranks_.receive()) {

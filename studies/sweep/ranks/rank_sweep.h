@@ -20,12 +20,12 @@ class RankServer {
   RankServer(Ranks& ranks, const SweepPlan& plan);
   ~RankServer();
 
-  /// Nobody needs that frame's log any more. From any thread.
+  /// Says that nobody needs that frame's log any more. May be called from any thread.
   void over(std::size_t frame);
 
   /// Gives the other ranks the configuration, works with `workers` threads of its own, and returns when
-  /// everything is done and all ranks are ready to leave. Throws what went wrong, on any rank; the others are
-  /// at work then, and end_all_ranks() is to follow. UserError when another rank makes another plan of the
+  /// everything is done and all ranks are ready to leave. Throws the error of any rank; the other ranks are
+  /// still at work then, so call end_all_ranks(). UserError when another rank makes another plan of the
   /// configuration.
   void work(const SweepSite& site, Coordinator& coordinator, const std::string& configuration,
             unsigned workers);
@@ -43,8 +43,8 @@ struct RankWork {
   unsigned workers = 1;
 };
 
-/// Returns when rank 0 says so. What goes wrong is told to rank 0, which ends the job; when it does not, it
-/// is thrown after a while.
+/// Returns when rank 0 says so. An error is sent to rank 0, which ends the job; if it does not, the error is
+/// thrown after a while.
 void work_for_rank_0(Ranks& ranks, const RankWork& work);
 
 }  // namespace marti::studies

@@ -11,18 +11,18 @@
 
 namespace marti::studies {
 
-/// How long one that waits for another process sleeps before it looks again.
+/// How long a process that waits for another one sleeps before it looks again.
 inline constexpr auto pause = std::chrono::milliseconds(1);
 
-/// Made at most once in a process, and used by one thread, the one that has made it. Nothing here waits for
-/// another process without sleeping, but for beginning and end.
+/// Made at most once in a process, and used only by the thread that made it. It sleeps whenever it waits for
+/// other processes, except at the beginning and at the end.
 class Ranks {
  public:
   /// Joins the other processes. Throws UserError when the program was built without MPI, or the launcher is
   /// not that of the MPI it was built with.
   Ranks();
-  /// Leaves the job; every rank must do so. With messages that nobody has received, or while an exception
-  /// passes, it does not: the process is to end by end_all_ranks().
+  /// Leaves the job; every rank must do so. While messages are not received or an exception passes, it does
+  /// not leave: end the process by end_all_ranks() then.
   ~Ranks();
   Ranks(const Ranks&) = delete;
   Ranks& operator=(const Ranks&) = delete;
@@ -43,7 +43,7 @@ class Ranks {
   [[nodiscard]] std::optional<Message> receive();
   /// The next message, sleeping until it is there.
   [[nodiscard]] Message wait();
-  /// Until all that was sent is received, or at least on its way.
+  /// Waits until all messages sent are received, or at least on their way.
   void flush();
 
  private:

@@ -15,7 +15,7 @@ struct SweepMessage {
   enum class Kind : std::uint8_t {
     // From rank 0.
     begin,    ///< bytes: the configuration
-    task,     ///< task; `end`: there is none any more
+    task,     ///< task; `end`: there are no more tasks
     drop,     ///< number: frame whose log nobody needs any more
     goodbye,  ///< all are ready to leave
     // To rank 0.
@@ -23,7 +23,7 @@ struct SweepMessage {
     ask,      ///< for a task
     traced,   ///< number: frame; nanoseconds; row: of the frame
     timed,    ///< number: machine; nanoseconds; row
-    leaving,  ///< it has brought all its results and asks for nothing any more
+    leaving,  ///< it has brought all its results and asks for no more tasks
     failed    ///< number: 1: the user's error, 0: ours; bytes: the message
   };
   Kind kind = Kind::ask;
@@ -35,7 +35,7 @@ struct SweepMessage {
 };
 
 [[nodiscard]] std::string encode(const SweepMessage& message);
-/// Throws InternalError for bytes that are no message.
+/// Throws InternalError for bytes that are not a message.
 [[nodiscard]] SweepMessage decode_sweep_message(std::string_view bytes);
 
 }  // namespace marti::studies

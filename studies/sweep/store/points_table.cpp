@@ -104,7 +104,7 @@ Table table_of(std::string name, std::string title, std::span<const std::string>
       columns.back().type = ColumnType::real;
     }
     if (columns.back().type == ColumnType::text) {
-      columns.back().unit.clear();  // it stands in the text
+      columns.back().unit.clear();  // its text holds the unit
     }
   }
   Table table(std::move(name), std::move(title), columns);

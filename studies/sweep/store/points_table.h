@@ -9,9 +9,9 @@
 
 namespace marti::studies {
 
-/// "points": a row for each point of the present plan whose machine has been timed: its axes, its cost, what
-/// is derived, and all counters. A dot in a key becomes '_' in its column's name. Throws UserError when the
-/// store cannot be read.
+/// "points": a row for each point of the present plan whose machine has been timed: its axes, its cost, the
+/// derived figures, and all counters. A dot in a key becomes '_' in its column's name. Throws UserError when
+/// the store cannot be read.
 [[nodiscard]] Table points_table(const std::filesystem::path& store);
 
 /// Which points are worth their price.
@@ -20,8 +20,8 @@ struct BestPoints {
   std::string text;  ///< for people: the best within the budget, and the front
 };
 
-/// `metric` is a figure of SweepReader::figures(). Throws UserError when it is none, or when no point has it
-/// within the budget.
+/// `metric` is a figure of SweepReader::figures(). Throws UserError when it is not, or when no point within
+/// the budget has it.
 [[nodiscard]] BestPoints best_points(const std::filesystem::path& store, const std::string& metric,
                                      std::optional<double> budget);
 

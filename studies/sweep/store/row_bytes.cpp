@@ -52,7 +52,8 @@ class Reader {
     return value;
   }
   std::int64_t integer() { return static_cast<std::int64_t>(number()); }
-  // How many things follow that take at least `least` bytes each: never more than there is room for.
+  // The number of items that follow, each of at least `least` bytes. Throws if they cannot fit in the bytes
+  // left.
   std::size_t count(std::size_t least) {
     const std::uint64_t value = number();
     sim::ensure(value <= bytes_.size() / least, "a row's bytes end too early");

@@ -22,7 +22,7 @@ std::string host_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "an unknown host";
 }
 
-// Who wrote the file, as far as it can be read.
+// The holder of the lock, as its file names it.
 std::string holder_of(int descriptor) {
   std::array<char, 300> text{};
   const ssize_t bytes = pread(descriptor, text.data(), text.size() - 1, 0);
@@ -43,7 +43,7 @@ bool still_there(int descriptor, const std::filesystem::path& file) {
 
 constexpr std::string_view first_word = "process ";
 
-// A file that is written and then removed must be a lock: no link to something else, and no other's file.
+// The file will be written and then removed, so it must be a lock: not a link, and not somebody else's file.
 std::string why_no_lock(int descriptor) {
   struct stat status {};
   if (fstat(descriptor, &status) != 0) {
@@ -92,7 +92,7 @@ StoreLock::StoreLock(const std::filesystem::path& store) : file_(store.string() 
     ::close(descriptor_);
   }
   const std::string holder = std::string(first_word) + std::to_string(getpid()) + " on " + host_name() + "\n";
-  // Only for people: a full disk does not keep the lock from locking.
+  // The text is only for people: on a full disk the lock holds without it.
   if (ftruncate(descriptor_, 0) == 0) {
     [[maybe_unused]] const ssize_t written = pwrite(descriptor_, holder.data(), holder.size(), 0);
   }

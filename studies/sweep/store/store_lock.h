@@ -5,12 +5,12 @@
 
 namespace marti::studies {
 
-/// Holds the file `store` + ".lock" while it lives. The lock is the operating system's (flock), so that it is
-/// gone with the process that held it, however that ended; what the file says is only for people.
+/// Holds the file `store` + ".lock" while it lives. The lock is the operating system's (flock), so it ends
+/// with the process that holds it, however that ends; the text in the file is only for people.
 class StoreLock {
  public:
-  /// Throws UserError when another process holds it, when the file cannot be made, and when what has its name
-  /// is no lock: a link, a pipe, a file of something else. That is not touched.
+  /// Throws UserError when another process holds it, when the file cannot be made, and when the file of that
+  /// name is not a lock but a link, a pipe or a file of something else, which is not touched.
   explicit StoreLock(const std::filesystem::path& store);
   ~StoreLock();
   StoreLock(const StoreLock&) = delete;

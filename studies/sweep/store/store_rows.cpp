@@ -45,7 +45,7 @@ Counters counters_at(const SqliteStatement& row, const std::vector<int>& places)
   return counters;
 }
 
-// Whether a bucket is the one that a log-scaled histogram has for its lowest wait.
+// Whether the bounds of a bucket are those that a log-scaled histogram gives it.
 bool is_usual(const SweepHistogram::Bucket& bucket) {
   const std::size_t number = sim::LogHistogram::bucket_of(bucket.lowest);
   return sim::LogHistogram::lowest_of(number) == bucket.lowest &&

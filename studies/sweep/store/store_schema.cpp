@@ -181,8 +181,8 @@ void check_store_version(SqliteConnection& connection, const std::filesystem::pa
                          std::string(version) + ", whose results could differ; use version " + found +
                          ", give another directory, or remove the file and run the sweep again");
   }
-  // Older formats are read and not written. Digits of the sources come last; a program that was changed may
-  // give other results.
+  // Stores of older formats can be read but not written. The build holds a hash of the sources, because a
+  // program that was changed may give other results.
   if (connection.integer("PRAGMA user_version") != format ||
       text_of(connection, "SELECT value FROM store WHERE what = 'build'") != build_of_program() ||
       !has_columns(connection, "results", first_result_counter, sweep_columns()) ||

@@ -78,7 +78,7 @@ std::string sum_of_plan(SqliteConnection& connection) {
     SqliteStatement rows(connection, sql);
     add_rows(digest, rows);
   };
-  // Rows in the order of their table: an index could have another one.
+  // Rows are read in the order of their table: an index could have another order.
   for (const std::string_view table : plan_tables) {
     add("SELECT * FROM " + std::string(table) + " NOT INDEXED");
   }

@@ -1,4 +1,4 @@
-// Checksums of what a store holds, so that damage is told from results.
+// Checksums of what a store holds, to detect damage.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace marti::studies {
 
-/// The checksums of one table of results. Each is of a row's values as they stand in the store, with their
-/// types, and of what belongs to the row: of a machine's its histograms, of a frame's its notes. So a store
-/// can be checked by a program that has other counters.
+/// The checksums of one table of results. Each covers the values of a row as they stand in the store, with
+/// their types, and what belongs to the row: the histograms of a machine, the notes of a frame. So a program
+/// that has other counters can check a store, too.
 class RowSums {
  public:
   enum class Kind : std::uint8_t { machines, frames };

@@ -18,7 +18,7 @@ struct Offer {
 };
 
 /// Index of the offer with the best metric among those that cost at most `budget`; of equal ones the
-/// cheapest, of these the first. Nothing when none is within the budget.
+/// cheapest, of these the first. std::nullopt when none is within the budget.
 [[nodiscard]] std::optional<std::size_t> best_within(std::span<const Offer> offers,
                                                      std::optional<double> budget, Better better);
 

@@ -18,10 +18,10 @@ struct SweepMetric {
 };
 
 /// The metrics that are formulas of counters: speed_up, efficiency, times_faster, hit_ratio,
-/// interconnect_utilisation. The store's view `summary` has the formulas (sweep/store_columns.h).
+/// interconnect_utilisation. The store's view `summary` has the formulas (sweep/store/store_columns.h).
 [[nodiscard]] std::span<const SweepMetric> derived_metrics();
 
-/// The metric of that name: a derived one, or one of `columns`, of which less is better ("hits" apart).
+/// The metric of that name: a derived one, or one of `columns`, for which less is better (except "hits").
 /// Throws UserError for another name, with the nearest valid one.
 [[nodiscard]] SweepMetric find_metric(std::string_view name, std::span<const Column> columns);
 

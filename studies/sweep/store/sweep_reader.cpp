@@ -14,7 +14,7 @@ namespace marti::studies {
 
 namespace {
 
-// The columns of table points that are no axes.
+// The columns of table points that are not axes.
 constexpr std::size_t point_columns = 4;
 
 const std::filesystem::path& existing_store(const std::filesystem::path& file) {
@@ -157,12 +157,12 @@ class SweepReader::Implementation {
  private:
   std::filesystem::path file_;
   SqliteConnection connection_;
-  std::optional<RowReader> rows_;  // made when it is known that the tables are there
+  std::optional<RowReader> rows_;  // made once the tables are known to exist
   std::optional<SqliteStatement> settings_;
   std::string version_;
   std::vector<std::string> axes_;
   std::vector<std::string> figures_;
-  std::size_t summary_figures_ = 0;  // the first ones of them
+  std::size_t summary_figures_ = 0;  // so many of `figures_`, from the first
 };
 
 SweepReader::SweepReader(const std::filesystem::path& file)

@@ -1,5 +1,5 @@
-// What a store holds, for whoever reports on it. A store can be read while a sweep writes it: all that a
-// reader sees is of the instant at which it was opened.
+// What a store holds, for reports. A store can be read while a sweep writes it: all that a reader sees is of
+// the instant at which it was opened.
 #pragma once
 
 #include <cstdint>
@@ -27,13 +27,13 @@ struct StoredPoint {
   std::vector<Cell> values;  ///< one for each of SweepReader::axes()
 };
 
-/// Whether there is anything in the file: a sweep that was killed at once has left none, or an empty one.
+/// False when the file is missing or empty, as a sweep that was killed at once leaves it.
 [[nodiscard]] bool is_begun(const std::filesystem::path& store);
 
 class SweepReader {
  public:
-  /// Throws UserError when the file is not there, is no store, or is one of another format. A store of
-  /// another version of the program can be read: counters that it has not got have no value.
+  /// Throws UserError when the file is missing, is not a store, or is one of another format. A store of
+  /// another version of the program can be read: counters that it lacks have no value.
   explicit SweepReader(const std::filesystem::path& file);
   ~SweepReader();
   SweepReader(const SweepReader&) = delete;
@@ -50,9 +50,9 @@ class SweepReader {
   [[nodiscard]] std::vector<std::string> machines_done() const;
   [[nodiscard]] std::vector<std::string> frames_done() const;
 
-  /// Nothing when the machine has not been timed yet.
+  /// std::nullopt when the machine has not been timed yet.
   [[nodiscard]] std::optional<SweepRow> read_result(std::int64_t machine) const;
-  /// Of the frame that a machine is timed on; nothing when it has not been traced yet.
+  /// The row of the frame that a machine is timed on; std::nullopt when it has not been traced yet.
   [[nodiscard]] std::optional<FrameRow> read_frame(std::int64_t machine) const;
   /// Keys and values of a machine and of its frame, sorted by key.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> settings(std::int64_t machine) const;
@@ -61,7 +61,7 @@ class SweepReader {
   [[nodiscard]] std::vector<std::string> figures() const;
   /// Calls `visit` for each point of the plan in order, with the figures of these names; a figure has no
   /// value where the machine has no such part, has not been timed yet, or the denominator is 0. Throws
-  /// UserError for a name that is none, with the nearest that is one.
+  /// UserError for an unknown name, with the nearest known one.
   void for_each_point(std::span<const std::string> names,
                       const std::function<void(const StoredPoint&, std::span<const Cell>)>& visit) const;
 

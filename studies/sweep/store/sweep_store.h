@@ -18,7 +18,7 @@ namespace marti::studies {
 class SweepStore {
  public:
   /// Opens the file, or makes it, and enters what the plan asks for in one transaction: older results stay.
-  /// Refuses a file that is no store, one of another version of the store or of the program (whose results
+  /// Refuses a file that is not a store, one of another version of the store or of the program (whose results
   /// could differ), and one that another process has open.
   SweepStore(const std::filesystem::path& file, const SweepPlan& plan);
   ~SweepStore();

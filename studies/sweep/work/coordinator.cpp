@@ -51,8 +51,8 @@ void Coordinator::timed(std::size_t machine, const SweepRow& row, std::int64_t c
   tell_if_over(lock, frame);
 }
 
-// Without the lock: when a signal ends the program, removing a file waits for ever, and close_for_good() must
-// not wait for that.
+// Calls over_() without the lock: when a signal ends the program, removing a file waits for ever, and
+// close_for_good(), which takes the lock, must not wait for that.
 void Coordinator::tell_if_over(std::unique_lock<std::mutex>& lock, std::size_t frame) {
   const bool over = schedule_.over(frame);
   lock.unlock();
@@ -83,7 +83,7 @@ std::size_t Coordinator::saved() {
 }
 
 std::size_t Coordinator::close_for_good() {
-  mutex_.lock();  // and never let go: nothing is to be written any more
+  mutex_.lock();  // never unlocked: nothing may be written any more
   progress_.end();
   try {
     store_.close();

@@ -22,18 +22,19 @@ class Coordinator {
   Coordinator(const SweepPlan& plan, SweepStore& store, Progress& progress,
               std::function<void(std::size_t)> over);
 
-  /// The next task of a place, as Schedule::next; without `wait` it may be `wait`.
+  /// The next task of a place, see Schedule::next. Without `wait` it returns at once, perhaps with a task
+  /// `wait`.
   [[nodiscard]] SweepTask next(std::size_t place, std::int64_t nanoseconds, bool wait);
   void traced(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds);
   void timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds);
   void stop();
   /// As Schedule::nanoseconds_left.
   [[nodiscard]] std::int64_t nanoseconds_left();
-  /// Nothing is left to do, or it was stopped.
+  /// Whether nothing is left to do, or stop() was called.
   [[nodiscard]] bool finished();
   /// Machines of the plan that are saved.
   [[nodiscard]] std::size_t saved();
-  /// Closes the store for good, when nobody is writing to it: for a program that is about to be ended.
+  /// Closes the store for good, once nobody is writing to it: for a program that is about to be ended.
   /// Returns how many machines of the plan are saved.
   std::size_t close_for_good();
 

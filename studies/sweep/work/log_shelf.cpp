@@ -96,7 +96,7 @@ class LogShelf::Book : public std::enable_shared_from_this<Book> {
     return beside == 0 || (beside <= limit_ && bytes <= limit_ - beside);
   }
 
-  // Lets go of logs that nobody uses until `bytes` fit, if they fit beside those in use.
+  // Drops logs that nobody uses until `bytes` fit, if they fit beside those in use.
   void make_room(std::uint64_t bytes) {
     while (fits(pinned_, bytes) && !fits(in_memory_, bytes)) {
       Entry* oldest = nullptr;
@@ -123,7 +123,8 @@ class LogShelf::Book : public std::enable_shared_from_this<Book> {
     }
   }
 
-  // A log whose size is known gets its room before it is traced; another one when it is there, if it fits.
+  // Makes room for a log before it is traced, if its size is known; else it is kept only if it fits
+  // afterwards.
   void trace_again(std::unique_lock<std::mutex>& lock, Entry& entry, const Trace& trace) {
     const std::uint64_t room = entry.bytes;
     make_room(room);

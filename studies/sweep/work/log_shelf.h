@@ -35,14 +35,14 @@ class LogShelf {
   LogShelf(const LogShelf&) = delete;
   LogShelf& operator=(const LogShelf&) = delete;
 
-  /// Puts a new log on the shelf; where it does not fit beside those in use, it is forgotten. One that is
-  /// there already stays. Never waits for room.
+  /// Puts a new log on the shelf; it is dropped if it does not fit beside those in use. A log that is already
+  /// there stays. Never waits for room.
   void put(std::size_t frame, FrameLog log);
   /// The log of that frame: the one on the shelf, or else what `trace` makes, one call at a time for each
-  /// frame. Waits until others let go of theirs where the log would exceed the limit, so the calling thread
-  /// must not hold one. Throws what `trace` throws.
+  /// frame. If the log would exceed the limit, waits until other threads release theirs, so the calling
+  /// thread must not hold a log. Throws what `trace` throws.
   [[nodiscard]] std::shared_ptr<const FrameLog> take(std::size_t frame, const Trace& trace);
-  /// Nobody will take it again: its memory is free when the last user lets go.
+  /// Says that nobody will take the log again: its memory is freed when its last user lets go.
   void drop(std::size_t frame);
 
   /// Bytes of the logs in memory and of those being traced again.

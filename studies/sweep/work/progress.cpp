@@ -59,14 +59,14 @@ void Progress::show(std::int64_t nanoseconds_left, bool always) {
     return;
   }
   shown_ = now;
-  // Nothing is known before the first of them is done, nor of those that are under way at the end.
+  // The time left is not known before the first machine is done, nor when all that are left are under way.
   const std::optional<double> left =
       nanoseconds_left == 0 ? std::nullopt
                             : std::optional(static_cast<double>(nanoseconds_left) * 1e-9 / options_.workers);
   const std::string text = progress_text(machines_done_, machines_, frames_done_, frames_, left,
                                          options_.terminal ? bar_width : 0);
   if (options_.terminal) {
-    // What is left of a longer bar is painted over.
+    // Blanks cover the rest of a longer bar.
     const std::size_t blank = drawn_ > text.size() ? drawn_ - text.size() : 0;
     std::fprintf(options_.out, "\r%s%s", text.c_str(), std::string(blank, ' ').c_str());
     drawn_ = text.size();

@@ -23,7 +23,7 @@ class Progress {
 
   /// Machines and frames in all, and how many are done already.
   void begin(std::size_t machines, std::size_t machines_done, std::size_t frames, std::size_t frames_done);
-  /// A frame or a machine more; processor time still to be spent.
+  /// One more frame or machine is done. `nanoseconds_left`: processor time still to be spent.
   void traced(std::int64_t nanoseconds_left);
   void timed(std::int64_t nanoseconds_left);
   /// Takes the bar away.

@@ -50,7 +50,7 @@ std::int64_t Schedule::cost_of(const Batch& batch) const {
   return timed_ != 0 ? spent_ / timed_ : 0;
 }
 
-// A batch with machines to be handed out whose log is there; batches_.size() when there is none.
+// A batch with machines to hand out and a traced log; batches_.size() when there is none.
 std::size_t Schedule::choose_batch(std::size_t place) const {
   const std::size_t none = batches_.size();
   std::size_t mine = none;
@@ -68,7 +68,7 @@ std::size_t Schedule::choose_batch(std::size_t place) const {
     if (batch.place == no_place && fresh == none) {
       fresh = number;
     }
-    // One nanosecond each keeps the order where nothing is known of the costs.
+    // The nanosecond added for each machine orders batches by size while no cost is known.
     const std::int64_t left = static_cast<std::int64_t>(batch.machines.size()) * (cost_of(batch) + 1);
     if (left > most) {
       most = left;
@@ -78,8 +78,7 @@ std::size_t Schedule::choose_batch(std::size_t place) const {
   return mine != none ? mine : fresh != none ? fresh : longest;
 }
 
-// The frame to be traced now; frames_.size() when there is none, or when the one traced ahead is not begun
-// yet.
+// The first frame that waits to be traced; frames_.size() when there is none.
 std::size_t Schedule::frame_to_trace() const {
   for (std::size_t number = 0; number < frames_.size(); ++number) {
     if (frames_[number].trace == Trace::waiting) {
@@ -91,7 +90,7 @@ std::size_t Schedule::frame_to_trace() const {
 
 SweepTask Schedule::next(std::size_t place, std::int64_t nanoseconds) {
   const std::size_t waiting = frame_to_trace();
-  // Logs that are there or under way and that machines wait for.
+  // Logs that are traced or being traced, and that machines still need.
   std::size_t ahead = 0;
   for (const Frame& frame : frames_) {
     ahead +=

@@ -16,8 +16,8 @@ struct SweepTask {
   enum class Kind : std::uint8_t {
     trace,  ///< make the frame's log, and bring it to the shelf
     time,   ///< time `machines`, all of one frame, whose log is there
-    wait,   ///< nothing now: ask again when something has been traced
-    end     ///< nothing any more
+    wait,   ///< no task now: ask again when something has been traced
+    end     ///< no more tasks
   };
   Kind kind = Kind::end;
   std::size_t frame = 0;
@@ -26,10 +26,11 @@ struct SweepTask {
   std::size_t sharing = 0;
 };
 
-/// Machines of a frame that can share a stripped log are a batch. A place (a process, with all its threads)
-/// is given machines of one batch as long as there are any, then a new batch, then some of the batch of which
-/// most is left. One log is traced ahead of the machines that are being timed, so that nobody waits when a
-/// frame comes to its end. Costs are measured: the mean of what machines of the batch took, else of all.
+/// Machines of a frame that can share a stripped log form a batch. A place (a process, with all its threads)
+/// is given machines of one batch as long as there are any, then a new batch, then some of the batch with the
+/// most work left. One log is traced ahead of the machines that are being timed, so that nobody waits when a
+/// frame comes to its end. Costs are measured: the mean time of the batch's machines, or else of all
+/// machines.
 class Schedule {
  public:
   /// `machines_done` and `frames_done` as SweepStore gives them. A frame whose machines are all done is
@@ -40,18 +41,18 @@ class Schedule {
   /// The next task of `place`: machines that take about `nanoseconds` together, at least one.
   [[nodiscard]] SweepTask next(std::size_t place, std::int64_t nanoseconds = 0);
 
-  // To be told when it is done.
+  // Both are called when a task is done.
   void traced(std::size_t frame, std::int64_t cpu_nanoseconds);
   /// Returns the machine's frame.
   std::size_t timed(std::size_t machine, std::int64_t cpu_nanoseconds);
 
-  /// All machines of the frame are timed: nobody needs its log.
+  /// Whether all machines of the frame are timed, so that nobody needs its log.
   [[nodiscard]] bool over(std::size_t frame) const;
-  /// All is done.
+  /// Whether everything is done.
   [[nodiscard]] bool finished() const;
   [[nodiscard]] std::size_t machines_left() const { return machines_left_; }
   [[nodiscard]] std::size_t frames_left() const { return frames_left_; }
-  /// Estimated processor time of what is neither done nor under way; nothing known yet: 0.
+  /// Estimated processor time of what is neither done nor under way; 0 while nothing is known.
   [[nodiscard]] std::int64_t nanoseconds_left() const;
 
  private:
@@ -60,7 +61,7 @@ class Schedule {
     std::size_t frame = 0;
     std::vector<std::size_t> machines;  // to be handed out, the last first
     std::size_t size = 0;               // with those handed out
-    std::size_t place = no_place;       // whose it is
+    std::size_t place = no_place;       // the place that has it
     std::int64_t spent = 0;
     std::int64_t timed = 0;
   };

@@ -15,7 +15,7 @@ namespace marti::studies {
 /// Thread-safe. Keeps those used last.
 class StripShelf {
  public:
-  /// `most_bytes`: of all stripped logs together, but for those that are still in use when others are made.
+  /// `most_bytes`: of all stripped logs together, except those still in use when others are made.
   explicit StripShelf(std::uint64_t most_bytes) : most_bytes_(most_bytes) {}
 
   /// The log stripped for the machine; null where that is impossible, takes too much memory, or does not pay
@@ -24,7 +24,7 @@ class StripShelf {
       std::size_t frame, const std::shared_ptr<const processors::WorkLog>& log,
       const processors::MachineConfig& machine, std::size_t sharing);
 
-  /// Nobody will ask for this frame's again.
+  /// Says that nobody will ask for this frame's stripped logs again.
   void drop(std::size_t frame);
 
   /// Stripping a log takes about as long as it saves for this many machines.

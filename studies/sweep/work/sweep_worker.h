@@ -17,12 +17,12 @@ struct SweepSite {
   MemoryGate& machines;
 };
 
-/// Works until there is nothing to do. Throws what went wrong; a machine that cannot be timed is named.
-/// Several may work at once, each in a thread of its own: threads and not tasks of oneTBB, because they wait
-/// for each other, and oneTBB's own threads must be free to trace and strip meanwhile.
+/// Works until there is nothing to do. Throws any error; the error of a machine that cannot be timed names
+/// it. Several may work at once, each in a thread of its own: threads and not tasks of oneTBB, because they
+/// wait for each other, and oneTBB's own threads must be free to trace and strip meanwhile.
 void work(const SweepSite& site, TaskSource& source);
 
-/// Runs `workers` of them, or as many as the system has threads for, and returns when all have ended; throws
+/// Runs `workers` workers, or as many as the system has threads for, and returns when all have ended; throws
 /// what the first to fail threw.
 void work_together(const SweepSite& site, TaskSource& source, unsigned workers);
 

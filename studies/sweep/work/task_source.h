@@ -9,8 +9,8 @@
 
 namespace marti::studies {
 
-/// Thread-safe. In one process it is the schedule itself (sweep/coordinator.h); in a rank that does not hold
-/// the schedule it asks the one that does.
+/// Thread-safe. In one process it is the schedule itself (sweep/work/coordinator.h); a rank that does not
+/// hold the schedule asks the rank that does.
 class TaskSource {
  public:
   virtual ~TaskSource() = default;
