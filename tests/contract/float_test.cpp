@@ -1,4 +1,4 @@
-// The kernels in floats: every structure finds the hits of brute force there too; closed meshes in floats.
+// The kernels in floats: every structure finds the hits of brute force in floats too.
 #include <gtest/gtest.h>
 
 #include <algorithm>
