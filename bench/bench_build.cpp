@@ -42,8 +42,8 @@ std::shared_ptr<const accel::TriangleSet> triangles_of(const std::string& scene)
   return std::make_shared<const accel::TriangleSet>(scenes::make_procedural(scene));
 }
 
-/// The best of several builds, in seconds; more of them the shorter they are. Of one thread the time it
-/// worked, of all the time that passed.
+/// The best of several builds, in seconds; short builds are repeated more often. For one thread this is
+/// processor time, for all threads elapsed time.
 double best_build(const std::shared_ptr<const accel::TriangleSet>& triangles, unsigned threads) {
   accel::OctreeOptions options;
   options.threads = threads;
@@ -87,7 +87,7 @@ void growth(bench::Report& report) {
                                   "one thread", 1e3 * one));
       }
     }
-    // In logarithms, so that each size counts alike.
+    // In logarithms, so that each size has the same weight.
     double mean = 0.0;
     double x_mean = 0.0;
     double y_mean = 0.0;
@@ -181,7 +181,7 @@ void lazy(bench::Report& report) {
       accel::LazyOctreeState state;
     };
     std::vector<Result> results(limits.size());
-    // In turns, so that whatever else the computer does meets all alike.
+    // In turns, so that other work on the computer affects all alike.
     for (int round = 0; round < 5; ++round) {
       for (std::size_t k = 0; k < limits.size(); ++k) {
         accel::LazyOctreeOptions lazy_options;
@@ -285,7 +285,7 @@ int main(int argc, char** argv) {
     if (parts.empty()) {
       parts = {"million", "growth", "lazy", "update"};
     }
-    // First, because its processes are split off before this one has threads.
+    // First, because it forks, which must happen before this process has threads.
     std::stable_sort(parts.begin(), parts.end(),
                      [](std::string_view a, std::string_view b) { return a == "million" && b != "million"; });
     for (const std::string_view part : parts) {

@@ -1,9 +1,9 @@
-// How fast references are looked up: the tag stores, whole replays and the one-pass answers beside plain
+// How fast references are looked up: the tag stores, whole replays and the one-pass miss counts beside plain
 // trace-driven cache simulators, on the same stream of lines and in turns, in processor time of one thread.
 //   bench_caches [SIZE [REPEATS]] [--json FILE]     default: 512 5
 //
-// The stream is what the one node of bench_replay's machine (4-way 16 KiB cache with lines of 32 bytes)
-// refers to while it traces teapot:12.
+// The stream is the references of one node of bench_replay's machine (4-way 16 KiB cache with lines of 32
+// bytes) that traces teapot:12.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -96,7 +96,7 @@ class ListCache {
   std::unordered_map<std::uint32_t, std::list<std::uint32_t>::iterator> places_;
 };
 
-// Processor time: what else the computer does counts as little as may be.
+// Processor time, which other work on the computer affects least.
 double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 constexpr memory::CacheConfig cache_config{.size = 16 * 1024, .line = 32, .ways = 4};
@@ -122,7 +122,7 @@ std::int64_t misses_of(Cache& cache, const std::vector<std::uint32_t>& lines) {
 
 struct Contestant {
   std::string name;
-  std::function<bool()> pass;  // whether it has found the misses that the others have
+  std::function<bool()> pass;  // returns whether it has found the same misses as the others
   double seconds = std::numeric_limits<double>::infinity();
 };
 

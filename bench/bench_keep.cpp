@@ -1,6 +1,6 @@
 // What the plan of a run saves: processor time and peak memory of each shipped scene, with the plan, with
-// everything kept, and with everything kept but the structures that nobody asked for. Each run is a process
-// of its own, so that its peak of memory is its own.
+// everything kept, and with everything kept but the structures that are not used. Each run is a process of
+// its own, so that its peak memory can be measured.
 //   bench_keep [SIZE [REPEATS [FILE...]]]     default: 128, 3; FILE: scenes beside the procedural ones
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -33,7 +33,7 @@ void run_once(const std::string& scene, const std::string& size, const studies::
   static_cast<void>(studies::run(config, {}, keep));
 }
 
-// The parent starts no threads, so that a fork is all there is to it.
+// A plain fork is safe, because the parent starts no threads.
 Usage measure(const std::string& scene, const std::string& size, const studies::KeptItems& keep) {
   std::fflush(nullptr);
   const pid_t child = fork();

@@ -36,11 +36,11 @@ struct Options {
   marti::accel::OctreeOptions octree{16, 8};
 };
 
-/// Processor time of this program, so that what else the computer does counts as little as may be.
+/// Processor time of this program, which other work on the computer affects least.
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// The best of several passes of each kind, in seconds of processor time, taken in turns so that whatever
-/// else the machine does meets all kinds alike.
+/// The best of several passes of each kind, in seconds of processor time, taken in turns so that other
+/// work on the computer affects all kinds alike.
 std::vector<double> best_seconds(const std::vector<std::function<void()>>& passes) {
   std::vector<double> best(passes.size(), std::numeric_limits<double>::infinity());
   double spent = 0.0;
@@ -56,7 +56,7 @@ std::vector<double> best_seconds(const std::vector<std::function<void()>>& passe
   return best;
 }
 
-/// The triangles in Embree, the rays converted beforehand (the measurement is Embree's alone), its answers.
+/// The triangles in Embree, its hits, and the rays, converted beforehand so that only Embree is measured.
 class EmbreeRun {
  public:
   EmbreeRun(const TriangleSet& triangles, const std::vector<Ray>& rays, bool robust)
@@ -132,7 +132,7 @@ class EmbreeRun {
   std::vector<RTCRayHit> queries_;
 };
 
-/// Of all rays: seen the same primitive, another one at the same distance (a tie), or something else.
+/// Numbers of rays that hit the same primitive, another one at the same distance (a tie), or something else.
 struct Agreement {
   std::size_t same = 0;
   std::size_t tie = 0;
@@ -178,7 +178,7 @@ Options read_options(int argc, char** argv) {
   return options;
 }
 
-/// One of ours: a structure, perhaps with mailboxes.
+/// One of marti's structures, with mailboxes or without.
 struct Contestant {
   std::string name;
   std::unique_ptr<Structure> structure;
@@ -187,8 +187,8 @@ struct Contestant {
   std::vector<Hit> hits;
 };
 
-/// Traces all rays with the concrete structure, so that the walk is inlined. Without mailboxes by the walk
-/// that a render takes.
+/// Traces all rays with the concrete structure, so that the walk is inlined. Without mailboxes it is the walk
+/// that a render uses.
 void trace(Contestant& contestant, const std::vector<Ray>& rays) {
   marti::accel::visit_structure(*contestant.structure, [&](const auto& concrete) {
     const auto all = [&](auto& visitor) {
@@ -207,7 +207,7 @@ void trace(Contestant& contestant, const std::vector<Ray>& rays) {
   });
 }
 
-/// Brute force only where it takes no longer than this many tests.
+/// Brute force is measured only where it takes at most this many tests.
 constexpr double most_tests = 1e8;
 
 std::vector<Contestant> build_all(const std::shared_ptr<const TriangleSet>& triangles, const Options& options,

@@ -24,7 +24,7 @@ double seconds(const std::vector<double>& sorted, double quantile) {
   return sorted[static_cast<std::size_t>(quantile * static_cast<double>(sorted.size() - 1))];
 }
 
-/// Counts what the totals do not: how often a leaf ended early.
+/// Counts how often a leaf ended early, which the totals do not tell.
 std::uint64_t partial_leaves(const processors::WorkLog& log) {
   std::uint64_t count = 0;
   for (const processors::LogRow& row : log.rows) {
@@ -41,7 +41,7 @@ void run(bench::Report& report, const std::string& name, std::uint32_t size, int
   const auto structure = accel::make_structure("octree", triangles);
   processors::RenderOptions options{.width = size, .height = size, .max_depth = 2};
 
-  // Interleaved, so that whatever else the host does meets both; the first pair only warms up.
+  // In turns, so that other work on the host affects both alike; the first pair only warms up.
   std::vector<double> times[2];
   processors::Frame recorded;
   for (int repeat = 0; repeat <= repeats; ++repeat) {
@@ -89,7 +89,7 @@ void run(bench::Report& report, const std::string& name, std::uint32_t size, int
                             1e3 * seconds(times[0], 0.5), bench::Aim{1.3, false}));
   report.add({"work log", "B/ray", static_cast<double>(totals.bytes) / rays});
 
-  // Other encodings of the same steps. Offsets of pixels count in each.
+  // Other encodings of the same steps. Each includes the offsets of the pixels.
   const double offsets = 4.0 * (pixels + size);
   const double every_step = 4.0 * (steps + static_cast<double>(totals.texels)) + offsets;
   std::printf("  a word for every step  %12.2f\n", every_step / rays);

@@ -24,7 +24,7 @@ using namespace marti;
 // Processor time of this process, which other programs on the computer do not lengthen much.
 double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-// The machine of the measure: 4-way 16 KiB private caches on a split bus that 64 nodes nearly fill.
+// The machine that is timed: 4-way 16 KiB private caches on a split bus that 64 nodes nearly fill.
 processors::MachineConfig machine_of(std::uint32_t nodes, std::uint32_t packet) {
   processors::MachineConfig machine;
   machine.nodes = nodes;

@@ -31,7 +31,7 @@ struct Took {
   double wall = 0.0;  // seconds
 };
 
-// Runs the program; what it prints is thrown away.
+// Runs the program and discards its output.
 Took run_program(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), MARTI_PROGRAM);
   std::vector<char*> argv;
@@ -40,7 +40,7 @@ Took run_program(std::vector<std::string> arguments) {
   }
   argv.push_back(nullptr);
   const auto begin = std::chrono::steady_clock::now();
-  std::fflush(stdout);  // or the child would print it too
+  std::fflush(stdout);  // otherwise the child would print buffered output again
   const pid_t child = fork();
   if (child == 0) {
     if (std::freopen("/dev/null", "w", stdout) != nullptr) {
@@ -60,7 +60,7 @@ Took run_program(std::vector<std::string> arguments) {
           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
 }
 
-// A directory that vanishes.
+// A temporary directory, removed by the destructor.
 class Scratch {
  public:
   Scratch()

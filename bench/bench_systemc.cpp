@@ -24,7 +24,7 @@ using namespace marti;
 
 constexpr int replays = 7;
 
-// Processor time: the model runs once, so what else the computer does must not count.
+// Processor time: the model runs once, so other work on the computer must not be counted.
 double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 void print(const char* name, double seconds, double references) {

@@ -1,4 +1,4 @@
-// One table, and one file, of what several benchmarks have written with --json.
+// Makes one table and one file of the results that several benchmarks have written with --json.
 //   bench_table OUTPUT FILE...
 //
 // OUTPUT is JSON: {"host": {"processor", "cores", "load"}, "benchmarks": [as bench/report.h says]}.
@@ -34,7 +34,7 @@ std::string processor() {
 }
 
 Json host() {
-  // The average of 15 minutes has seen the benchmarks and what ran beside them.
+  // The average of 15 minutes covers the benchmarks and whatever ran beside them.
   std::array<double, 3> load{};
   const int known = getloadavg(load.data(), static_cast<int>(load.size()));
   return {{"processor", processor()},

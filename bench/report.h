@@ -1,8 +1,8 @@
-// What a benchmark found, for people and for programs: every benchmark takes `--json FILE` beside its own
+// The results of a benchmark, for people and for programs: every benchmark takes `--json FILE` beside its own
 // arguments and writes its rows there; bench_table makes one table of all files.
 //
 // {"benchmark": "bench_x", "rows": [{"name": "...", "unit": "M refs/s", "ours": 1.0, "peer_name": "...",
-//   "peer": 1.0, "ratio": 1.0, "aim": 1.0, "aim_is": "at least"}]}, without what a row does not have.
+//   "peer": 1.0, "ratio": 1.0, "aim": 1.0, "aim_is": "at least"}]}. Fields may be missing.
 #pragma once
 
 #include <cstdio>
@@ -18,7 +18,7 @@
 
 namespace marti::bench {
 
-/// What a ratio, or where there is none the figure itself, should be.
+/// The aim for the ratio, or for the figure itself if there is no ratio.
 struct Aim {
   double value = 0.0;
   bool at_least = true;  ///< false: at most
@@ -30,7 +30,7 @@ struct Row {
   std::string name;
   std::string unit;
   double ours = 0.0;
-  std::string peer_name{};  ///< what it was measured beside, in the same run; empty: nothing
+  std::string peer_name{};  ///< the program measured beside it, in the same run; empty: none
   double peer = 0.0;        ///< in the same unit
   std::optional<double> ratio{};
   std::optional<Aim> aim{};
@@ -92,7 +92,7 @@ class Report {
   std::vector<Row> rows_;
 };
 
-/// The main() of a benchmark: `run` with its report, messages for errors, the exit status.
+/// The main() of a benchmark: calls `run` with its report, prints errors, returns the exit status.
 template <class Run>
 int run_benchmark(const char* name, int argc, char** argv, const Run& run) {
   try {

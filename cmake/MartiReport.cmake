@@ -1,7 +1,7 @@
-# What `marti report` draws charts with, from npm, as cmake/npm/package-lock.json pins it. Sets
+# The npm packages with which `marti report` draws charts, as cmake/npm/package-lock.json pins them. Sets
 #   MARTI_VEGA_BUNDLE   the source that defines studies/report/vega_bundle.h,
-#   MARTI_VEGA_SCRIPTS  the files that this source takes in, and
-#   MARTI_NODE, MARTI_NODE_MODULES  node and the folder of the packages, the tests' among them; empty without.
+#   MARTI_VEGA_SCRIPTS  the files that this source embeds, and
+#   MARTI_NODE, MARTI_NODE_MODULES  node and the folder of the packages, with the tests'; empty without npm.
 # All of it happens in the build directory, when cmake configures, so that a machine without npm or without
 # network builds a program that only lacks the report.
 option(MARTI_REPORT "Put the scripts of marti report, which npm fetches, into the program" ON)
@@ -10,7 +10,7 @@ set(MARTI_VEGA_BUNDLE "${CMAKE_CURRENT_LIST_DIR}/../studies/report/no_vega_bundl
 set(MARTI_VEGA_SCRIPTS "")
 set(MARTI_NODE_MODULES "")
 
-# marti_fetch_vega(<error>): npm ci, and the bundle made of what it brought; only when something has changed.
+# marti_fetch_vega(<error>): runs npm ci and bundles the packages, only when something has changed.
 function(marti_fetch_vega error)
   set(from "${PROJECT_SOURCE_DIR}/cmake/npm")
   set(here "${PROJECT_BINARY_DIR}/npm")
@@ -36,7 +36,7 @@ function(marti_fetch_vega error)
   endif()
   file(REMOVE "${stamp}")
   message(STATUS "npm fetches what marti report draws with")
-  # Little patience, so that a machine off line builds without it soon.
+  # Short timeouts, so that a machine without network soon goes on without the packages.
   execute_process(
     COMMAND "${MARTI_NPM}" ci --ignore-scripts --no-audit --no-fund --no-update-notifier --prefer-offline
       --fetch-retries=1 --fetch-retry-mintimeout=2000 --fetch-timeout=60000 ${packages}

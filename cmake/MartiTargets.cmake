@@ -70,7 +70,7 @@ endfunction()
 
 # marti_add_test(<name> SOURCES ... [ALONE sources...] [LIBS ...] [SHARDS n]): one GoogleTest program. CTest runs it as
 # one test or, where it takes long, as n tests that share its cases among them, so that they can run side by side.
-# ALONE: sources whose local names are those of others, which a unity build does not join with these.
+# ALONE: sources whose local names clash with those of others, so a unity build compiles them by themselves.
 function(marti_add_test name)
   cmake_parse_arguments(ARG "" "SHARDS" "SOURCES;ALONE;LIBS" ${ARGN})
   if(NOT ARG_SHARDS)
@@ -85,7 +85,7 @@ function(marti_add_test name)
     set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} marti_options GTest::gtest_main)
-  # A test runs for a moment and is compiled for a long time; the libraries that it tests are optimised.
+  # Tests take longer to compile than to run, so they are hardly optimised; the libraries that they test are.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   math(EXPR last "${ARG_SHARDS} - 1")
   foreach(shard RANGE ${last})

@@ -1,5 +1,5 @@
 # cmake -DDIRECTORY=dir -DFUNCTION=name -DHEADER=file.h -DOUTPUT=file.cpp -P embed_charts.cmake: the chart
-# specifications of a directory as C++ source: what FUNCTION, which HEADER declares, gives.
+# specifications of a directory as the C++ source of FUNCTION, which HEADER declares.
 cmake_minimum_required(VERSION 3.25)
 
 file(GLOB charts "${DIRECTORY}/*.vl.json")
@@ -12,7 +12,7 @@ foreach(chart IN LISTS charts)
   if(text MATCHES "[)]chart\"")
     message(FATAL_ERROR "${chart}: cannot be put between R\"chart( and )chart\"")
   endif()
-  # A quarter of the 65,536 characters that every compiler takes in one literal.
+  # A quarter of the 65,536 characters that every compiler accepts in one literal.
   string(LENGTH "${text}" length)
   if(length GREATER 16384)
     message(FATAL_ERROR "${chart}: ${length} characters are too many for a specification")

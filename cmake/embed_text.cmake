@@ -4,7 +4,7 @@ cmake_minimum_required(VERSION 3.25)
 
 file(READ "${INPUT}" text)
 string(LENGTH "${text}" length)
-# What every compiler takes in one literal.
+# The length of a literal that every compiler accepts.
 if(text MATCHES "[)]text\"" OR length GREATER 65536)
   message(FATAL_ERROR "${INPUT}: cannot be put between R\"text( and )text\"")
 endif()

@@ -1,5 +1,5 @@
-# cmake -DROOT=... -DVERSION=... -DOUTPUT=... -P program_build.cmake: writes the source that says which program this
-# is. Paths are hashed too; the output changes only when they or what is in the files do.
+# cmake -DROOT=... -DVERSION=... -DOUTPUT=... -P program_build.cmake: writes the source with the hash of the
+# libraries' sources. Paths are hashed too; the output changes only when a path or the content of a file does.
 cmake_minimum_required(VERSION 3.25)
 
 set(files "")

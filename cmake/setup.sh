@@ -11,8 +11,8 @@ die() {
   exit 1
 }
 
-# Is it installed? Node and npm may have come another way than as Debian's packages, with which they could not
-# be together then: what counts is their commands.
+# Is the package installed? Node and npm may be installed from elsewhere, and would then conflict with Debian's
+# packages: for them it is enough that the commands exist.
 is_there() {
   case $1 in
     nodejs) command -v node >/dev/null && return ;;
@@ -35,7 +35,7 @@ missing_packages() {
   done <cmake/debian-packages.txt
 }
 
-# Installs what the given sections need and is missing. Quick when nothing is.
+# Installs the packages of the given sections that are missing. Quick when none is.
 need_packages() {
   if ! command -v dpkg-query >/dev/null; then
     say "This is no Debian system: cmake/debian-packages.txt says what must be installed. Going on."
@@ -62,7 +62,7 @@ need_packages() {
     die "apt-get could not install ${missing[*]} (see above). Is this machine off line, or not Debian 12?"
 }
 
-# The same for what can be done without: says so and goes on when it cannot be installed.
+# Installs optional packages in the same way, but if that fails says so and goes on.
 want_packages() {
   local without=$1
   shift
@@ -70,7 +70,7 @@ want_packages() {
   (need_packages "$@") || say "Going on without it: $without"
 }
 
-# configure <log> <directory> <option...>: what cmake says goes to build/configure-<log>.log, and is seen when it
+# configure <log> <directory> <option...>: cmake's output goes to build/configure-<log>.log, and is shown if it
 # fails.
 configure() {
   local log=build/configure-$1.log directory=$2
@@ -80,7 +80,7 @@ configure() {
     { cat "$log" >&2 && die "cmake could not configure $directory (see above)"; }
 }
 
-# Memory limits parallel compilation before the cores do on small machines: 1.5 GB for each compiler.
+# The number of compilers at a time: at most one for each core and for each 1.5 GB of memory.
 build_jobs() {
   local cores kilobytes
   cores=$(nproc)

@@ -1,5 +1,5 @@
-// Chromium, and a page of it that watches what the loaded file does: everything that it reports as wrong, and
-// everything that it asks for. No request but that for the file itself is let through.
+// Chromium, and a page that records what the loaded file does: every error that it reports, and
+// every request that it makes. No request but that for the file itself is let through.
 import { createRequire } from "node:module";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";

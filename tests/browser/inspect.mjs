@@ -1,4 +1,4 @@
-// What stands in an open page (browser.mjs): questions that a test asks, answered in the page itself.
+// The contents of an open page (browser.mjs): functions for tests, which run in the page itself.
 
 /** Names of the charts, in the order of the page. */
 export const chartNames = (page) =>

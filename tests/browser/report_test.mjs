@@ -1,5 +1,5 @@
-// The pages of `marti report` in a browser: what they draw is what the results hold, they ask for nothing, and
-// everybody can use them.
+// The pages of `marti report` in a browser: they draw what the results hold, request nothing, and are
+// accessible.
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, readdirSync, statSync } from "node:fs";
 import { join } from "node:path";

@@ -5,7 +5,7 @@ import { join } from "node:path";
 
 const program = process.env.MARTI_PROGRAM;
 const configs = join(process.env.MARTI_SOURCE, "configs");
-// Paths stand in the page: one word of this one is wider than a phone.
+// The page shows paths: this one has a word that is wider than a phone.
 const work = join(process.env.MARTI_WORK, "results-of-a-directory-with-a-very-long-name-without-a-space");
 
 export function marti(...args) {

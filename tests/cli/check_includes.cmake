@@ -82,8 +82,8 @@ allow("^CLI/" "^studies/cli/[a-z_]+[.](cpp|h)$")
 allow("^OpenImageIO/" "^studies/host/[a-z_]+[.]cpp$")
 allow("^(systemc|tlm|tlm_utils/[a-z_]+[.]h)$" "^(tests|bench)/")
 
-# What is computed and when it happens are two worlds that meet in the work log alone. Files, the headers
-# they must not include, and why. The operation mixes are counted by running the tracer, hence the exception.
+# The ray tracer says what is computed, the machine when it happens; they share only the work log. Files, headers
+# they must not include, and why. operation_mix is excepted, because it runs the tracer to count operations.
 set(world_files
   "^processors/program/"
   "^processors/([^pc]|pa|cost/([^o]|o[^p]))")

@@ -1,6 +1,6 @@
-# cmake -P check_names.cmake -- ROOT: are no two types of a folder's headers called the same? All are in the folder's
-# one namespace, and the compiler does not see it when no file includes both headers: the linker then takes one's
-# destructor for the other's.
+# cmake -P check_names.cmake -- ROOT: do no two types of a folder's headers have one name? All are in the same namespace,
+# and if no file includes both headers the compiler does not notice: the linker then uses the destructor of one type
+# for the other.
 cmake_minimum_required(VERSION 3.25)
 
 math(EXPR last "${CMAKE_ARGC} - 1")

@@ -62,7 +62,7 @@ TEST(Command, EveryShippedConfigurationRuns) {
   int configurations = 0;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(MARTI_SOURCE) / "configs")) {
     const std::string text = entry.path().extension() == ".toml" ? read(entry.path()) : "[paper]";
-    // Those of studies are run by the tests of the studies.
+    // Configurations of studies are run by the tests of the studies.
     const auto is_of = [&](const char* section) { return text.find(section) != std::string::npos; };
     if (!is_of("[paper]") && !is_of("[schemes]") && !is_of("[error]")) {
       ++configurations;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # each_command_test.sh PROGRAM SOURCE: every command of marti once, on a small machine. Under the sanitizers it shows
-# that no command touches memory wrongly on its ordinary way; what commands print is judged by the other tests.
+# that no command has a memory error in ordinary use; other tests check what the commands print.
 set -euo pipefail
 program=$(realpath "$1") source=$(realpath "$2")
 work=$(mktemp -d)

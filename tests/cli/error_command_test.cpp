@@ -92,7 +92,7 @@ TEST(RunWithin, GivesAnEstimateWithErrorBarsOrAnExactRun) {
   const Outcome none = marti("run " + machine + "--within 0%");
   ASSERT_EQ(none.status, 0) << none.output;
   EXPECT_NE(none.output.find("exact replay, no error"), std::string::npos);
-  // But for the reason, it is what is said without --within.
+  // Except for the reason, the output equals that without --within.
   const std::string plain = marti("run " + machine).output;
   EXPECT_EQ(none.output.substr(0, plain.size()), plain);
   const Outcome outside = marti("run " + machine + "--within 5% --set machine.scheme=space");
@@ -115,7 +115,7 @@ TEST(RunWithin, GivesTheSameToPrograms) {
     EXPECT_TRUE(bar["high"].is_null() || bar["high"] >= bar["value"]) << figure;
   }
   EXPECT_LE(estimate["machine"]["end"]["half_width"], 0.6);
-  // The speed-up is that of the two times.
+  // The speed-up is the ratio of the two times.
   const double ratio =
       estimate["one_node"]["end"]["value"].get<double>() / estimate["machine"]["end"]["value"].get<double>();
   EXPECT_NEAR(estimate["machine"]["speed_up"]["value"].get<double>(), ratio, 1e-9 * ratio);

@@ -1,4 +1,4 @@
-// Mistakes of the first hour: each is answered by one line that names the remedy, with exit status 2.
+// Beginners' mistakes: each gets one line that names the remedy, and exit status 2.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -16,7 +16,7 @@ const fs::path shipped_frames = fs::path(MARTI_SOURCE) / "configs" / "animation.
 const std::string small_frames =
     quoted(shipped_frames) +
     " --set image.width=24 --set image.height=16 --set frames.count=2 --set frames.rate=2";
-// Without anything that moves, and quick.
+// A scene in which nothing moves, quickly rendered.
 const std::string still = small_frames + " --set scene.source=tetra:2";
 
 TEST(FramesCommand, WritesTablesChartAndImages) {

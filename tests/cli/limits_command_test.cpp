@@ -1,4 +1,4 @@
-// The program under the limits of its memory and of its threads: done, or one message and exit 2.
+// The program under limits on memory and threads: it succeeds, or ends with one message and status 2.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -62,7 +62,7 @@ TEST_F(Limits, APlanIsRefusedBeforeItsPointsAreRead) {
   EXPECT_TRUE(says(outcome, "host_machine.memory_limit: the plan of")) << outcome.output;
 }
 
-// Without a limit of the user's, the results are those of any other limit.
+// The results with the default limit are those with any other limit.
 TEST_F(Limits, TheDefaultDoesNotEnterResults) {
   if (MARTI_SANITIZED) {
     GTEST_SKIP() << "a sanitizer takes terabytes of address space";
@@ -93,7 +93,7 @@ TEST_F(Limits, LittleAddressSpaceIsNoAbort) {
   EXPECT_GE(done, 2);
 }
 
-// As a user with few processes: none at all for threads, one, two, ...
+// As a user who may have few processes: none at all for threads, one, two, ...
 TEST_F(Limits, FewProcessesAreNoAbort) {
   if (getuid() != 0) {
     GTEST_SKIP() << "the limit of processes counts all of a user's: only root can be a user without any";

@@ -87,7 +87,7 @@ struct Counts {
   std::int64_t writes = 0;
 };
 
-// What a simulator of one LRU cache makes of a din file: labels 0 and 1, four bytes from a multiple of four
+// Simulates one LRU cache on a din file: labels 0 and 1, four bytes from a multiple of four
 // on; writes go past the cache.
 Counts simulate(const fs::path& file, std::uint64_t size, std::uint64_t line, std::uint64_t ways) {
   std::map<std::uint64_t, std::vector<std::uint64_t>> sets;

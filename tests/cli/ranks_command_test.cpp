@@ -1,5 +1,5 @@
-// `marti sweep` under mpirun: on any number of processes it gives one process's store, and what a killed
-// process leaves is gone on with.
+// `marti sweep` under mpirun: on any number of processes it gives the store of one process, and
+// continues after a killed process.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -39,7 +39,7 @@ interconnect.kind = ["bus", "crossbar"]
 cache.line = ["16 B", "32 B"]
 )";
 
-// Leaks that the sanitizer finds at the end are Open MPI's.
+// The leaks that the sanitizer finds at the end are those of Open MPI.
 std::string mpirun(int ranks, const std::string& arguments) {
   return "ASAN_OPTIONS=detect_leaks=0 mpirun --allow-run-as-root --oversubscribe --bind-to none -n " +
          std::to_string(ranks) + " " + quoted(MARTI_PROGRAM) + " " + arguments;

@@ -115,7 +115,7 @@ TEST_F(ReportCommand, ReportsASweepWithItsModel) {
   ASSERT_EQ(explorer["axes"].size(), 3U);
   EXPECT_EQ(explorer["ordinal"].size(), 24U);
   EXPECT_EQ(explorer["axes"][explorer["axis"].get<std::size_t>()]["name"], "machine.nodes");
-  // Of every modelled curve the error is there, and at exact points it is exact.
+  // Every modelled curve has its error, and is exact at exact points.
   const json& model = explorer["models"]["0"];
   EXPECT_EQ(model["error"]["between"]["points"], 12);
   EXPECT_EQ(model["error"]["beyond"]["points"], 12);
@@ -332,7 +332,7 @@ TEST_F(ReportCommand, RefusesTwoChartsOfOneName) {
 
 TEST_F(ReportCommand, LeavesOutALargeImageAndNamesOneThatCannotBeRead) {
   const fs::path run = made_run();
-  // As a run would leave it that has so large an image.
+  // As a run with so large an image would leave it.
   fs::resize_file(run / "image.png", (16U << 20U) + 1);
   auto result = nlohmann::ordered_json::parse(read(run / "result.json"));
   result["files"]["image.png"]["sha256"] = sim::sha256_of_file(run / "image.png");

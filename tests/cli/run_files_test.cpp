@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a run does not write goes; what is not a run's stays.
+// Files of an earlier run that this run does not write are removed; other files stay.
 TEST(RunFiles, AreASet) {
   const TemporaryDirectory directory;
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
@@ -43,7 +43,7 @@ TEST(RunFiles, AreASet) {
   ASSERT_EQ(marti(run).status, 0);
   EXPECT_EQ(names(), plain);
 
-  // Of a program that named no files in its results.
+  // Results of an older program, which named no files.
   ASSERT_EQ(marti(run + everything).status, 0);
   auto old = nlohmann::ordered_json::parse(read(out / "result.json"));
   old.erase("files");
@@ -51,7 +51,7 @@ TEST(RunFiles, AreASet) {
   ASSERT_EQ(marti(run).status, 0);
   EXPECT_EQ(names(), plain);
 
-  // What has been changed is the user's, and so is what the result does not name, or only claims to name.
+  // Files that were changed, that the result does not name, or only claims to name, are the user's.
   ASSERT_EQ(marti(run + " --set record.heat_maps=true").status, 0);
   write(out / "heat-waits.png", "mine");
   write(out / "timeline.json", "mine");

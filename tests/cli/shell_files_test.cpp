@@ -62,7 +62,7 @@ TEST(BashCompletion, OffersFilesOfTheRightKind) {
   EXPECT_EQ(bash_offers("marti run -o mi", directory.path()), "minerals\n");
 }
 
-// The functions of zsh's completion system, as far as the script uses them, print what they are given.
+// Those functions of zsh's completion system that the script uses print their arguments.
 std::string zsh_offers(const std::string& line) {
   const std::filesystem::path program(MARTI_PROGRAM);
   const Outcome outcome =

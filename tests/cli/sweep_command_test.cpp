@@ -30,7 +30,7 @@ class SweepCommand : public testing::Test {
   const fs::path store = out / "results.sqlite";
 };
 
-// What of the results does not depend on the order in which machines were entered.
+// The part of the results that does not depend on the order in which machines were entered.
 std::string results_by_key(const fs::path& store) {
   return rows_of(store,
                  "SELECT m.key, r.\"end\", r.events, r.hits, r.misses, r.time_idle FROM results r "
@@ -123,7 +123,7 @@ TEST_F(SweepCommand, PointsAsCsvAreThoseOfJson) {
     const std::vector<std::string> row = cells();
     ASSERT_EQ(row.size(), names.size());
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const json value = point.value(names[i], json());  // what has no value is not there
+      const json value = point.value(names[i], json());  // fields without a value are missing
       if (value.is_null()) {
         EXPECT_EQ(row[i], "") << names[i];
       } else {
@@ -146,7 +146,7 @@ TEST_F(SweepCommand, AChangedConfigurationAddsPointsAndKeepsResults) {
   EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM results"), 32);
   EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM points WHERE \"machine.nodes\" = 4"), 0);
   EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM host_machines WHERE session = 2"), 8);
-  // The new ones are what a sweep of their own gives.
+  // The new machines have the results of a separate sweep.
   const fs::path fresh = place("fresh");
   ASSERT_EQ(sweep(config, fresh).status, 0);
   const std::string all = results_by_key(store);
@@ -168,7 +168,7 @@ TEST_F(SweepCommand, ThePlanAloneWritesNothing) {
   EXPECT_EQ(marti("sweep " + quoted(config) + " --plan -o " + quoted(out)).status, 0);
   EXPECT_FALSE(fs::exists(out));
   EXPECT_EQ(files_in(directory.path()), 1U);
-  // It knows what is done, of this plan and of another.
+  // --plan knows which machines are done, of this plan and of another.
   ASSERT_EQ(sweep(config, out).status, 0);
   const std::string before = read(store);
   const Outcome all = sweep(config, out, "--plan");
@@ -264,7 +264,7 @@ TEST_F(SweepCommand, RefusesWhatItCannotDo) {
   EXPECT_EQ(sweep(config, out, "--set cache.sise=1KiB").status, 2);
   EXPECT_EQ(marti("sweep " + quoted(place("none.toml")) + " -o " + quoted(out)).status, 2);
   EXPECT_FALSE(fs::exists(out)) << "none of them came so far";
-  // A machine that has no room in the memory given.
+  // A machine that does not fit in the given memory.
   const Outcome large =
       sweep(config, out, "--set host_machine.memory_limit=1MiB --set machine.clusters=4000");
   EXPECT_EQ(large.status, 2);

@@ -1,4 +1,4 @@
-// A sweep that does not come to its end at once: killed, interrupted, on a full disk, beside another one.
+// A sweep that ends early: killed, interrupted, on a full disk, beside another one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ bool wait_for_results(Started& program, const fs::path& out, long how_many) {
 
 class SweepKilled : public testing::TestWithParam<unsigned> {};
 
-// However often it was killed, at whatever instant, the same command does what is missing and nothing else.
+// However often and whenever it was killed, the same command times only the missing machines.
 TEST_P(SweepKilled, ComesToTheSameEnd) {
   const TemporaryDirectory directory;
   const fs::path config = directory.path() / "sweep.toml";
@@ -64,7 +64,7 @@ TEST_P(SweepKilled, ComesToTheSameEnd) {
   for (int round = 0; round < 6 && !ended; ++round) {
     Started program(arguments(config, out, {"--threads", std::to_string(1 + random() % 4)}),
                     directory.path() / "said");
-    // The first time surely before it ends.
+    // The first kill comes surely before the sweep ends.
     std::this_thread::sleep_for(takes * part(random) * (round == 0 ? 0.4 : 1.0));
     program.send(SIGKILL);
     const int status = program.wait();

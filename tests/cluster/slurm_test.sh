@@ -2,7 +2,7 @@
 # slurm_test.sh PROGRAM SOURCE: runs the job script of docs/sweep-cluster.md under a Slurm of one node that is started
 # for it, as two tasks, and compares what it says with a sweep of one process. Ends everything that it has started.
 set -euo pipefail
-# Starting daemons is for the long run (./test --full), whatever is installed.
+# Daemons are started in the long run only (./test --full), even if Slurm is installed.
 if [ -z "${MARTI_LONG_TESTS-}" ]; then
   echo "MARTI_LONG_TESTS is not set"
   exit 77

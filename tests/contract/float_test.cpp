@@ -1,4 +1,4 @@
-// The kernels in floats: what every structure owes there too, and what floats keep of a closed mesh.
+// The kernels in floats: every structure finds the hits of brute force in floats too.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using accel::Hit;
 using accel::Ray;
 using accel::TriangleSet;
 
-/// Whether the direction has a float of its own.
+/// Whether the direction is in the range of normal floats.
 bool fits(const Ray& ray) {
   const double size =
       std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});

@@ -135,7 +135,7 @@ INSTANTIATE_TEST_SUITE_P(Structures, MixedSoup,
                                            Soup{1e3, true, false}),
                          [](const auto& tested) { return std::to_string(tested.index); });
 
-// One quadric alone, at any scale: from 2^-60 to 2^60 the hits are the scaled ones, bit for bit.
+// One quadric alone: scaling it by 2^-60 to 2^60 scales the hits, bit for bit.
 TEST(MixedContract, ScaleByPowersOfTwoIsExact) {
   const std::vector<scenes::Quadric> unit = hostile_quadrics(0.0, 3);
   const auto unit_set = std::make_shared<const TriangleSet>(std::vector<accel::TriangleCorners>{}, unit);

@@ -1,4 +1,4 @@
-// What every parallel scheme owes, whatever its machine: it takes the log's steps, all of them and once; no
+// The laws that every parallel scheme must obey on every machine: it takes each step of the log once; no
 // ray is lost; its figures add up; it is deterministic.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -36,7 +36,7 @@ MachineConfig machine_of(Random& random, const SchemeCase& scheme) {
   scheme.choose(random, machine);
   test::add_random_second_level(random, machine);
   if (machine.scheme == Scheme::space && machine.l2.sharing == SecondLevel::shared) {
-    machine.l2.sharing = SecondLevel::none;  // it would stand before a memory that is not there
+    machine.l2.sharing = SecondLevel::none;  // there is no shared memory behind it
   }
   return machine;
 }

@@ -1,4 +1,4 @@
-// What every structure owes: the hits of brute force, bit for bit.
+// Every structure must find the hits of brute force, bit for bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ struct Built {
   accel::Mailboxed<TestCounter> mailboxes{};
 };
 
-/// Every kind, in several shapes: the default, as deep as it goes, shallow, one single leaf.
+/// Every kind, in several shapes: the default, the deepest possible, shallow, one single leaf.
 std::vector<Built> build_all(const std::shared_ptr<const TriangleSet>& triangles) {
   std::vector<Built> all;
   const auto add = [&](std::string_view kind, std::uint32_t max_objects, std::uint32_t max_level,
@@ -219,7 +219,7 @@ INSTANTIATE_TEST_SUITE_P(Structures, SoupContract,
                                            Soup{1e3, true}, Soup{1e6, true}),
                          [](const auto& tested) { return std::to_string(tested.index); });
 
-// From 2^-60 to 2^60 nothing changes but the scale: the hits are the scaled ones, bit for bit.
+// Scaling a scene by 2^-60 to 2^60 scales the hits, bit for bit.
 TEST(StructureContract, ScaleByPowersOfTwoIsExact) {
   const std::vector<accel::TriangleCorners> unit = hostile_soup(0.0, 3);
   const auto unit_set = std::make_shared<const TriangleSet>(unit);
@@ -251,7 +251,7 @@ TEST(StructureContract, ScaleByPowersOfTwoIsExact) {
   }
 }
 
-// Degenerate inputs that once broke somebody's structure.
+// Degenerate inputs that are known to break structures.
 class DegenerateScene : public ::testing::TestWithParam<int> {};
 
 std::vector<accel::TriangleCorners> degenerate_scene(int which) {

@@ -43,7 +43,7 @@ void read_sweep(std::string_view text) {
   (void)studies::read_prices(config);
 }
 
-// Calls `read`; whether its input was accepted.
+// Calls `read`; returns whether its input was accepted.
 template <class Read>
 bool accepted(const Read& read) {
   try {

@@ -93,7 +93,7 @@ void check(const scenes::Scene& scene) {
   (void)scenes::describe(scene);
 }
 
-// Every image is one texel: decoding is a library's work, not the loader's.
+// Every image is one texel: a library decodes images, not the loader.
 scenes::Texture decode(std::span<const std::byte> /*file*/, std::string_view name) {
   const std::array<std::uint8_t, 3> colour = {10, 20, 30};
   return scenes::texture_from_samples(name, 1, 1, 3, colour);

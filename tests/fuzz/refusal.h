@@ -12,14 +12,14 @@
 
 namespace marti::fuzz {
 
-/// Bytes of the longest refusal: what is ours of it, with up to three foreign texts of 200 characters, each
+/// Bytes of the longest refusal: its own text and up to three foreign texts of 200 characters, each
 /// of up to six bytes (sim/shown.h).
 inline constexpr std::size_t longest_refusal = 4096;
 
 struct Refusal {
   int line = 0;      ///< 0: set by an option, or a default
   bool set = false;  ///< begins with --set
-  std::string key;   ///< empty where a line of the file has none
+  std::string key;   ///< empty if the line of the file has no key
 };
 
 /// Takes the message apart, and breaks a promise where it is not as it must be. `file` is the
@@ -43,7 +43,7 @@ inline Refusal refusal_of(const std::string& message, std::string_view file) {
     const auto [end, error] = std::from_chars(rest.data() + 1, rest.data() + rest.size(), refusal.line);
     promise(error == std::errc{} && refusal.line > 0, "without a line: " + message);
     rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
-    if (rest.starts_with(':') && !rest.starts_with(": ")) {  // what is no TOML has a column
+    if (rest.starts_with(':') && !rest.starts_with(": ")) {  // errors in TOML have a column
       rest.remove_prefix(std::min(rest.find(": "), rest.size()));
     }
   }

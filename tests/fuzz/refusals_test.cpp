@@ -81,12 +81,12 @@ std::string read_file(const fs::path& path) {
 // Beside the shipped files, of which some name others.
 const std::string config_name = MARTI_SOURCE "/configs/fuzz.toml";
 
-// Bytes that must not come out as they went in.
+// Bytes that must not appear unescaped in a message.
 const std::vector<std::string> foreign = {"\x1b[31mred", "bell\x07",     "line\nbreak",
                                           "\xff\xfe",    "\xe2\x80\xae", std::string(3000, 'w'),
                                           "caf\xc3\xa9", "\xc2\x9b",     "\x7f"};
 
-// As a basic string of TOML, whose escapes name what it may not hold itself.
+// As a basic string of TOML, with escapes for characters that it may not contain.
 std::string toml_text(const std::string& text) { return sim::print_value(ValueType::text, text); }
 
 std::string allowed(const Key& key, Random& random) {
@@ -207,7 +207,7 @@ class Refusals : public testing::Test {
   }
 };
 
-// The keys that a shipped file gives, one a line, and what else is to be given.
+// The keys that a shipped file gives, one a line, and further ones to be given.
 Given as_file(const Command& command, const std::string& shipped,
               const std::vector<std::pair<std::string, std::string>>& more) {
   std::map<std::string, std::string> values;
@@ -259,7 +259,7 @@ TEST_F(Refusals, OfValuesOfTheWrongKind) {
         if (std::find(machines.begin(), machines.end(), command.file) != machines.end()) {
           continue;
         }
-        // A sweep takes long to read where nothing is wrong with it.
+        // A correct sweep takes long to read.
         if (command.file.starts_with("sweep") && i != 2 && i != 4) {
           continue;
         }
@@ -295,7 +295,7 @@ TEST_F(Refusals, OfValuesThatContradictEachOther) {
   EXPECT_GT(refusals, 400);
 }
 
-// What comes out only when a frame is rendered and timed. The last value is the one that is refused.
+// Errors that show only when a frame is rendered and timed. The last value is the one that is refused.
 TEST_F(Refusals, OfWhatIsFoundWhileAMachineRuns) {
   const std::vector<std::vector<std::pair<std::string, std::string>>> cases = {
       {{"scene.source", "\"teapot:0\""}},

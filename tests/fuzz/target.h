@@ -1,5 +1,5 @@
-// What is tried with bytes that nobody has written on purpose. A target returns when they are refused by a
-// UserError or used without harm; everything else that is thrown, and every broken promise, is a finding.
+// The functions that are tried on random bytes. A target returns when the bytes are refused by a UserError or
+// used without harm; any other exception, and every broken promise, is a finding.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ inline void promise(bool kept, const std::string& what) {
 void try_config(std::span<const std::uint8_t> bytes);
 
 /// The bytes as a binary glTF file when they begin like one, else as the JSON part of one whose binary part
-/// is made up. A scene that comes out must be what scenes/scene.h says, at rest and in motion.
+/// is made up. A scene that is loaded must be valid by scenes/scene.h, at rest and in motion.
 void try_gltf(std::span<const std::uint8_t> bytes);
 
 }  // namespace marti::fuzz

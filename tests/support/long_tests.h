@@ -6,7 +6,7 @@
 
 namespace marti::test {
 
-/// By how much such a loop goes on: `usual`, or `in_long_run`.
+/// The step of such a loop: `usual`, or `in_long_run`.
 inline std::size_t stride(std::size_t usual, std::size_t in_long_run = 1) {
   const char* wanted = std::getenv("MARTI_LONG_TESTS");
   return wanted != nullptr && std::string_view(wanted) == "1" ? in_long_run : usual;

@@ -14,7 +14,7 @@
 namespace marti::test {
 
 #if defined(__SANITIZE_ADDRESS__)
-inline constexpr bool memory_can_be_measured = false;  // the sanitizer's own memory drowns it
+inline constexpr bool memory_can_be_measured = false;  // the sanitizer's own memory is far larger
 #else
 inline constexpr bool memory_can_be_measured = true;
 #endif
@@ -31,7 +31,7 @@ inline std::uint64_t own_bytes(const std::string& name) {
 }
 
 /// The most resident bytes at a time that `work` adds, in a process of its own, which ends with it: `work`
-/// must throw nothing. The process that asks must not have started threads that `work` needs (oneTBB's).
+/// must not throw. The calling process must not have started threads that `work` needs (oneTBB's).
 inline std::uint64_t peak_bytes(const std::function<void()>& work) {
   int ends[2] = {-1, -1};
   if (pipe(ends) != 0) {

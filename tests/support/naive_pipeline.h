@@ -115,7 +115,7 @@ class NaivePipeline {
     return ray;
   }
 
-  // ---- What steps cost.
+  // ---- Times of steps.
 
   sim::Ticks records(memory::RecordKind kind, std::uint64_t first, std::uint64_t count) const {
     const memory::Address begin = layout_.address(kind, first);

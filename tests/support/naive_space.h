@@ -106,7 +106,7 @@ class NaiveSpace {
     RayPointer ray;
   };
   struct Waiting {
-    std::optional<std::uint32_t> from;  // nothing: the host
+    std::optional<std::uint32_t> from;  // std::nullopt: the host
     RayPointer ray;
   };
   struct Node {

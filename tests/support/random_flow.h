@@ -8,7 +8,7 @@
 
 namespace marti::test {
 
-/// Any messages and any network.
+/// Random sizes and costs of messages and a random network.
 inline void add_random_messages(Random& random, processors::MachineConfig& machine) {
   machine.messages.ray_bytes = static_cast<std::uint32_t>(pick(random, 1, 80));
   machine.messages.contribution_bytes = static_cast<std::uint32_t>(pick(random, 1, 20));
@@ -39,7 +39,7 @@ inline void make_random_pipeline(Random& random, processors::MachineConfig& mach
       pick(random, 0, 2) == 0 ? 0 : static_cast<std::uint32_t>(pick(random, 1, most_in_flight(pipeline)));
 }
 
-/// Any division of space, small queues and any number of rays in flight.
+/// A random division of space, small queues and any number of rays in flight.
 inline void make_random_space(Random& random, processors::MachineConfig& machine) {
   add_random_messages(random, machine);
   machine.scheme = processors::Scheme::space;

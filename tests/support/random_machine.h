@@ -135,7 +135,7 @@ inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::
   return log;
 }
 
-/// Random figures for what splitting each branch takes; it lists at least what its leaves do.
+/// Random work for splitting each branch; a branch lists at least the primitives of its leaves.
 inline void add_random_work(Random& random, accel::Topology& topology) {
   topology.work.resize(topology.nodes.size());
   std::vector<std::set<std::uint32_t>> below(topology.nodes.size());
@@ -188,7 +188,7 @@ inline void append_walk(Random& random, const accel::Topology& topology, bool ma
   }
 }
 
-/// A log whose rays walk down from the root, with what splitting takes: one a machine can build its tree for.
+/// A log whose rays walk down from the root, with the work of splitting: a machine can build its tree.
 inline processors::WorkLog random_tree_log(Random& random, std::uint32_t width, std::uint32_t height) {
   using processors::make_word;
   using processors::Step;
@@ -224,7 +224,7 @@ inline processors::WorkLog random_tree_log(Random& random, std::uint32_t width, 
   return log;
 }
 
-/// Any way of coming by a tree but having it given.
+/// Any way to build the tree; never a given tree.
 inline processors::BuildConfig random_build(Random& random) {
   processors::BuildConfig build;
   build.sharing = static_cast<processors::Sharing>(pick(random, 1, 3));
@@ -253,7 +253,7 @@ inline std::vector<processors::BranchStart> random_starts(Random& random, const 
   return starts;
 }
 
-/// Tree-PLRU has ways, and here lines too, by the power of two.
+/// Tree-PLRU needs a power of two of ways, and so here of lines.
 inline void make_possible(memory::CacheConfig& cache) {
   if (cache.replacement == memory::Replacement::plru) {
     cache.ways = std::bit_floor(cache.ways);

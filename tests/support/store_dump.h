@@ -36,7 +36,7 @@ inline std::string rows_of(const std::filesystem::path& store, const std::string
   return text;
 }
 
-/// The number that a query gives; -1 when it gives none.
+/// The number that a query gives; -1 if it gives no number.
 inline long number_of(const std::filesystem::path& store, const std::string& query) {
   const std::string text = rows_of(store, query);
   return text.size() > 1 && text[0] == '1' ? std::stol(text.substr(1)) : -1;

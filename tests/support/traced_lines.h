@@ -1,4 +1,4 @@
-// The references of a log, one after the other, worked out from the rules alone: what nodes ask their caches.
+// The references that nodes make to their caches for a log, in order, worked out from the rules alone.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The paper's arguments about parallel machines, as directions: the shipped machines on a small image.
+// The paper's arguments about parallel machines, of which only directions are tested, on a small image.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -48,7 +48,7 @@ TEST(Arguments, NaiveSharedMemorySaturates) {
   const std::vector<ScalingPoint> naive = points_of(points(), "naive_pixel");
   ASSERT_EQ(naive.size(), 4U);
   EXPECT_GT(naive.back().shared_use.value(), 0.99);
-  // Sixteen times the nodes, and nothing gained.
+  // Sixteen times as many nodes gain nothing.
   EXPECT_LT(naive[3].scaling.speed_up.value(), 1.05 * naive[1].scaling.speed_up.value());
   EXPECT_LT(naive.back().scaling.speed_up.value(), 3.0);
 }
@@ -78,7 +78,7 @@ TEST(Arguments, APipelineIsLimitedByItsSlowestStage) {
       EXPECT_LE(point.busy[stage], point.busy[point.slowest()]);
     }
   }
-  // Taking a node from the least busy stage and giving it to the slowest helps, as long as one is.
+  // Moving a node from the least busy stage to the slowest helps, as long as one stage is the slowest.
   const StagePoint& first = stages().front();
   EXPECT_GT(first.busy[first.slowest()], 0.8);
   EXPECT_LT(stages()[1].end, first.end);

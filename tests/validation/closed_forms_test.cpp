@@ -1,4 +1,4 @@
-// Machines for which queueing theory knows the answer: N nodes that go round between computing and one bus.
+// Machines for which queueing theory knows the answer: N nodes that alternate between computing and one bus.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ TEST(ClosedForms, DeterministicNodesOnOneBusAreExact) {
   bool below = false;
   bool at = false;
   bool above = false;
-  // Of the banks' times one that makes N* a whole number.
+  // A time of the banks that makes N* a whole number.
   const std::int64_t cycles = Cyclic(1, 1, 1).think / MachineConfig().clock.period();
   std::int64_t whole = 5;
   while (cycles % (whole + 2) != 0) {
@@ -36,8 +36,8 @@ TEST(ClosedForms, DeterministicNodesOnOneBusAreExact) {
       const MachineResult result = replay(cyclic.log, cyclic.machine);
       ASSERT_EQ(result.unloaded_miss - cyclic.machine.interconnect.clock.cycles(3), s)
           << "a material is one beat, an interleave four";
-      // Everybody asks at Z; so node i waits for i others. Then the bus is free again in time, or every read
-      // waits until the bus has been round all the others.
+      // All nodes ask at Z, so node i waits for i others. In later rounds the bus is free in time, or every
+      // read waits until the bus has served all the others.
       const sim::Ticks each = std::max<sim::Ticks>(0, n * s - s - z);
       (n * s < z + s ? below : (n * s == z + s ? at : above)) = true;
       for (std::uint32_t i = 0; i < nodes; ++i) {
@@ -56,7 +56,7 @@ TEST(ClosedForms, DeterministicNodesOnOneBusAreExact) {
   EXPECT_TRUE(at) << "no N is N* exactly";
 }
 
-// The bounds know the saturated bus: what is missing is the first round and the lights at the end.
+// The bounds are near a saturated bus: they leave out the first round and the light load at the end.
 TEST(ClosedForms, ASaturatedBusIsAtItsBound) {
   const Cyclic cyclic(64, 400, 4);
   const MachineResult result = replay(cyclic.log, cyclic.machine);
@@ -159,7 +159,7 @@ struct Estimate {
   double error = 0.0;  ///< standard error of the mean
 };
 
-// Runs that have nothing in common but their machine.
+// Independent runs of the same machine.
 Estimate estimate(const Terminals::Config& config, int runs, std::int64_t reads) {
   std::vector<double> throughputs;
   for (int run = 0; run < runs; ++run) {
@@ -175,7 +175,7 @@ Estimate estimate(const Terminals::Config& config, int runs, std::int64_t reads)
   return {mean, std::sqrt(squares / (n - 1.0) / n)};
 }
 
-// M/M/1//N. Ticks are a ten-thousandth of a service, so rounding down takes half of that of a percent away.
+// M/M/1//N. A tick is a ten-thousandth of a service, so rounding down takes half a tick, 0.005 %.
 TEST(ClosedForms, RandomNodesOnOneBusAreAMachineRepairman) {
   for (const std::uint32_t nodes : {1U, 2U, 5U, 9U, 16U, 40U}) {
     Terminals::Config config;
@@ -190,7 +190,7 @@ TEST(ClosedForms, RandomNodesOnOneBusAreAMachineRepairman) {
 }
 
 // A split bus with exponential data in front of banks that take a fixed time: only the banks are not
-// exponential, which mean value analysis does not know.
+// exponential, an error of mean value analysis.
 TEST(ClosedForms, BusAndBanksAreNearMeanValueAnalysis) {
   for (const std::uint32_t nodes : {1U, 4U, 8U, 12U, 20U, 40U}) {
     Terminals::Config config;

@@ -31,7 +31,7 @@ TEST(UnitLength, CellsAndNodesAreThoseOfIsotropicRays) {
   }
 }
 
-// A grid's step: the paper's two additions and two comparisons, and what grid.h does beside them.
+// A grid's step: the paper's two additions and two comparisons, and the further operations of grid.h.
 TEST(UnitLength, AGridStepIsNearlyThePapers) {
   const UnitLengthRow row = measure_unit_lengths(6, rays).back();
   const auto steps = static_cast<double>(row.cells - rays);  // the last cell of a ray has none
@@ -54,8 +54,8 @@ TEST(UnitLength, AnOctreesBranchTakesThreeAverages) {
   EXPECT_LE(static_cast<double>(row.full.add), 3.0 * branches + static_cast<double>(row.full_leaves));
 }
 
-// A ray through a tree that is deep along a surface only meets as many leaves more for each level more, so
-// per unit length fewer and fewer.
+// A ray through a tree that is deep along a surface only meets a constant number of further leaves with each
+// further level, so fewer and fewer per unit length.
 TEST(UnitLength, ATreeAlongASurfaceTakesLeavesInProportionToItsDepth) {
   const std::vector<UnitLengthRow> rows = measure_unit_lengths(7, 1500);
   const auto leaves = [&](std::uint32_t depth) {

@@ -39,9 +39,9 @@ double deep_share(const Octree& octree) {
 // The pot of 9,120 triangles, at most 9 in a leaf, 12 levels, tight root: exact clipping gives 27,177 nodes,
 // 42.0 % of them in levels 8 to 12. We get 27,137 and 41.9 %. The difference is how corners that lie exactly
 // in a dyadic plane of the tight box are counted: with the tight box itself and a closed test without any
-// margin all of them fall to both sides (27,449 nodes, 42.1 %); with an open test none of those that
-// merely touch (23,937, 39.9 %). Our root is enlarged by a margin of its own, which leaves only
-// the central planes in place. There they touch exactly, and the margin of the cells adds nothing to that
+// margin all of them are listed on both sides (27,449 nodes, 42.1 %); with an open test those that
+// merely touch are not (23,937, 39.9 %). Our root is enlarged by a margin of its own, which leaves only
+// the central planes in place. There corners touch exactly, and the margin of the cells changes nothing
 // (27,137 with and without it).
 TEST(Structures, TeapotOctreeHasTheSizeOfExactClipping) {
   const auto pot = triangles_of("teapot:12:pot");

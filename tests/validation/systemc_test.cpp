@@ -45,7 +45,7 @@ const Compared& compared() {
   return all;
 }
 
-// Each change of one figure of a machine whose banks are used is found.
+// The comparison finds each change of one figure of a machine whose banks are used.
 void expect_changes_found(const MachineResult& replay, const MachineFigures& systemc) {
   const std::array<std::function<void(MachineFigures&)>, 14> changes = {
       [](MachineFigures& m) { ++m.end; },
@@ -91,7 +91,7 @@ TEST(SystemC, EqualsTheReplayInEveryFigure) {
   EXPECT_NE(with_banks, nullptr);
 }
 
-// No use in being equal where nothing happens.
+// The comparison is meaningful only if the machines do something.
 TEST(SystemC, TheMachinesDoWhatTheModelCanDo) {
   const Compared& all = compared();
   const auto expect_some = [&all](const char* what, const auto& does) {

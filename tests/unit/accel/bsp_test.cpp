@@ -156,7 +156,7 @@ TEST(Bsp, PushedPointsFindTheLeavesOnTheRay) {
   EXPECT_GT(visited, 20000U);
 }
 
-// Both walks meet the same leaves, but for those that a ray only touches.
+// Both walks meet the same leaves, except those that a ray only touches.
 TEST(Bsp, BothWalksVisitTheSameLeaves) {
   const auto triangles = set_of(hostile_soup(0.0, 4));
   const Bsp recursive = Bsp::build(triangles, {3, 6});
@@ -179,7 +179,7 @@ TEST(Bsp, BothWalksVisitTheSameLeaves) {
   EXPECT_LE(different, 20U);
 }
 
-// The paper's statement for a step, and what this walk does beside it (bsp_push.h says why).
+// The paper's statement for a step, and the further operations of this walk (bsp_push.h says why).
 TEST(Bsp, ALeafIsLeftBySixDivisionsSevenAdditionsAndFiveComparisons) {
   struct Marks {
     std::vector<accel::OperationCounts> at_leaf;
@@ -203,7 +203,7 @@ TEST(Bsp, ALeafIsLeftBySixDivisionsSevenAdditionsAndFiveComparisons) {
       at_leaf.push_back(accel::operation_counts());
     }
   };
-  // Points list where they are and are never hit, so that leaves have tests but no hits: leave those out.
+  // Triangles without area are listed but never hit, so that leaves have tests but no hits: leave those out.
   std::vector<TriangleCorners> points;
   for (const double x : {0.0, 1.0}) {
     for (const double y : {0.0, 1.0}) {
@@ -227,7 +227,7 @@ TEST(Bsp, ALeafIsLeftBySixDivisionsSevenAdditionsAndFiveComparisons) {
   }
 }
 
-// Where both trees split all they can, three levels of one are a level of the other, list for list.
+// Where both trees split as far as possible, three levels of the BSP tree equal one of the octree.
 TEST(Bsp, ThreeLevelsMakeOneOfTheOctree) {
   const auto triangles = set_of(hostile_soup(0.0, 3));
   const Bsp bsp = Bsp::build(triangles, {1, 4});

@@ -1,4 +1,4 @@
-// Builders stay within their budget, by the measure of the operating system, and say what to change.
+// Builders stay within their memory budget, as the operating system measures it, and say what to change.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -56,14 +56,14 @@ TEST_P(BuildMemory, NeverExceedsTheBudget) {
   EXPECT_NE(refusal.find("structure."), std::string::npos) << refusal;
   EXPECT_NE(refusal.find("more than 1 MiB"), std::string::npos) << refusal;
   for (const std::uint64_t limit : {1 * mebibyte, 6 * mebibyte}) {
-    // Pages, the allocator's own, and what is counted only every so many nodes.
+    // Room for pages, the allocator's own memory, and nodes made between two checks.
     EXPECT_LT(test::peak_bytes([&] { (void)build(limit); }), limit + 3 * mebibyte) << limit;
   }
-  // The tree is one that the limits refuse, and it is built where it may be.
+  // The limits refuse this tree; a larger limit allows it.
   EXPECT_GT(test::peak_bytes([&] { (void)build(2048 * mebibyte); }), 9 * mebibyte);
 }
 
-// What is said of a structure that is built.
+// The message about a structure that is built.
 TEST_P(BuildMemory, OfABuiltStructureIsKnown) {
   const auto triangles = scattered(500);
   const auto structure = make_structure(GetParam(), triangles, options_of(2048 * mebibyte));

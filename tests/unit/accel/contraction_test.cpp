@@ -1,6 +1,6 @@
 // Fails when the compiler contracts products into fused multiply-adds. This file is compiled with the
 // project's own options plus, on x86-64, -mfma: without it the machine has no fused instruction and a lost
-// -ffp-contract=off would go unnoticed until somebody builds for another machine.
+// -ffp-contract=off would go unnoticed until marti is built for another machine.
 #include <gtest/gtest.h>
 
 #include <cmath>

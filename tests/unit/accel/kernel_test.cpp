@@ -170,7 +170,7 @@ TEST(Kernel, HitsLieOnTheTriangleEvenEdgeOn) {
     }
     const glm::dvec3 p = a + random.unit() * (b - a);
     const glm::dvec3 q = b + random.unit() * (c - b);
-    // From a point in the triangle's plane, nearly.
+    // From a point that is nearly in the triangle's plane.
     Ray ray;
     ray.origin = p + random.between(1.0, 3.0) * (p - q) +
                  std::ldexp(1.0, -static_cast<int>(random.below(60))) * random.direction();

@@ -165,14 +165,14 @@ TEST(LazyTree, CountsNodesAndBytes) {
   EXPECT_EQ(next.all.nodes(), start.all.nodes() + 8);
   EXPECT_EQ(next.all.branches, start.all.branches + 1);
   EXPECT_GT(next.released_list_bytes, 4U * 8U);
-  // What is listed: what was, without the list released, with the lists of the eight children.
+  // The entries are those before, minus the released list, plus the lists of the eight children.
   EXPECT_GE(next.list_bytes, start.list_bytes);
   lazy.expand();
   EXPECT_EQ(lazy.state().list_bytes, 4 * eager.topology().entries.size());
   EXPECT_EQ(lazy.state().all.nodes(), eager.topology().nodes.size());
 }
 
-// Behind the seam it takes the place of any structure.
+// It can be used through the interface of all structures.
 TEST(LazyTree, IsAStructure) {
   const auto triangles = set_of(hostile_soup(0.0, 4));
   LazyOctreeOptions options;
@@ -191,7 +191,7 @@ TEST(LazyTree, IsAStructure) {
   EXPECT_NE(test::user_error_of([&] { (void)lazy->topology(); }).find("work log"), std::string::npos);
 }
 
-// It never differs from the eager tree in silence: it says that there is a limit, to whoever comes to it.
+// It never differs silently from the eager tree: a ray that comes to the limit ends in an error.
 TEST(LazyTree, RefusesToBeCut) {
   const auto triangles = set_of(hostile_soup(0.0, 5));
   LazyOctreeOptions options;

@@ -78,7 +78,7 @@ TEST(OctreeBuilding, DoesNotDependOnThreads) {
   }
 }
 
-// A tree built to a level is the top of the whole tree, and what was left unsplit is what the whole splits.
+// A tree built to a level is the top of the whole tree, which splits exactly the nodes left unsplit.
 TEST(OctreeBuilding, StopsAtALevel) {
   const auto triangles = set_of(hostile_soup(0.0, 3));
   const OctreeOptions options{4, 8};

@@ -83,7 +83,7 @@ std::vector<scenes::Quadric> some_quadrics(std::uint64_t seed) {
   return quadrics;
 }
 
-/// What every update owes, beside the tree.
+/// What every update must fulfil, besides giving the right tree.
 void check_report(const Octree& before, const Octree& fresh, const OctreeUpdate& update) {
   const accel::Topology& topology = fresh.topology();
   RC_ASSERT(update.nodes.size() == topology.nodes.size());
@@ -94,7 +94,7 @@ void check_report(const Octree& before, const Octree& fresh, const OctreeUpdate&
     const accel::TopologyNode& node = topology.nodes[n];
     const accel::SplitWork& done = update.work[n];
     const accel::SplitWork& fresh_work = topology.work[n];
-    // The same cells: the children of what goes on go on with its children, in their order.
+    // The same cells: the children of a kept node keep its children, in their order.
     const std::uint32_t was = update.was[n];
     RC_ASSERT((update.nodes[n] == NodeUpdate::made) == (was == accel::no_old_node && node.leaf));
     const bool goes_on = !node.leaf && update.nodes[n] != NodeUpdate::split;
@@ -106,7 +106,7 @@ void check_report(const Octree& before, const Octree& fresh, const OctreeUpdate&
       case NodeUpdate::kept:
         // A full leaf of a tree that was cut is tried anew, and may turn out to be inseparable.
         RC_ASSERT(((done.listed == 0U && done.overlaps == 0U) || (node.leaf && before.cut())));
-        // Where max_entries cuts a tree, what stays undivided depends on all that comes before it.
+        // Where max_entries cuts a tree, the nodes left undivided depend on all nodes before them.
         for (std::uint32_t child = 0; !node.leaf && child < 8; ++child) {
           RC_ASSERT(update.nodes[node.first + child] == NodeUpdate::kept || before.cut() || update.build.cut);
         }
@@ -173,7 +173,7 @@ RC_GTEST_PROP(OctreeUpdating, GivesTheTreeOfAFreshBuild, ()) {
   }
 }
 
-// One gear of eight moves: what is far from it is kept, and little is sorted.
+// One gear of eight moves: nodes far from it are kept, and few primitives are sorted.
 TEST(OctreeUpdating, KeepsWhatIsFarFromTheMovedTriangles) {
   const scenes::Scene scene = scenes::make_procedural("gears:2");
   const auto before = std::make_shared<const TriangleSet>(scene);

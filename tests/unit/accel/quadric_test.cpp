@@ -44,8 +44,8 @@ WideVector at(const WideVector& a, const WideVector& b, Wide s) {
   return {a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
 }
 
-/// What the exact surface and ray have to say: the hits in order, and how far the point at a parameter is
-/// from the surface.
+/// The exact hits of a ray on a surface in order, and the distance of the point at a parameter from the
+/// surface.
 class Oracle {
  public:
   Oracle(const QuadricShape& shape, const Ray& ray) : shape_(shape), direction_(wide(ray.direction)) {
@@ -78,7 +78,7 @@ class Oracle {
 
   [[nodiscard]] const std::vector<Wide>& hits() const { return hits_; }
 
-  /// Of the point at t from the surface, ends included; an upper bound.
+  /// Distance of the point at t from the surface, ends included; an upper bound.
   [[nodiscard]] double distance(double t) const {
     const WideVector p = at(from_, direction_, t);
     const Wide h = dot(p, axis_);
@@ -164,8 +164,8 @@ TEST(QuadricKernel, FindsTheExactRoots) {
     for (std::uint32_t id = 0; id < set.size(); id += 3) {
       const QuadricShape& shape = set.quadric(id);
       const Hit hit = test_one(ray, shape);
-      // The surface a little larger and a little smaller, the ray's limits as well: where all agree, nothing
-      // is in doubt.
+      // The surface a little larger and a little smaller, the ray's limits as well: where all agree, the
+      // exact answer is certain.
       const double doubt = 0x1p-40 * shape.reach + 0x1p-46 * travelled(shape, ray);
       const double speed = glm::length(ray.direction);
       const auto varied = [&](double by) {

@@ -1,5 +1,5 @@
 // The bus that is granted by round robin or fixed priority: by hand, against the bus that serves first come
-// first served, and against what no arbitration may change.
+// first served, and against laws that hold for every arbitration.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -26,7 +26,7 @@ struct Issue {
   bool write = false;
 };
 
-// Issues given transactions at given times and remembers what came of them.
+// Issues given transactions at given times and records their results.
 class Ports final : public InterconnectClient, public sim::EventHandler {
  public:
   Ports(const InterconnectConfig& config, const BankConfig& banks, std::vector<Issue> issues,
@@ -268,8 +268,8 @@ RC_GTEST_PROP(Arbitration, EqualsFirstComeFirstServedWhenNeverTwoWait, (std::uin
 }
 
 RC_GTEST_PROP(Arbitration, KeepsTheBusAsBusyInAnyOrder, (std::uint64_t seed)) {
-  // Writes hold the bus for a time that does not depend on their order: a bus that never rests while somebody
-  // waits is then busy in the same intervals, whomever it serves.
+  // Writes hold the bus for a time that does not depend on their order: a bus that never rests while a
+  // request waits is then busy in the same intervals, whichever request it serves.
   for (const bool writes_only : {true, false}) {
     Traffic traffic = random_traffic(seed, writes_only);
     if (writes_only) {
@@ -310,7 +310,7 @@ RC_GTEST_PROP(Arbitration, KeepsTheBusAsBusyInAnyOrder, (std::uint64_t seed)) {
   }
 }
 
-// What waits for the bus, in one long list.
+// The requests that wait for the bus, in one long list.
 struct Waiting {
   sim::Ticks at = 0;
   Transaction transaction;

@@ -1,4 +1,4 @@
-// The cache model against a second one that knows nothing of tags, hashes or arrays of caches.
+// The cache model against a second one without tags, hashes or arrays of caches.
 #include "memory/cache.h"
 
 #include <gtest/gtest.h>

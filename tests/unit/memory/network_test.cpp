@@ -1,5 +1,5 @@
-// Networks against formulas, against a second implementation that walks coordinates, and against what every
-// network must keep: messages, time and links add up.
+// Networks against formulas, against a second implementation that walks coordinates, and against laws of
+// every network: messages, time and links add up.
 #include "memory/network.h"
 
 #include <gtest/gtest.h>

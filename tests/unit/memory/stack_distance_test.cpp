@@ -162,7 +162,7 @@ RC_GTEST_PROP(AllWays, MissesAreThoseOfEveryCacheSimulated, (std::uint64_t seed)
     RC_ASSERT(histogram.misses(0) == static_cast<std::int64_t>(stream.size()));
     for (std::uint32_t ways = 1; ways <= most; ways += 1 + ways / 4) {
       RC_ASSERT(histogram.misses(ways) == simulate(stream, *sets, ways));
-      // Inclusion: what fewer ways hold, more hold, too.
+      // Inclusion: more ways hold all lines that fewer ways hold.
       RC_ASSERT(histogram.misses(ways) <= histogram.misses(ways - 1));
     }
     ++sets;

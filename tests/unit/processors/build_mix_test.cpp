@@ -1,4 +1,4 @@
-// What splitting a node costs, against a new measurement; and real frames on machines that build their tree.
+// The cost of splitting a node, against a new measurement; and real frames on machines that build their tree.
 #include "processors/cost/build_mix.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(BuildMixes, TheTableIsWhatTheBuilderDoes) {
   expect_close("listed", measured.mixes.listed, build_mixes().listed);
   expect_close("overlap", measured.mixes.overlap, build_mixes().overlap);
   expect_close("child", measured.mixes.child, build_mixes().child);
-  // The counting split does what the builder's did.
+  // The counting split equals the builder's.
   const accel::Topology& topology = octree.topology();
   std::uint64_t listed = 0;
   std::uint64_t overlaps = 0;
@@ -60,7 +60,7 @@ TEST(BuildMixes, UnitCostsAddUpByHand) {
   EXPECT_EQ(cycles.publish, 3);
 }
 
-// The list that the timing world puts together from the leaves is the one that the builder split.
+// The list that the simulated machine puts together from the leaves is the one that the builder split.
 TEST(DynamicFrames, ABranchListedWhatItsLeavesDo) {
   for (const char* kind : {"octree", "bsp"}) {
     const test::Built built(scenes::make_procedural("gears:2"), kind);
@@ -100,7 +100,7 @@ TEST(DynamicFrames, WhatTheRaysVisitIsBuiltAndNothingElse) {
       EXPECT_EQ(result.build.start_up, 0);
       EXPECT_GT(result.time()[static_cast<std::size_t>(Activity::building)], 0);
     }
-    // Private trees: at least what is needed by somebody, at most that by everybody.
+    // Private trees: at least the branches that any node needs, at most these once for each node.
     machine.nodes = 5;
     machine.build.sharing = Sharing::private_trees;
     const MachineResult own = replay(log, machine);

@@ -1,5 +1,5 @@
-// Second-level caches, classes of misses, sharing and attribution against what follows from the log's
-// references one by one, and the nodes that count against those that do not.
+// Second-level caches, classes of misses, sharing and attribution against counts made from the log's
+// references one by one, and nodes that count against nodes that do not.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 

@@ -139,7 +139,7 @@ RC_GTEST_PROP(Contexts, ScalingEveryDurationScalesEveryTimeExactly, (std::uint64
   }
 }
 
-/// Adds up what it is told; pieces must follow each other.
+/// Adds up the observed pieces, which must follow each other.
 struct Watcher final : Observer {
   explicit Watcher(std::uint32_t nodes) : told(nodes), time(nodes), misses(nodes), packet(nodes) {}
 
@@ -199,7 +199,7 @@ RC_GTEST_PROP(Contexts, WhoWatchesIsToldAllOfIt, (std::uint64_t seed)) {
   RC_ASSERT(!::testing::Test::HasFailure());
 }
 
-// That the properties above see every kind of event that is counted.
+// Checks that the properties above meet every kind of event that is counted.
 TEST(Contexts, RandomMachinesDoAllThereIsToDo) {
   ContextCounts sum;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {

@@ -1,5 +1,5 @@
 // Building the tree on the simulated machine, against a second way of running it, the static machine, closed
-// forms, and what the log needs.
+// forms, and the branches that the log needs.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -71,7 +71,7 @@ RC_GTEST_PROP(Dynamic, TheOrderOfTheFirstEventsDoesNotMatter, (std::uint64_t see
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 
-// Everything but the build, which a machine with a given tree does not report.
+// All results except the build, which a machine with a given tree does not report.
 RC_GTEST_PROP(Dynamic, ATreeThatIsKeptIsATreeThatIsGiven, (std::uint64_t seed)) {
   test::Random random(seed);
   Case c = random_case(random);

@@ -1,4 +1,4 @@
-// Replaying some packets only, and with relaxed time: exact at their limits, lawful everywhere.
+// Replaying only some packets, and with relaxed time: exact at their limits; all laws hold.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -52,7 +52,7 @@ RC_GTEST_PROP(Inexact, ASampleOfAllPacketsIsExact, (std::uint64_t seed)) {
     const MachineResult sampled = replay(log, machine, {.sample = &sample});
     expect_equal(exact, sampled);
     RC_ASSERT(!::testing::Test::HasFatalFailure());
-    // The packets' figures are all that the nodes did.
+    // The packets' figures add up to those of the nodes.
     PacketFigures sum;
     for (const PacketFigures& figures : sampled.packet_figures) {
       sum.time += figures.time;
@@ -88,7 +88,7 @@ RC_GTEST_PROP(Inexact, ASampleIsAFrameOfItsPackets, (std::uint64_t seed)) {
   const MachineResult second = replay(log, machine, {.sample = &warm});
   RC_ASSERT(first.packets == chosen.size());
   RC_ASSERT(first.pixels == second.pixels);
-  // What is referred to does not depend on warming.
+  // The references do not depend on warming.
   RC_ASSERT(first.references().references() == second.references().references());
   RC_ASSERT(first.steps().tests == second.steps().tests);
 }
@@ -150,7 +150,7 @@ RC_GTEST_PROP(Inexact, AQuantumOfOneTickIsExact, (std::uint64_t seed)) {
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 
-// The replay itself checks the laws of what it finds.
+// The replay itself checks the laws of its result.
 RC_GTEST_PROP(Inexact, AnyQuantumObeysTheLaws, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = small_log(random);
@@ -163,7 +163,7 @@ RC_GTEST_PROP(Inexact, AnyQuantumObeysTheLaws, (std::uint64_t seed)) {
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 
-// A node alone waits for nobody.
+// A single node never waits for another.
 RC_GTEST_PROP(Inexact, OneNodeIsExactWithAnyQuantum, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = small_log(random);

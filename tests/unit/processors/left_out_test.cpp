@@ -1,4 +1,4 @@
-// What a replay leaves out changes nothing: against the same replay with everything kept.
+// Work that a replay leaves out does not change its result: against the same replay with everything kept.
 #include "processors/walk/left_out.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ RC_GTEST_PROP(LeftOut, ChangesNoResult, (std::uint64_t seed)) {
   RC_CLASSIFY(less.left_out.lookups && !less.l2.caches.empty());
 }
 
-// The decision about caches is exact: with a line more than is proved to fit, some order of references
+// The decision about caches is exact: with one line more than is proved to fit, some order of references
 // replaces a line.
 RC_GTEST_PROP(LeftOut, CachesThatHoldAllReplaceNothingAndOthersDo, (std::uint64_t seed)) {
   test::Random random(seed);

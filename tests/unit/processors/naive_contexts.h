@@ -120,7 +120,7 @@ class NaiveContexts final : public sim::EventHandler {
     std::vector<Context> contexts;
     std::optional<std::uint32_t> last;  // context worked on last
     bool waiting = true;
-    bool stalled = false;  // for a write of which it is not known when it is done
+    bool stalled = false;  // waits for a write whose end is not known yet
     sim::Ticks since = 0;
     sim::Ticks time = 0;
     std::uint32_t finished = 0;
@@ -329,7 +329,7 @@ class NaiveContexts final : public sim::EventHandler {
     if (!flight) {
       spend(node, Activity::dispatch_wait, engine_.now() - node.since);
     } else {
-      // Where each phase lies, were they in this order; the node waited from `since` on.
+      // Where each phase would be in this order; the node waited from `since` on.
       sim::Ticks at = flight->done - flight->service.wait_interconnect - flight->service.transfer -
                       flight->service.wait_bank - flight->service.bank;
       const auto phase = [&](Activity activity, sim::Ticks length) {

@@ -1,4 +1,4 @@
-// Watching a replay: everything is told once, and nothing changes.
+// An observed replay: every event is observed once, and the result does not change.
 #include "processors/walk/observer.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t index_of(NodeState state) { return static_cast<std::size_t>(state); }
 
-/// Adds up all it is told, and notes what contradicts the interface.
+/// Adds up all that it observes, and records contradictions to the interface.
 class Recorder final : public Observer {
  public:
   void begin(const ReplayInput& input) override {

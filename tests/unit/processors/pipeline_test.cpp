@@ -119,7 +119,7 @@ Path path_of(const WorkLog& log, const LoggedRay& ray) {
   return path;
 }
 
-// With one ray in flight nothing overlaps but what is under way to the host: the frame is the sum of all
+// With one ray in flight only messages to the host overlap with other work: the frame is the sum of all
 // steps, each way over an ideal network, and the cycles of each message.
 RC_GTEST_PROP(Pipeline, OneRayAtATimeTakesTheSumOfItsParts, (std::uint64_t seed)) {
   Random random(seed);

@@ -124,8 +124,8 @@ INSTANTIATE_TEST_SUITE_P(Scales, Leaving,
                          testing::Values(std::tuple(1.0, 0.0), std::tuple(1e-5, 0.0), std::tuple(1e5, 0.0),
                                          std::tuple(1.0, 1e4), std::tuple(1.0, 1e5), std::tuple(1e-5, 1.0)));
 
-// The same in floats, whose kernel may err by more than the margin: how rare that is, and that floats' own
-// spacing is what decides.
+// Leaving rays in floats, whose kernel may err by more than the margin: how rare that is, and that the
+// spacing of floats decides it.
 TEST(Leaving, InFloatsHardlyAnyRayMeetsTheSurfaceThatItLeaves) {
   const test::Built built(icosphere(3, 1.0, 0.0), "octree");
   std::mt19937_64 random(9);

@@ -116,7 +116,7 @@ TEST(WorkLog, CapacityEndsAtTwentyEightBits) {
   EXPECT_THROW(check_log_capacity(1, 1, 1, most + 1), sim::UserError);
 }
 
-// Whatever is recorded comes out word for word and pixel for pixel, row after row from the same recorder.
+// The log holds what was recorded word for word and pixel for pixel, row after row from the same recorder.
 RC_GTEST_PROP(RowRecorder, WritesWhatItIsTold, ()) {
   RowRecorder recorder;
   const auto rows = *rc::gen::inRange(1, 4);

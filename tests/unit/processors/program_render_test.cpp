@@ -1,5 +1,5 @@
 // Whole frames: the same bytes on any number of threads and with any structure, and logs that keep their
-// rules and say what happened.
+// rules and agree with the counts.
 #include <cmath>
 #include <limits>
 
@@ -94,7 +94,7 @@ void check_order(std::span<const std::uint32_t> words, const RenderOptions& opti
   }
 }
 
-/// Counts by itself what the log should say.
+/// Counts independently what the log should hold.
 struct CountingVisitor : NullRecorder {
   LogTotals totals;
   void branch(std::uint32_t /*node*/) { ++totals.branches; }
@@ -171,7 +171,7 @@ TEST_P(Frames, ShrinkWithDepthAndLeastWeight) {
 
 INSTANTIATE_TEST_SUITE_P(Procedural, Frames, testing::Values("teapot:4", "gears:2", "tetra:4"));
 
-/// Anything at all: triangles about the origin, with every kind of material and light.
+/// A random scene: triangles about the origin, with every kind of material and light.
 scenes::Scene random_scene() {
   const auto number = [](int low, int high) { return *rc::gen::inRange(low * 100, high * 100 + 1) / 100.0; };
   const auto point = [&](int size) {
@@ -267,7 +267,7 @@ TEST(Render, AnEmptySceneIsAllBackground) {
   }
 }
 
-// The same image and rays; of the tests exactly those that repeat one of the same ray are left out.
+// Mailboxes keep image and rays, and leave out exactly the tests that repeat one of the same ray.
 TEST(Render, MailboxesLeaveOutWhatTheRayHasTested) {
   for (const std::string_view kind : {"octree", "bsp", "grid", "none"}) {
     const test::Built built(scenes::make_procedural("gears:1"), kind);

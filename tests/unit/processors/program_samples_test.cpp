@@ -1,4 +1,4 @@
-// Several samples a pixel: where they lie, what they weigh, what the log says of them, and that every scheme
+// Several samples a pixel: their places, their weights, their words in the log, and that every scheme
 // times such logs.
 #include <gtest/gtest.h>
 
@@ -221,7 +221,7 @@ TEST(Samples, AreRefusedOutOfRange) {
   }
 }
 
-/// Every scheme, and every way by which the image scheme comes by its tree, times a log of several samples.
+/// Every scheme, and the image scheme with every way to build its tree, times a log of several samples.
 TEST(Samples, EverySchemeTakesAllStepsOfTheLog) {
   const Built built(scenes::make_procedural("balls:1"), "octree");
   const RenderOptions options{.width = 12, .height = 10, .max_depth = 3, .samples = 4, .record = true};

@@ -44,7 +44,7 @@ inline void add_quad(scenes::Scene& scene, const glm::dvec3& a, const glm::dvec3
 inline void add_floor(scenes::Scene& scene, double z, double half, std::uint32_t material) {
   add_quad(scene, {-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}, material);
 }
-/// The same facing down.
+/// The square |x|, |y| <= half at height z, facing down.
 inline void add_ceiling(scenes::Scene& scene, double z, double half, std::uint32_t material) {
   add_quad(scene, {-half, half, z}, {half, half, z}, {half, -half, z}, {-half, -half, z}, material);
 }

@@ -1,4 +1,4 @@
-// The rays of a pixel: whose words are whose, and who made whom.
+// The rays of a pixel: the words of each ray, and its parent.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 

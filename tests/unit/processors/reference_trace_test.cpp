@@ -13,7 +13,7 @@
 namespace marti::processors {
 namespace {
 
-/// A cache as one would draw it: for each set a list, the next victim last.
+/// A plain cache: for each set a list, the next victim last.
 class PlainCache {
  public:
   PlainCache(const memory::CacheConfig& config, std::uint64_t size)

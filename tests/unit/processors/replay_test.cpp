@@ -1,4 +1,4 @@
-// The timing world against closed forms, conservation laws and a second way of running it.
+// The replay against closed forms, conservation laws and a second way of running it.
 #include "processors/replay/replay.h"
 #include "processors/replay/host_bytes.h"
 
@@ -48,7 +48,7 @@ RC_GTEST_PROP(Replay, AStrippedLogGivesTheSameResult, (std::uint64_t seed)) {
   const MachineResult whole = replay(log, machine);
   test::expect_equal(whole, replay(log, machine, {.stripped = stripped.get()}));
   RC_ASSERT(!::testing::Test::HasFatalFailure());
-  // Other ways, clocks and machines around the caches share it.
+  // Machines with other ways, clocks and memories share the stripped log.
   MachineConfig other = test::random_machine(random);
   other.layout = machine.layout;
   other.operations = machine.operations;
@@ -151,7 +151,7 @@ TEST(Replay, OneNodeIsComputePlusHitsPlusMissesTimesLatency) {
     machine.nodes = 1;
     machine.placement = Placement::shared;
     machine.cache.organisation = round % 2 == 0 ? CacheOrganisation::unified : CacheOrganisation::split;
-    // Nothing to contend with: the node's own posted writes must not be in its way.
+    // No contention: reads must not wait for the node's own posted writes.
     machine.layout.pixel_bytes = 1;
     machine.interconnect.kind = memory::InterconnectKind::ideal;
     machine.write_buffer = 4096;
@@ -354,7 +354,7 @@ TEST(Replay, PixelWritesThatSwampACrossbarKeepTheLawsToo) {
 }
 
 TEST(Replay, OneNodeOfADistributedMachineHasAllInItsOwnMemory) {
-  // One pixel, so the only write comes last; then the database is as near as a replicated one.
+  // One pixel, so the only write comes last; then its times are those of a replicated database.
   test::Random random(20);
   for (int round = 0; round < 60; ++round) {
     const WorkLog log = test::random_log(random, 1, 1, 500);
@@ -375,7 +375,7 @@ TEST(Replay, OneNodeOfADistributedMachineHasAllInItsOwnMemory) {
 }
 
 TEST(Replay, ADistributedDatabaseIsReadWithoutWaitingWhereNobodyIsInTheWay) {
-  // One node works, the others only hold the database: each miss costs its way to its home.
+  // One node works, the others only hold the database: each miss costs the messages to its home.
   test::Random random(21);
   for (int round = 0; round < 30; ++round) {
     const WorkLog log = test::random_log(random, 1, 1, 500);

@@ -143,7 +143,7 @@ RC_GTEST_PROP(Space, WhatComesToANodeLeavesIt, (std::uint64_t seed)) {
     passed_on += node.passed_on;
   }
   RC_ASSERT(taken == passed_on + result.host.requests);
-  // No more pixels than may be in flight, each with no more rays than it has.
+  // At most as many pixels as rays may be in flight, and of each at most all of its rays.
   std::size_t most_rays = 0;
   std::vector<LoggedRay> rays;
   for (std::uint32_t pixel = 0; pixel < log.width * log.height; ++pixel) {

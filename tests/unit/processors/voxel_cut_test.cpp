@@ -267,7 +267,7 @@ TEST_P(CutFrames, DoNotDependOnThreadsOrRecordingAndKeepTheLogsRules) {
   }
 }
 
-// Up to the voxel at which it ends, a camera ray visits what it visits without the cut, in the same order.
+// Up to the voxel at which it ends, a camera ray visits the same nodes as without the cut, in the same order.
 TEST_P(CutFrames, VisitTheBeginningOfWhatTheExactFrameVisits) {
   const Built built(far_away(GetParam(), 12.0), "octree");
   RenderOptions options{.width = 96, .height = 96, .max_depth = 1, .shadows = false, .record = true};
@@ -369,7 +369,7 @@ TEST(VoxelCut, AFlatMirrorDoesNotSeeItself) {
                    high + glm::dvec3(0, 1e-3, 0), 0);
     const Frame frame =
         Built(scene, "octree").render({.width = 96, .height = 96, .max_depth = 6, .voxel_cut = 4.0}, 2);
-    // So oblique an eye ray as from height 20 sees no voxel, but triangles.
+    // Eye rays as oblique as from height 20 meet no voxel, only triangles.
     EXPECT_EQ(frame.rays.voxels[0] > 0, height > 20.0) << height;
     EXPECT_GT(frame.rays.traced[2], 0U);
     EXPECT_EQ(frame.rays.hit[2], 0U) << "a reflected ray met the mirror again, eye at height " << height;

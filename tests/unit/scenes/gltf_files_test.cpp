@@ -1,4 +1,4 @@
-// What a file may read beside itself, compressed files of other programs, and what a file may take of memory.
+// Which other files a file may read, compressed files of other programs, and how much memory a file may take.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -111,7 +111,7 @@ TEST(GltfCompressed, IsReadWhereItsDataAreThereUncompressed) {
   EXPECT_NEAR(a.hi.z, 0.0625, 1e-4);
 }
 
-// Without the file's word that the extension is required, and with data that could be taken for its own.
+// The file does not say that the extension is required, and has data that could be taken for uncompressed.
 TEST(GltfCompressed, ViewsOfBytesThatAreNotThereAreRefused) {
   const test::TemporaryDirectory directory;
   GltfFile file = GltfFile::square();
@@ -204,8 +204,8 @@ TEST(GltfImages, TexelsAreCountedBeforeTheyAreDecoded) {
   EXPECT_TRUE(says(message, "more than 1 GiB")) << message;
 }
 
-// One mesh of many triangles in many nodes: refused by its count, at every limit below what it takes, and
-// read at every one above.
+// One mesh of many triangles in many nodes: refused by its count at every limit below the memory that it
+// takes, and read at every limit above.
 TEST(GltfInstances, AreCountedBeforeTheyAreExpanded) {
   const test::TemporaryDirectory directory;
   GltfFile file = GltfFile::square();

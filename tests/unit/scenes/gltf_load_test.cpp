@@ -1,4 +1,4 @@
-// What the glTF reader makes of valid files.
+// The scenes that the glTF reader makes of valid files.
 #include "scenes/gltf.h"
 
 #include <cmath>

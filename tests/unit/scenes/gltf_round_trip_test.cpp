@@ -1,4 +1,4 @@
-// What is written as glTF comes back.
+// A scene that is written as glTF and read again.
 #include <cmath>
 #include <cstring>
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What of a file its scene uses, what nobody reads, and images that wait for their decoding.
+// The parts of a file that its scene uses, the parts that are not read, and images that are decoded later.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -24,7 +24,7 @@ Texture grey_pixels(std::span<const std::byte> file, std::string_view /*name*/) 
 
 ImageSize two_by_one(std::span<const std::byte> /*file*/, std::string_view /*name*/) { return {2, 1}; }
 
-// Scene 0: a textured square with a tangent nobody uses. Scene 1: another mesh with its own material, image
+// Scene 0: a textured square with unused tangents. Scene 1: another mesh with its own material, image
 // and camera.
 GltfFile two_scenes() {
   GltfFile file = GltfFile::square();
@@ -79,7 +79,7 @@ TEST_F(GltfUse, CountsWhatTheSceneDoesNotUse) {
   EXPECT_TRUE(AnimatedScene(Scene{}).file_use().parts.empty());
 }
 
-// Kept, what nobody uses is read and checked.
+// With the item kept, unused parts are read and checked.
 TEST_F(GltfUse, ReadsWhatNobodyUsesWhenAsked) {
   GltfOptions all;
   all.read_unused = true;
@@ -93,7 +93,7 @@ TEST_F(GltfUse, ReadsWhatNobodyUsesWhenAsked) {
   EXPECT_EQ(open(file, {}).file_use().unread_bytes, 80U + 36U + 3U);
   EXPECT_NE(test::user_error_of([&] { static_cast<void>(open(file, all)); }).find("accessor 3"),
             std::string::npos);
-  // No count makes the sum more than the file.
+  // With no count does the sum exceed the file.
   file.json["accessors"][3]["count"] = std::uint64_t{1} << 60U;
   EXPECT_LE(open(file, {}).file_use().unread_bytes, file.bin.size() + 36U + 3U + 3U);
 }

@@ -31,7 +31,7 @@ glm::dvec4 unit_quaternion() {
   return glm::normalize(q);
 }
 
-/// Appendix C.4 as it stands, in long double.
+/// Appendix C.4 of the glTF 2.0 specification, literally, in long double.
 glm::dvec4 slerp_by_the_book(const glm::dvec4& from, const glm::dvec4& to, double t) {
   long double dot = 0.0L;
   for (int i = 0; i < 4; ++i) {

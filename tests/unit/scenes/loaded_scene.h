@@ -1,4 +1,4 @@
-// What tests ask of a scene that was loaded.
+// Queries of tests about a scene that was loaded.
 #pragma once
 
 #include <algorithm>

@@ -31,7 +31,7 @@ void expect_triangulation(const std::vector<glm::dvec2>& polygon) {
     ASSERT_GE(orientation(polygon[a], polygon[b], polygon[c]), 0);
     sum += area(polygon[a], polygon[b], polygon[c]);
   }
-  // All parts counter-clockwise and as much area in all: they cover the polygon once.
+  // All parts are counter-clockwise and their areas add up to the polygon's: they cover it once.
   EXPECT_NEAR(sum, outline_area(polygon), 1e-12 * std::abs(sum));
 }
 

@@ -115,7 +115,7 @@ TEST(Variant, HasTheValuesOfItsSettingsAndNamesTheirLines) {
             "a.toml: cache.ways: is even (in elsewhere)");
 }
 
-// A variant is what a file with these values would be.
+// A variant equals the configuration of a file with these values.
 RC_GTEST_PROP(Variant, IsTheConfigurationOfTheSameValues, ()) {
   const auto size = *rc::gen::inRange<std::int64_t>(1, 1 << 30);
   const auto ways = *rc::gen::inRange<std::int64_t>(1, 65);

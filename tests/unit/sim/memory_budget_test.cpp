@@ -1,4 +1,4 @@
-// What a budget grants and refuses, and how much memory there is.
+// Grants and refusals of a budget, and the amount of usable memory.
 #include "sim/memory_budget.h"
 
 #include <gtest/gtest.h>

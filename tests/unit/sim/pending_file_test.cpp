@@ -114,7 +114,7 @@ TEST(PendingFile, WhatOthersWriteOrOwnStays) {
   const fs::path target = directory.path() / "image.png";
   const PendingFile living(target);
   write(directory.path() / "kept", "kept");
-  // Names that are nearly ours, and names that are ours of what is no file of ours.
+  // Names that are nearly those of temporary files, and such names of things that are not files of marti.
   for (const char* name :
        {".image.tmp-0123456789abcde.png", ".image.tmp-0123456789abcdeF.png", ".image.tmp-1-2.png",
         ".image.part-0123456789abcdef.png", "image.tmp-0123456789abcdef.png"}) {
@@ -127,7 +127,7 @@ TEST(PendingFile, WhatOthersWriteOrOwnStays) {
   EXPECT_EQ(names_in(directory.path()), before);
 }
 
-// The name of a file that is gone may have become somebody else's.
+// After the file is gone, another program may use its name.
 TEST(PendingFile, AnotherFileInItsPlaceIsNeitherCommittedNorWrittenNorRemoved) {
   const TemporaryDirectory directory;
   const fs::path target = directory.path() / "a";

@@ -19,7 +19,7 @@ TEST(Shown, EscapesWhatIsNoPrintableCharacter) {
   EXPECT_EQ(shown(std::string_view("\0\x1b[2J\x7f", 6)), "\\u0000\\u001b[2J\\u007f");
   EXPECT_EQ(shown("caf\u00e9 \u2603 \U0001f600"), "caf\u00e9 \u2603 \U0001f600");
   EXPECT_EQ(shown("\xc2\x9b\xe2\x80\xae\xef\xbb\xbf"), "\\u009b\\u202e\\ufeff");
-  // Too short, alone, overlong, a surrogate, beyond the last character.
+  // UTF-8 that is too short, a lone continuation, overlong, a surrogate, beyond the last character.
   EXPECT_EQ(shown("\xe2\x82"), "\\xe2\\x82");
   EXPECT_EQ(shown("\x80z\xc0\xaf"), "\\x80z\\xc0\\xaf");
   EXPECT_EQ(shown("\xed\xa0\x80"), "\\xed\\xa0\\x80");

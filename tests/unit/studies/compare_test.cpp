@@ -1,5 +1,5 @@
-// What `marti compare` finds: a run and the same machine in a sweep's store have equal figures, and made-up
-// differences are all found.
+// `marti compare`: a run and the same machine in a sweep's store have equal figures, and it finds all
+// made-up differences.
 #include "studies/compare/compare.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ TEST_P(ComparedMachines, AreEqualInARunAndInASweep) {
   EXPECT_TRUE(found["numbers"].empty()) << found["numbers"].dump(1);
   EXPECT_TRUE(found["texts"].empty()) << found["texts"].dump(1);
   EXPECT_TRUE(found["settings"].empty()) << found["settings"].dump(1);
-  // All counters are compared, but for the few that a result.json has not got.
+  // All counters are compared, except the few that a result.json lacks.
   std::size_t there = 0;
   for (const auto& counter : sweep_row(run.machine, run.timed).counters) {
     there += counter ? 1 : 0;

@@ -1,4 +1,4 @@
-// What is kept from frame to frame, and what the four ways pay for the rest.
+// What is kept from frame to frame, and what the four ways spend on building the rest.
 #include "studies/frames/frame_ways.h"
 
 #include <gtest/gtest.h>
@@ -130,7 +130,7 @@ TEST(FrameWays, WhereNothingMovesNothingIsBuiltAgain) {
       EXPECT_EQ(way(frames[i], kept).branches, way(frames[0], kept).branches);
       EXPECT_EQ(way(frames[i], kept).bytes, way(frames[0], kept).bytes);
     }
-    // Ways that forget do the same again.
+    // Ways that keep nothing do the same work again.
     expect_equal(way(frames[i], FrameWay::rebuild_all), way(frames[0], FrameWay::rebuild_all));
     expect_equal(way(frames[i], FrameWay::dynamic), way(frames[0], FrameWay::dynamic));
     EXPECT_GT(way(frames[i], FrameWay::rebuild_all).build, 0);
@@ -158,7 +158,7 @@ TEST(FrameWays, TheFirstFrameHasNothingToKeep) {
   EXPECT_EQ(change.sorted, change.all_sorted);
 }
 
-/// What carried_starts says, from kept branches upwards instead of from the leaves.
+/// The result of carried_starts, computed from kept branches upwards instead of from the leaves.
 std::vector<BranchStart> carried_upwards(const accel::OctreeUpdate& update,
                                          const std::vector<std::uint8_t>& built) {
   const auto& nodes = update.build.topology.nodes;

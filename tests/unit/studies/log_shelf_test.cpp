@@ -1,4 +1,4 @@
-// The shelf: whatever its limit, a log that is taken is the one its frame has, and memory stays within
+// The shelf: with any limit, taking a log gives the log of its frame, and memory stays within
 // bounds.
 #include "studies/sweep/work/log_shelf.h"
 

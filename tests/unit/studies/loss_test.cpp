@@ -1,4 +1,4 @@
-// The lost speed-up adds up, and each part is what it says.
+// The parts of the lost speed-up add up, and each has its cause.
 #include "studies/figures/loss.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(SpeedUpLosses, OneNodeLosesNothing) {
   }
 }
 
-// A machine that has only one of the reasons loses by nothing else.
+// A machine with only one cause of loss has only that part.
 TEST(SpeedUpLosses, EachPartIsWhatItSays) {
   test::Random random(4);
   const processors::WorkLog log = test::random_log(random, 16, 16);

@@ -1,4 +1,4 @@
-// The measured errors that the program carries, and what is made of them.
+// The measured errors that are built into the program, and the choices made by them.
 #include "studies/estimate/measured_errors.h"
 
 #include <gtest/gtest.h>
@@ -94,8 +94,8 @@ TEST(Within, MachinesThatWereNotMeasuredAreOutside) {
   outside([](MachineConfig&) {}, "packets", 1000);
 }
 
-// What is answered is within what was asked for, by the measured errors; and it never costs more than is
-// known to be needed.
+// By the measured errors the answer is within the tolerance; and no cheaper method is known to be
+// good enough.
 TEST(Within, AnEstimateIsNeverWiderThanAskedFor) {
   test::Random random(3);
   const processors::WorkLog log = test::random_log(random, 64, 64, 12);

@@ -1,4 +1,4 @@
-// What is estimated before memory is taken, beside what the operating system counts. A program of its own:
+// Estimates made before memory is taken, against what the operating system counts. A program of its own:
 // each measurement forks, and a fork has no threads of oneTBB's.
 #include <gtest/gtest.h>
 

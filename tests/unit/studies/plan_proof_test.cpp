@@ -1,5 +1,5 @@
 // The proof of the plan: with and without each item the same image, the same hits, the same work log; and
-// nothing of what is left out is ever read.
+// data that is left out is never read.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ FunctionalRun run_keeping(FrameConfig frame, const KeptItems& keep, const scenes
   return run_planned(frame, scene);
 }
 
-// What the plan leaves out, filled with what would be seen if anyone looked.
+// Fills the data that the plan leaves out with values that would change the image if they were read.
 scenes::Scene poisoned(const scenes::Scene& scene, const Plan& plan, const SceneNeeds& needs) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   scenes::Scene poison = scene;
@@ -78,7 +78,7 @@ scenes::Scene poisoned(const scenes::Scene& scene, const Plan& plan, const Scene
   return poison;
 }
 
-// What a log touches lies within what the plan keeps.
+// A log touches only what the plan keeps.
 void expect_sound(const FunctionalRun& kept, const SceneNeeds& needs, const scenes::Scene& scene,
                   const std::string& what) {
   const processors::WorkLog& log = *kept.frame.log;
@@ -138,7 +138,7 @@ TEST_P(PlanOfRandomScenes, ChangesNothing) {
     ASSERT_NO_FATAL_FAILURE(
         prove(frame, scene, seed % 3 == 0, structure + " " + std::to_string(seed), tally));
   }
-  // The scenes try what they are there to try.
+  // The scenes cover the cases that they are made for.
   for (const PlanItem item :
        {PlanItem::shadow_rays, PlanItem::reflection_rays, PlanItem::refraction_rays, PlanItem::textures,
         PlanItem::texture_coordinates, PlanItem::normals, PlanItem::structures}) {
@@ -242,7 +242,7 @@ TEST(PlanOfFiles, DecodesWhatIsSeen) {
   EXPECT_EQ(difference_of(*run.frame.log, *kept.frame.log), "");
 }
 
-// The proof can fail: it sees one word, one texel, one pixel.
+// The proof can fail: it notices one changed word, texel or pixel.
 TEST(PlanProof, SeesWhatDiffers) {
   Random random(5);
   scenes::Scene scene = testing::looking_ahead();

@@ -62,7 +62,7 @@ TEST(Plan, EntriesAreInTheOrderOfItemsOnceEach) {
   EXPECT_EQ(plan.entries.back().item, PlanItem::cache);
 }
 
-// What nobody needs is left out, and kept where the user wants it.
+// Work that is not needed is left out, and kept where the user asks for it.
 TEST(Plan, LeavesOutWhatIsBehindTheCamera) {
   scenes::Scene scene = looking_ahead();
   const std::uint32_t plain = add_material(scene);
@@ -109,7 +109,7 @@ TEST(Plan, KeepsWhatAMirrorShows) {
                               PlanItem::reflection_rays, PlanItem::refraction_rays, PlanItem::off_camera}) {
     EXPECT_EQ(decision(scene, item), PlanDecision::needed) << name_of(item);
   }
-  // That it matters: without the texture, or without the normals, the image is another.
+  // The difference matters: without the texture, or without the normals, the image changes.
   const FrameConfig frame = small_frame();
   const std::uint64_t whole = run_planned(frame, scene).image_hash;
   scenes::Scene without = scene;
@@ -126,7 +126,7 @@ TEST(Plan, KeepsWhatAMirrorShows) {
   EXPECT_EQ(find_entry(plan, PlanItem::reflection_rays)->decision, PlanDecision::no_matter);
 }
 
-// Glass in view bends rays to what is beside the view.
+// Glass in view bends rays to primitives beside the view.
 TEST(Plan, KeepsNormalsThatAreSeenThroughGlass) {
   scenes::Scene scene = looking_ahead();
   const std::uint32_t glass = add_material(scene);

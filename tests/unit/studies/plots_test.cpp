@@ -1,4 +1,4 @@
-// The charts of a report as files, drawn by node and rsvg-convert; programs that fail in every way there is.
+// The charts of a report as files, drawn by node and rsvg-convert; programs that fail in every possible way.
 #include "studies/report/plots.h"
 
 #include <gmock/gmock.h>
@@ -25,7 +25,7 @@ ChildProcess shell(const std::string& script, std::chrono::seconds limit = 20s) 
   return {{"sh", "-c", script}, "dash", {}, limit};
 }
 
-/// What it is told instead of a result.
+/// The message of the error instead of a result.
 template <typename Function>
 std::string refusal(Function function) {
   try {

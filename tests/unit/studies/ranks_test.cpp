@@ -1,4 +1,4 @@
-// How a process learns that it is one of several, and what it says when it was built to be one.
+// How a process learns that it is one of several, and its message when it was built without MPI.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

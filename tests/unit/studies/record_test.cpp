@@ -226,7 +226,7 @@ TEST(HeatMaps, LegendLeavesOutTheTopHundredth) {
   EXPECT_EQ(legend_of(rare).brightest, 5.0) << "a scale without length shows nothing";
 }
 
-// CIE 1976 lightness, for every kind of vision the order that counts.
+// CIE 1976 lightness, which orders the colours for every kind of vision.
 TEST(HeatMaps, ColoursGetLighterAllTheWay) {
   double last = -1.0;
   for (int i = 0; i <= 1000; ++i) {
@@ -242,7 +242,7 @@ TEST(HeatMaps, ColoursGetLighterAllTheWay) {
   EXPECT_EQ(colour_of(7.0), colour_of(1.0));
 }
 
-/// Forgets what it is told about idling.
+/// Ignores idling.
 class Forgetful final : public processors::Observer {
  public:
   explicit Forgetful(processors::Observer& next) : next_(next) {}

@@ -1,5 +1,5 @@
-// The rendering family of `marti study error`: what must be exact is, errors behave as theory says, and the
-// tables say it the same at every run.
+// The rendering family of `marti study error`: settings that must be exact are, errors behave as in theory,
+// and the tables are the same at every run.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What the answer of a sweep and of a run says.
+// The answers of the reports of a sweep and of a run.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -43,7 +43,7 @@ std::string all_of(const ReportPoints& sweep) {
   return text;
 }
 
-// Its figures as a store has them; whatever find_limit says of the machine itself has to be said of them.
+// Its figures as a store has them; they must give the limit that find_limit gives for the machine itself.
 void expect_same_limit(const processors::MachineConfig& machine, const processors::MachineResult& result) {
   ReportPoint point;
   point.image_machine = {machine.placement, machine.interconnect.kind, machine.network.kind,

@@ -1,4 +1,4 @@
-// What a report is gathered from, and how texts of any origin become parts of a page.
+// The data of a report, and how texts of any origin become parts of a page.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -284,7 +284,7 @@ TEST(IsThere, NamesALinkToNothingAndWhatMayNotBeLookedAt) {
   const std::string error = user_error_of([&] { take_image(directory.path() / "image.png", "T", report); });
   EXPECT_NE(error.find("image.png: cannot be read"), std::string::npos) << error;
   const std::string loop = (directory.path() / "loop").string();
-  fs::create_symlink("loop", loop);  // root may look at everything, but not follow this
+  fs::create_symlink("loop", loop);  // root may read every file, but cannot follow this link
   const std::string looped = user_error_of([&] { (void)is_there(fs::path(loop) / "result.json"); });
   EXPECT_NE(looped.find("loop/result.json: cannot be read: "), std::string::npos) << looped;
 }

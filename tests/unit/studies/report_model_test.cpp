@@ -1,4 +1,4 @@
-// The analytic model of reports: where it is known what it has to say.
+// The analytic model of reports, where the right answer is known.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -107,7 +107,7 @@ TEST(LineModel, IsExactAtItsPoints) {
   EXPECT_EQ(line.at(0.9).zone, Zone::beyond);
 }
 
-// Machines that are closed networks are met between their points too, as nothing but their nodes changes.
+// For machines that are closed networks the model is right between their points too, since only nodes change.
 TEST(LineModel, FindsAMachineThatIsANetwork) {
   std::vector<PointCounters> points;
   for (const double nodes : {1.0, 4.0, 16.0, 64.0}) {

@@ -1,4 +1,4 @@
-// Points of a store that anybody may have changed.
+// Points of a store that may have been changed by hand.
 #include <gtest/gtest.h>
 
 #include "studies/report/sweep_points.h"
@@ -44,7 +44,7 @@ class ReadReportPoints : public testing::Test {
       for (const std::string& change : changes) {
         connection.execute(change);
       }
-      // As one without checksums; what they say of a change is tested elsewhere.
+      // As a store without checksums; that checksums detect a change is tested elsewhere.
       connection.execute("PRAGMA user_version = 1; UPDATE store SET value = '1' WHERE what = 'format'");
     }
   }

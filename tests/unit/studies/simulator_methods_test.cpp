@@ -23,7 +23,7 @@ namespace {
 
 using processors::MachineConfig;
 
-// A machine that every method answers for.
+// A machine that every method can estimate.
 MachineConfig plain_machine(test::Random& random) {
   MachineConfig machine;
   machine.nodes = static_cast<std::uint32_t>(test::pick(random, 1, 9));
@@ -111,7 +111,7 @@ RC_GTEST_PROP(Sample, OfEverythingIsExact, (std::uint64_t seed)) {
   RC_ASSERT(sampled.half_width == MachineFigures());
 }
 
-// Packets of one node, warmed by all before: nothing but chance is left, and the interval is about that.
+// Packets of one node, warmed by all before: only the error of sampling is left, which the interval covers.
 TEST(Sample, IntervalsOfManySeedsCoverTheTruth) {
   test::Random random(5);
   const processors::WorkLog log = test::random_log(random, 48, 40, 20);
@@ -194,7 +194,7 @@ RC_GTEST_PROP(OnePass, FindsTheStepsAndMissesOfTheReplay, (std::uint64_t seed)) 
   RC_ASSERT(std::accumulate(words.begin(), words.end(), std::uint64_t{0}) == pass.words);
 }
 
-// Nobody to wait for, and nothing to approximate.
+// One node never waits, so the method has nothing to approximate.
 RC_GTEST_PROP(Analytic, OneNodeWithAnIdealInterconnectIsExact, (std::uint64_t seed)) {
   test::Random random(seed);
   const processors::WorkLog log = test::random_log(random, 12, 10);

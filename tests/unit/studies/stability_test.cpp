@@ -1,4 +1,4 @@
-// Every case of `marti study stability` by itself, at a small size; and that its oracles can object.
+// Every case of `marti study stability` by itself, at a small size; and that its oracles can fail.
 #include "studies/stability/stability.h"
 
 #include <gtest/gtest.h>

@@ -106,7 +106,7 @@ TEST(SweepFilter, RefusesWhatIsNoExpressionOverKeys) {
            {"cache.size, cache.ways", "here: is no whole expression (SQLite: row value misused)"},
            {"cache.replacement = 'lru", "here: a text in single quotation marks has no end"},
            {"cache.size cache.ways", "here: is no whole expression (SQLite: near "},
-           // SQLite would compare these, and choose other points than was meant.
+           // SQLite would compare these, and choose other points than intended.
            {"machine.nodes < '2'", "here: machine.nodes is no text and cannot be compared with '2'"},
            {"not (machine.nodes <> '4')", "here: machine.nodes is no text"},
            {"cache.size > 'x' or machine.nodes > 0", "here: cache.size is no text"},
@@ -138,7 +138,7 @@ TEST(SweepFilter, RefusesWhatIsNoExpressionOverKeys) {
             "here: cannot be computed (SQLite: integer overflow)");
 }
 
-// Whatever is written, it is an expression or an error.
+// Any text is an expression or an error.
 RC_GTEST_PROP(SweepFilter, SurvivesAnyText, ()) {
   const auto parts = *rc::gen::container<std::vector<std::string>>(rc::gen::element<std::string>(
       "cache.size", "point", "'a'", "'", "(", ")", "1", "64 KiB", " ", "and", "not", "<=", "=", "-", "max(",

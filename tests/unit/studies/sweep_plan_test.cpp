@@ -59,7 +59,7 @@ Naive naive(const std::vector<std::string>& assignments) {
   return found;
 }
 
-// A message without where it points at.
+// A message without its file and line.
 std::string reason_of(const std::string& message) { return message.substr(message.rfind(": ") + 2); }
 
 std::string text_of(const std::vector<sim::EffectiveValue>& settings) {
@@ -141,7 +141,7 @@ RC_GTEST_PROP(SweepPlan, IsTheCrossProductWithEachMachineOnce, ()) {
   const std::vector<Axis> axes = random_axes();
   std::vector<Naive> points;
   std::vector<std::string> assignments;
-  std::string wrong;  // what the first point that cannot be built lacks
+  std::string wrong;  // the fault of the first point that cannot be built
   for_each_point(axes, 0, assignments, [&](const auto& given) {
     try {
       points.push_back(naive(given));

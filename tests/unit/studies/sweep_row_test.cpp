@@ -1,4 +1,4 @@
-// A row holds what its machine counted, and survives being sent.
+// A row holds the counts of its machine, and survives encoding and decoding.
 #include "studies/sweep/plan/sweep_row.h"
 
 #include <gtest/gtest.h>
@@ -144,7 +144,7 @@ RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheMemory, (std::uint64_t seed)) {
   RC_ASSERT(values.at("network_bytes") == (networks == 0 ? std::nullopt : std::optional(bytes)));
   RC_ASSERT(waits_in(row, "network_wait") == values.at("network_wait_count").value_or(0));
   RC_ASSERT(waits_in(row, "l2_wait") == values.at("l2_wait_count").value_or(0));
-  // A part that the machine has not got has no values, and one that it has all of them.
+  // Counters of a part that the machine lacks have no values; those of a part that it has all have one.
   const auto there = [&](std::string_view prefix, bool expected) {
     for (const auto& [name, value] : values) {
       if (name.starts_with(prefix) && !name.starts_with("l2_wait_")) {

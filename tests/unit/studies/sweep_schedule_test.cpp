@@ -1,5 +1,5 @@
-// Who does what next in a sweep: random plans, workers that end in random orders, and a plain account of what
-// each of them was given.
+// The order of a sweep's tasks: random plans, workers that end in random orders, and a plain account of the
+// tasks that each was given.
 #include "studies/sweep/work/schedule.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ SweepPlan random_sweep(Random& random) {
   return plan;
 }
 
-// What is known of a batch from outside.
+// The state of a batch as seen from outside.
 struct Batch {
   std::set<std::size_t> waiting;
   std::size_t size = 0;
@@ -208,7 +208,7 @@ class Account {
 struct Worker {
   std::size_t place = 0;
   SweepTask task{Kind::wait, 0, {}, 0};
-  bool sleeps = false;  // until something has been traced, or all is done
+  bool sleeps = false;  // until a frame has been traced, or all is done
 };
 
 // Lets some worker, at random, do its next step until all have ended.

@@ -1,4 +1,4 @@
-// A store that is no longer what was written: bytes that have changed on a disk, values that somebody has
+// A damaged store: bytes that have changed on a disk, values that somebody has
 // changed, and the lock beside it.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -34,7 +34,7 @@ void add_cell(std::string& text, const Cell& cell) {
   text += ';';
 }
 
-// All that reports and comparisons are made of.
+// Everything that reports and comparisons read.
 std::string figures_of(const fs::path& file) {
   const SweepReader reader(file);
   std::string text = reader.version();
@@ -77,7 +77,7 @@ class DamagedStore : public testing::Test {
     bytes_ = sim::read_file(file_, std::int64_t{1} << 30);
   }
 
-  // Both the reader and the one who goes on refuse it.
+  // Both a reader and a sweep that goes on refuse it.
   void expect_refused(const std::string& change, const std::string& what) {
     sim::write_file(file_, bytes_);
     {
@@ -177,7 +177,7 @@ TEST_F(DamagedStore, WhatAUserAddsIsNone) {
   EXPECT_NO_THROW(SweepStore(file_, made_plan(machines)));
 }
 
-// Format 1 had no checksums. It is read, and not gone on with.
+// Format 1 had no checksums. It can be read, but no sweep goes on with it.
 TEST_F(DamagedStore, AnOlderFormatIsReadAsItIs) {
   const std::string expected = figures_of(file_);
   {
@@ -198,7 +198,7 @@ TEST_F(DamagedStore, AnOlderFormatIsReadAsItIs) {
   EXPECT_NE(message.find("its column hits holds a value that is no INTEGER"), std::string::npos) << message;
 }
 
-// The lock is written and removed: what is not surely one is left alone.
+// The lock is written and removed; a file that may not be a lock is left alone.
 TEST_F(DamagedStore, ALockIsNoLinkAndNothingElse) {
   const fs::path lock = file_.string() + ".lock";
   const fs::path precious = directory_.path() / "precious";

@@ -23,7 +23,7 @@ using test::TemporaryDirectory;
 constexpr std::size_t machines = 120;
 constexpr int rounds_a_test = 5;
 
-// What is missing, in order; `tell` hears of each machine when it is committed.
+// Adds the missing machines in order; calls `tell` for each machine when it is committed.
 template <class Tell>
 void finish(const fs::path& file, const Tell& tell) {
   SweepStore store(file, made_plan(machines));

@@ -1,6 +1,6 @@
 // A store whose program is killed at each instant at which it changes a file: SQLite's calls of the operating
 // system are counted, and the process kills itself at the n-th. What SQLite maps into memory (the index of
-// the log) is rebuilt by whoever opens the store next.
+// the log) is rebuilt by the process that opens the store next.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -174,7 +174,7 @@ std::vector<std::size_t> instants_of(const std::string& made) {
   return instants;
 }
 
-// What there is to be read of a sweep that was killed; a message where there is nothing yet.
+// What can be read of a sweep that was killed; a message if there is nothing yet.
 std::string shown(const fs::path& file, std::size_t& done) {
   std::string text;
   const std::string message = user_error_of([&] {
@@ -213,7 +213,7 @@ class KilledStore : public testing::Test {
       std::size_t done = 0;
       const std::string text = shown(file, done);
       const std::string where = "killed at call " + std::to_string(last) + " of " + made + "\n" + text;
-      // Nothing that was there is lost, and what can be read is; what cannot is not begun.
+      // No result is lost, and the store can be read; if it cannot, it has not been begun.
       EXPECT_GE(done, most) << where;
       most = done;
       const bool nothing_yet = text.find("holds nothing: the sweep was ended") != std::string::npos ||

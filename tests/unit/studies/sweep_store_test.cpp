@@ -1,4 +1,4 @@
-// The store of a sweep: what is entered stays, whatever the order, and what is no store is refused.
+// The store of a sweep: entered results stay, in any order of entering, and other files are refused.
 #include "studies/sweep/store/sweep_store.h"
 
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ TEST(SweepStore, KnowsWhatIsDone) {
   EXPECT_FALSE(fs::exists(file.string() + ".lock"));
 }
 
-// However a sweep was run, in whatever order and in however many goes, the tables are the same.
+// The tables are the same in whatever order and in however many runs a sweep was done.
 class SweepStores : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(SweepStores, AreTheSameInWhateverOrderTheyWereFilled) {
@@ -135,7 +135,7 @@ TEST(SweepStore, SettingsAndHistogramsAreThere) {
   EXPECT_EQ(count(file, "SELECT SUM(count) FROM histograms WHERE machine = 2"), waits);
   EXPECT_EQ(count(file, "SELECT COUNT(*) FROM histograms WHERE highest IS NULL OR what IS NULL"), 0);
   EXPECT_EQ(count(file, "SELECT COUNT(*) FROM host_machines WHERE cpu_nanoseconds = 23"), 3);
-  // Every column of every table that is not of the host is described, and none that is not there.
+  // Every column of every table that is not of the host is described, and no other.
   EXPECT_EQ(
       count(file,
             "SELECT COUNT(*) FROM (SELECT m.name AS t, p.name AS c FROM sqlite_schema m, "

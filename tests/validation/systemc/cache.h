@@ -23,7 +23,7 @@ class NaiveCache {
     }
   }
 
-  /// Whether the line is there. It is afterwards.
+  /// Whether the cache holds the line; brings it in if not.
   bool look_up(std::uint64_t line) {
     Set& set = sets_[line % sets_.size()];
     const auto found = std::find(set.lines.begin(), set.lines.end(), line);

@@ -1,4 +1,4 @@
-// A crossbar: everybody reaches every bank after the latency; the data of each bank's reads share a link.
+// A crossbar: every node reaches every bank after the latency; the data of each bank's reads share a link.
 #pragma once
 
 #include <deque>

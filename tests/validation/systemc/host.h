@@ -27,7 +27,7 @@ struct Rectangle {
 class PacketUser {
  public:
   virtual ~PacketUser() = default;
-  /// The node begins the packet now; nothing: no packet is left.
+  /// The node begins the packet now; std::nullopt: no packet is left.
   virtual void begin_packet(const std::optional<Rectangle>& packet) = 0;
 };
 

@@ -1,4 +1,4 @@
-// Time in the second implementation: what follows later, and who may act first within one instant.
+// Time in the second implementation: delayed actions, and the order of actions within one instant.
 //
 // SystemC says nothing about the order of processes that run in one delta cycle, so nothing here depends on
 // it. Two modules divide an instant:
@@ -6,9 +6,9 @@
 // - Later runs what a component does after a delay. All that was scheduled for an instant before it began is
 //   run in the instant's first delta cycle. A delay of zero takes one more delta cycle and holds back all
 //   turns until it has passed.
-// - Turns is asked for leave by whoever is about to use something that others use too. It gives leave to one
+// - A component that is about to use a shared resource asks Turns for leave. Turns gives leave to one
 //   at a time, in the order of docs/model.md: the smallest (turn, node) of those that ask, each time only
-//   after all that follows from the last leave within the instant has happened.
+//   after all consequences of the last leave within the instant have happened.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ enum class Turn : std::uint8_t { dispatch, reply, read, write };
 class TurnTaker {
  public:
   virtual ~TurnTaker() = default;
-  /// It is the turn that was asked for.
+  /// The turn that was asked for has come.
   virtual void take_turn(Turn turn, std::uint32_t node) = 0;
 };
 
@@ -42,7 +42,7 @@ class Turns : public sc_core::sc_module {
   explicit Turns(const sc_core::sc_module_name& name);
   /// Asks for a turn within the present instant. A node asks for one turn of a kind at a time.
   void ask(Turn turn, std::uint32_t node, TurnTaker& taker);
-  /// Something without delay is on its way; no turn is given before as many releases.
+  /// An action without delay is pending; no turn is given before as many releases.
   void hold() { ++held_; }
   void release() { --held_; }
 

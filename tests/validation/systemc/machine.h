@@ -42,8 +42,8 @@ struct MachineFigures {
   std::uint64_t packets = 0;
 };
 
-/// Throws InternalError for a machine with anything that this model has not: what it does not model it does
-/// not check.
+/// Throws InternalError for a machine with any part that this model lacks: the model could not check
+/// that part.
 void refuse_what_is_not_modelled(const processors::MachineConfig& config);
 
 class Machine : public sc_core::sc_module {

@@ -1,5 +1,5 @@
 // Which machines the SystemC model is one of. The bindings name every member of every part of a
-// configuration, so that a new one does not compile before somebody has modelled it or refused it here.
+// configuration, so that a new member does not compile before it is modelled or refused here.
 #include <algorithm>
 #include <initializer_list>
 

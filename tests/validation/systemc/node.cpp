@@ -55,7 +55,7 @@ void Node::begin_packet(const std::optional<Rectangle>& packet) {
   work();
 }
 
-// Goes on until time must pass or somebody else is needed.
+// Goes on until time must pass or a shared resource is needed.
 void Node::work() {
   for (;;) {
     if (reading_.extent.bytes > 0) {
@@ -206,7 +206,7 @@ tlm::tlm_sync_enum Node::answer(tlm::tlm_generic_payload& payload, tlm::tlm_phas
                                   [&payload](const Posted& posted) { return posted.payload == &payload; });
   sim::ensure(found != posted_.end(), "a write is done that nobody posted");
   found->done = true;
-  // Room is given back in the order of the writes: one that is done stays behind one that is not.
+  // Room is freed in the order of the writes: a write that is done waits for older ones that are not.
   while (!posted_.empty() && posted_.front().done) {
     posted_.front().payload->release();
     posted_.pop_front();

@@ -33,7 +33,7 @@ class Node : public sc_core::sc_module, public TurnTaker, public PacketUser {
   /// All but the idle time, which is known when all nodes are done.
   [[nodiscard]] const processors::NodeStatistics& statistics() const { return statistics_; }
   [[nodiscard]] bool finished() const { return finished_; }
-  /// When its last write was done; 0 without.
+  /// When its last write was done; 0 if it made none.
   [[nodiscard]] Time last_write() const { return last_write_; }
 
  private:
@@ -70,8 +70,8 @@ class Node : public sc_core::sc_module, public TurnTaker, public PacketUser {
   sc_core::sc_event awake_;
 
   std::vector<Operation> operations_;  // of the step at hand
-  std::size_t next_ = 0;               // the first of them that is not begun
-  Operation reading_;                  // the record being read; no bytes left: none
+  std::size_t next_ = 0;               // the first operation that has not begun
+  Operation reading_;                  // the record being read; without bytes left: no record
   Extent missed_;                      // what is to be read from shared memory
 
   PayloadPool payloads_;

@@ -14,7 +14,7 @@ using marti::oracle::Job;
 using marti::oracle::Machine;
 using marti::oracle::Simulation;
 
-// What simulate() and sc_main(), which SystemC calls, have to tell each other.
+// Passed between simulate() and sc_main(), which SystemC calls.
 struct Exchange {
   std::span<const Job> jobs;
   Simulation simulation;

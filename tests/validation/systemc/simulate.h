@@ -21,7 +21,7 @@ struct Simulation {
   double seconds = 0.0;                  ///< processor time, without building the modules
 };
 
-/// Each machine begins at time 0 and knows nothing of the others. Can be called once in a process; throws
+/// Each machine begins at time 0, independently of the others. Can be called once in a process; throws
 /// InternalError the second time.
 [[nodiscard]] Simulation simulate(std::span<const Job> jobs);
 

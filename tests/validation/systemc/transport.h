@@ -17,7 +17,7 @@
 
 namespace marti::oracle {
 
-/// When a transaction passed each point of its way. What a component does not have takes no time.
+/// When a transaction passed each point of its way. A point that a component lacks takes no time.
 struct Course : tlm::tlm_extension<Course> {
   std::uint32_t node = 0;  ///< of the machine
   int port = 0;            ///< of its cluster's interconnect
