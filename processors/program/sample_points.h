@@ -35,7 +35,7 @@ struct SamplePoint {
 class SamplePoints {
  public:
   /// `samples` from 1 to 1024. They are dealt to a grid with one cell for each, as nearly square as whole
-  /// numbers of rows and columns allow; a prime number of samples gives a single row or column.
+  /// numbers of rows and columns allow; a prime number of samples gives a single column.
   constexpr SamplePoints(std::uint32_t samples, std::uint64_t seed) : samples_(samples), seed_(seed) {
     for (std::uint32_t side = 1; side * side <= samples; ++side) {
       columns_ = samples % side == 0 ? side : columns_;
