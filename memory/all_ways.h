@@ -1,12 +1,12 @@
-// The misses of set-associative LRU caches of all numbers of ways from one pass, for several numbers of sets
-// at once.
+// The misses of set-associative LRU caches of all numbers of ways, for several numbers of sets, from one pass
+// over the references.
 //
 // Within a set, LRU keeps the lines used last, so a cache of w ways misses a reference when at least w other
-// lines of its set have been used since its line was (Mattson et al. 1970, see stack_distance.h; Hill and
-// Smith, "Evaluating associativity in CPU caches", IEEE Trans. Computers 38(12), 1989, all-associativity
-// simulation). When one number of sets divides another, lines that share a set of the second share one of the
-// first; what is the newest line of its set of the first is it in the second's, too, and nothing moves there
-// (set refinement, there).
+// lines of its set have been used since the line's last use (Mattson et al. 1970, see stack_distance.h; Hill
+// and Smith, "Evaluating associativity in CPU caches", IEEE Trans. Computers 38(12), 1989, all-associativity
+// simulation). When a number of sets divides a larger one, lines that share a set of the larger number share
+// one of the smaller. So a line that is the newest of its set with the smaller number is so with the larger
+// one too, and a use of it moves nothing there (set refinement, ibid.).
 #pragma once
 
 #include <algorithm>
@@ -17,26 +17,26 @@
 
 namespace marti::memory {
 
-/// What became of all references of a pass, for one number of sets.
+/// The counts of a pass for one number of sets.
 struct WaysHistogram {
   std::uint32_t sets = 0;
   std::int64_t references = 0;
-  std::vector<std::int64_t> hits;  ///< [d]: references with d other lines of the set since the last use
+  std::vector<std::int64_t> hits;  ///< [d]: references after d other lines of the set were used
 
-  /// Misses of an LRU cache of so many ways, 0 to hits.size().
+  /// Misses of an LRU cache of so many ways, from 0 to hits.size().
   [[nodiscard]] std::int64_t misses(std::uint32_t ways) const;
 
-  /// Both must be of the same number of sets and ways.
+  /// Both must have the same number of sets and of ways.
   WaysHistogram& operator+=(const WaysHistogram& other);
   friend bool operator==(const WaysHistogram&, const WaysHistogram&) = default;
 };
 
 /// One pass. Lines are numbers below 2^32 - 1; the set of a line is its number modulo the number of sets.
-/// A reference with more than `most_ways` lines before it is only known to miss in all caches, so the time of
-/// one is at most in proportion to `most_ways`.
+/// When more than `most_ways` lines were used since a line's last use, the reference counts as a miss of all
+/// caches; so the time of a reference is at most proportional to `most_ways`.
 class AllWays {
  public:
-  /// Throws UserError without a number of sets, for a number that is 0 or given twice, for no way, and for
+  /// Throws UserError for an empty list, for a number of sets that is 0 or given twice, for 0 ways, and for
   /// more than `most_lines` lines.
   AllWays(std::vector<std::uint32_t> set_counts, std::uint32_t most_ways);
 
@@ -63,7 +63,7 @@ class AllWays {
     }
   }
 
-  /// The same caches, empty: the references that follow are another node's. What is counted stays.
+  /// Empties the caches, for the references of another node. The counts stay.
   void forget();
 
   /// One for each number of sets, in ascending order.
@@ -73,9 +73,9 @@ class AllWays {
   struct Forest {
     std::uint32_t sets = 0;
     SetIndex index;
-    bool refined = false;  // the number of sets divides all later ones
+    bool refined = false;  // the number of sets divides all larger ones
     std::vector<std::uint32_t> tags;
-    std::vector<std::int64_t> hits;  // those that a refined one before it has taken are not in it
+    std::vector<std::int64_t> hits;  // without references that ended at a refined forest before
   };
 
   std::uint32_t most_ways_;

@@ -9,9 +9,9 @@
 
 namespace marti::memory {
 
-/// Transfers are those of Bus. Whoever wants the bus waits; when it is free, one event of the site's memory
-/// class grants it, so that all who ask for it at that instant compete. A port offers one thing at a time:
-/// data that are ready for it, else the oldest of its requests, reads and writes in the order in which they
+/// Transfers are those of Bus. Ports that want the bus wait; when it is free, one event of the site's memory
+/// class grants it, so that all ports that ask at that instant compete. A port offers one transfer at a time:
+/// data that are ready for it, else the oldest of its requests. Reads and writes keep the order in which they
 /// were made, so that no read of a port overtakes its writes.
 class ArbitratedBus final : public Interconnect {
  public:
@@ -37,18 +37,18 @@ class ArbitratedBus final : public Interconnect {
     bool write = false;
   };
   struct Port {
-    std::vector<Request> requests;  // oldest first; few: what the write buffer holds and one read
-    Service service;                // of the split read whose data are awaited
+    std::vector<Request> requests;  // oldest first; few: the content of the write buffer and one read
+    Service service;                // of the split read whose data are under way
     std::uint32_t bytes = 0;
     sim::Ticks ready = 0;  // when the data began to wait
   };
 
   void ask(const Transaction& transaction, bool write);
-  // Posts the event that grants the bus, unless it is posted.
+  // Posts the event that grants the bus, unless it is already posted.
   void call_for_grant();
-  // Who has it next; the sets are not both empty.
+  // The port that gets the bus next; one of the sets must not be empty.
   [[nodiscard]] std::uint32_t choose() const;
-  // Begins a tenure of `length` for somebody who asked at `asked`.
+  // Begins a tenure of `length` for a transfer that was asked for at `asked`.
   void take(sim::Ticks asked, sim::Ticks length);
   void grant_data(std::uint32_t port);
   void grant_read(const Request& request);
@@ -64,7 +64,7 @@ class ArbitratedBus final : public Interconnect {
   std::vector<Port> ports_;
   PortSet data_;        // ports whose data are ready
   PortSet asking_;      // ports with data or requests
-  std::uint32_t last_;  // who had the bus last
+  std::uint32_t last_;  // the port that had the bus last
   sim::Ticks free_at_ = 0;
   bool called_ = false;
   InterconnectStatistics statistics_;

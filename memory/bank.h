@@ -21,7 +21,7 @@ struct BankConfig {
   sim::Clock clock = sim::Clock::from_hertz(33e6);
   std::int64_t access_cycles = 4;
   std::int64_t busy_cycles = 6;
-  std::optional<SharedCacheConfig> cache{};  ///< before the banks; nothing: there is none
+  std::optional<SharedCacheConfig> cache{};  ///< before the banks; std::nullopt: no cache
 };
 
 struct BankStatistics {
@@ -50,20 +50,20 @@ class Banks {
     const Address unit = address >> interleave_shift_;
     return static_cast<std::uint32_t>((count_ & (count_ - 1)) == 0 ? unit & (count_ - 1) : unit % count_);
   }
-  /// A read or write whose address arrives at `arrival`: of the cache, if there is one, or of its bank. They
-  /// must come in order of arrival.
+  /// A read or write whose address arrives at `arrival`, at the cache if there is one, else at its bank.
+  /// Calls must come in order of arrival.
   BankAccess read(Address address, sim::Ticks arrival) {
     return cache_ ? read_cached(address, arrival) : access(bank_of(address), arrival);
   }
   BankAccess write(Address address, sim::Ticks arrival) { return access(bank_of(address), arrival); }
 
-  /// Queues an access that arrives at `arrival`, past the cache. Accesses to one bank must come in order of
-  /// arrival.
+  /// Queues an access that arrives at `arrival` and bypasses the cache. Accesses to one bank must come in
+  /// order of arrival.
   BankAccess access(std::uint32_t bank, sim::Ticks arrival);
 
   [[nodiscard]] std::uint32_t count() const { return count_; }
   [[nodiscard]] const std::vector<BankStatistics>& statistics() const { return statistics_; }
-  /// Of the cache; null where there is none.
+  /// Statistics of the cache; null when there is none.
   [[nodiscard]] const SharedCacheStatistics* cache_statistics() const {
     return cache_ ? &cache_->statistics() : nullptr;
   }

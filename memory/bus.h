@@ -6,9 +6,9 @@
 
 namespace marti::memory {
 
-/// A read sends its address, waits for its bank, and receives its data; a write sends address and data in
-/// one tenure and leaves the bank to work on its own. In `held` mode the bus stays with a read for its
-/// whole course; in `split` mode the data ask for the bus again when they are ready.
+/// A read sends its address, waits for its bank, and receives its data; a write sends address and data in one
+/// tenure and does not wait for the bank. In `held` mode a read keeps the bus from its address to its data;
+/// in `split` mode it gives the bus back, and the data ask for the bus again when they are ready.
 class Bus final : public Interconnect {
  public:
   Bus(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site);

@@ -1,4 +1,4 @@
-// One cache on its own, for those who want the cache model without the rest of the simulator.
+// One cache on its own, for programs that need the cache model without the rest of the simulator.
 #pragma once
 
 #include <array>
@@ -31,18 +31,18 @@ struct CacheCounters {
 };
 static_assert(sim::declares_every_member<CacheCounters>());
 
-/// A cache of tags, the same model that the simulated nodes use.
+/// A cache of tags; the same model as in the simulated nodes.
 class Cache {
  public:
-  /// Throws UserError when the configuration describes no cache.
+  /// Throws UserError when no cache can have this configuration.
   explicit Cache(const CacheConfig& config);
 
   /// Reads `bytes` (at least 1) from `address`, line by line; returns the number of lines that missed.
   /// Addresses reach up to 2^32 - 1 lines; beyond that it throws UserError.
   std::int64_t read(Address address, std::uint64_t bytes);
 
-  /// Takes the lines that hold any of these bytes out of the cache, as when somebody else has written them;
-  /// returns how many were there. Counts nothing. Throws as read() does.
+  /// Removes the lines that hold any of these bytes, as after a write by another node; returns how many lines
+  /// were removed. Counts nothing. Throws as read() does.
   std::int64_t invalidate(Address address, std::uint64_t bytes);
 
   [[nodiscard]] const CacheCounters& counters() const { return counters_; }

@@ -1,4 +1,4 @@
-// What a cache is, before it is built.
+// The configuration of a cache.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ inline constexpr std::array<std::string_view, 4> replacement_names = {"lru", "fi
 /// The size that means "one set": as many ways as there are lines.
 inline constexpr std::uint32_t full_ways = 0;
 
-/// Geometry of one cache. Data are not simulated, only tags: reads allocate, writes never reach it.
+/// Geometry of one cache. Only tags are simulated, not data: reads allocate, writes bypass the cache.
 struct CacheConfig {
   std::uint64_t size = 16 * 1024;  ///< bytes; a whole number of sets of lines
   std::uint32_t line = 32;         ///< bytes; a power of two
@@ -39,9 +39,9 @@ inline constexpr std::uint64_t most_lines = std::uint64_t{1} << 28U;
 /// Throws UserError with the reason when no such cache can be built.
 [[nodiscard]] CacheShape shape_of(const CacheConfig& config);
 
-/// The state of random replacement: one stream of victims per set, the same wherever it is asked. Each
-/// call gives the next way, uniform over 0 .. ways - 1 up to 2^-32 (SplitMix64, Steele et al. 2014, scaled
-/// by the high half of a product).
+/// The state of random replacement: one stream of victims for each set, which depends only on seed and set.
+/// Each call gives the next way, uniform over 0 .. ways - 1 up to 2^-32 (SplitMix64, Steele et al. 2014,
+/// scaled by the high half of a product).
 class VictimStream {
  public:
   VictimStream(std::uint64_t seed, std::uint64_t set) : state_(seed + set * 0xd1342543de82ef95ULL) {}

@@ -1,4 +1,4 @@
-// A crossbar: a link and a queue for each bank, so only transactions to one bank wait for each other.
+// A crossbar: a link and a queue for each bank, so only transactions of the same bank wait for each other.
 #pragma once
 
 #include "memory/interconnect.h"
@@ -6,10 +6,10 @@
 
 namespace marti::memory {
 
-/// A request reaches its bank's queue `latency_cycles` after it is issued. The bank serves it, the data
-/// leave over the bank's own link in the order of the requests, and arrive `latency_cycles` after their last
-/// beat. A write takes its place in the bank's queue when its address arrives; its data follow after the
-/// bank's access over a path of their own that is never the bottleneck and is not counted as a link.
+/// A request reaches its bank's queue `latency_cycles` after it is issued. The bank serves it, the data leave
+/// over the bank's own link in the order of the requests, and arrive `latency_cycles` after their last beat.
+/// A write is queued at the bank when its address arrives; its data follow after the bank's access, over a
+/// separate path that is never the bottleneck and is not counted as a link.
 class Crossbar final : public Interconnect {
  public:
   Crossbar(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site);

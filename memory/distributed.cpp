@@ -11,8 +11,8 @@ using sim::Ticks;
 
 namespace {
 
-// Sequence numbers of a port's events: 0 is its read, 1 + n its write number n. Numbers come round again long
-// after the write that had them is done.
+// Sequence numbers of a port's events: 0 is its read, 1 + n its write number n. A number is used again only
+// long after the write that had it is done.
 constexpr std::uint32_t write_numbers = (1U << sim::sequence_bits) - 1;
 
 }  // namespace
@@ -44,7 +44,7 @@ Distributed::Distributed(const DistributedConfig& config, const InterconnectSite
 
 Ticks Distributed::unloaded_read(std::uint32_t bytes) const {
   const Ticks memory = add_ticks(access_, beats(bytes));
-  __extension__ __int128 messages = 0;  // the sum may not fit where the mean does
+  __extension__ __int128 messages = 0;  // the sum may overflow though the mean fits
   for (std::uint32_t home = 1; home < nodes_; ++home) {
     messages += add_ticks(network_->unloaded(0, home, header_), network_->unloaded(home, 0, header_ + bytes));
   }

@@ -3,7 +3,7 @@
 // After the machines of Green, Paddon, Exploiting coherence for multiprocessor ray tracing, IEEE CG&A 9(6),
 // 1989, and Badouel, Priol, An efficient parallel ray tracing scheme for highly parallel architectures,
 // Advances in Computer Graphics Hardware V, 1990 (Springer 1992): each node's own memory holds a part of the
-// database, and what a node reads of the others' parts it keeps in its cache.
+// database, and a node caches what it reads of the others' parts.
 #pragma once
 
 #include <array>
@@ -18,9 +18,9 @@
 namespace marti::memory {
 
 struct DistributedConfig {
-  std::uint32_t nodes = 1;         ///< of the cluster; each has as many of the site's ports as the others
+  std::uint32_t nodes = 1;         ///< of the cluster; the site's ports are divided equally among them
   std::uint32_t interleave = 32;   ///< bytes in a row at one node; a power of two
-  std::uint32_t header_bytes = 8;  ///< a request; also the head of data and of a write; at least 1
+  std::uint32_t header_bytes = 8;  ///< of a request; also the header of data and of a write; at least 1
   sim::Clock clock = sim::Clock::from_hertz(33e6);  ///< of a node's memory
   std::uint32_t width = 8;                          ///< bytes a beat of that memory
   std::int64_t access_cycles = 4;
@@ -28,7 +28,7 @@ struct DistributedConfig {
   NetworkConfig network;
 };
 
-/// Where the accesses went. A home is the node whose memory holds the bytes.
+/// Accesses by destination. A home is the node whose memory holds the bytes.
 struct DistributedStatistics {
   std::int64_t local_reads = 0;
   std::int64_t remote_reads = 0;
@@ -48,15 +48,15 @@ struct DistributedStatistics {
 static_assert(sim::declares_every_member<DistributedStatistics>());
 
 /// Unit u of the address space is at home u mod nodes. A home's memory serves one access at a time, in order
-/// of arrival, its own node's and the others' alike; an access keeps it for `access_cycles` and the beats of
-/// its bytes. A read of another home sends a request, and the data come back when the memory has them. A
-/// write of another home sends header and bytes and is done when the memory has it; nothing comes back.
-/// At one instant a node's own accesses come before those that arrive over the network.
+/// of arrival, whether it comes from its own node or from another; an access takes `access_cycles` and the
+/// beats of its bytes. A read from another home sends a request, and the data come back when the memory has
+/// served it. A write to another home sends header and bytes and is done when the memory has served it; there
+/// is no reply. At one instant a node's own accesses come before those that arrive over the network.
 ///
 /// The interconnect's `busy`, `links` and `waits` are those of the network; banks are the homes' memories.
 class Distributed final : public Interconnect {
  public:
-  /// Throws UserError for a width of 0 and an interleave that is no power of two.
+  /// Throws UserError for a width of 0 and for an interleave that is not a power of two.
   Distributed(const DistributedConfig& config, const InterconnectSite& site);
 
   void read(const Transaction& transaction) override;
@@ -78,9 +78,9 @@ class Distributed final : public Interconnect {
     Service service;
     std::uint32_t home = 0;
     std::uint32_t bytes = 0;
-    bool served = false;  // the memory has served it; the data are to be sent
+    bool served = false;  // the memory has served it; the data must still be sent
   };
-  // A port's write that its home does not have yet, or that is done before an older one.
+  // A port's write that has not reached its home yet, or that is done before an older one.
   struct Write {
     std::uint32_t home = 0;
     std::uint32_t bytes = 0;
@@ -103,13 +103,13 @@ class Distributed final : public Interconnect {
   [[nodiscard]] sim::Ticks beats(std::uint32_t bytes) const {
     return sim::multiply_ticks(beat_, (std::int64_t{bytes} + width_ - 1) / width_);
   }
-  // An access of `bytes` that arrives at the home now: when it starts and when the memory is done with it.
+  // Starts an access of `bytes` that arrives at the home now; returns its start and its end.
   BankAccess access(std::uint32_t home, std::uint32_t bytes);
   Delivery send(std::uint32_t from, std::uint32_t to, std::uint32_t bytes);
   void post(sim::Ticks time, std::uint32_t port, std::uint32_t sequence);
-  // The write `number` of the port reaches its home.
+  // Write `number` of the port reaches its home.
   void arrive(std::uint32_t port, std::uint32_t number);
-  // The port's write with this place among those not told of is done at `done`.
+  // The port's write at this place in its list is done at `done`.
   void finish(std::uint32_t port, std::size_t place, sim::Ticks done);
 
   InterconnectSite site_;

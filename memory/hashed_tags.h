@@ -1,6 +1,6 @@
-// Tags of caches with many ways (up to fully associative): each set has a hash table from line to way
-// and, for LRU and FIFO, a list of its ways from the newest to the oldest, or a tree of bits. A look-up costs
-// the same whatever the number of ways.
+// Tags of caches with many ways (up to fully associative). Each set has a hash table from line to way, and
+// either, for LRU and FIFO, a list of its ways from the newest to the oldest, or a tree of bits. The time of
+// a look-up does not depend on the number of ways.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ class HashedTags {
     }
   }
 
-  /// As SetTags::View.
+  /// One of the caches, with the members of SetTags::View.
   class View {
    public:
     View(HashedTags& tags, std::uint32_t cache) : tags_(&tags), cache_(cache) {}
@@ -49,7 +49,7 @@ class HashedTags {
   [[nodiscard]] View view(std::uint32_t cache) { return {*this, cache}; }
 
  private:
-  // A list of the ways says which is the oldest.
+  // Whether a list of the ways gives the oldest one.
   static constexpr bool listed = Policy == Replacement::lru || Policy == Replacement::fifo;
 
   void use(std::size_t set, std::uint32_t way) {
@@ -105,7 +105,7 @@ class HashedTags {
       unlink(state, ways, way);
     }
     ways[way].line = no_line;
-    // Emptied ways form a chain in ascending order.
+    // Emptied ways are linked in ascending order.
     std::uint32_t* link = &state.emptied;
     while (*link < way) {
       link = &ways[*link].older;
@@ -122,13 +122,13 @@ class HashedTags {
     std::uint32_t older = empty;
   };
   struct Set {
-    std::uint32_t used = 0;         // ways ever used
-    std::uint32_t emptied = empty;  // the first of them that is empty again
+    std::uint32_t used = 0;         // number of ways ever used
+    std::uint32_t emptied = empty;  // the first way that was used and is empty again
     std::uint32_t newest = empty;
     std::uint32_t oldest = empty;
   };
 
-  // A power of two at least twice the ways keeps the probes short.
+  // A power of two at least twice the number of ways, so that probe sequences are short.
   static std::uint32_t slots_for(std::uint32_t ways) {
     std::uint32_t slots = 4;
     while (slots < 2 * std::uint64_t{ways}) {
@@ -158,7 +158,7 @@ class HashedTags {
     table[slot] = way;
   }
 
-  // Linear probing with backward shift: entries behind the hole move up unless that is before their home.
+  // Linear probing with backward shift: an entry behind the hole moves up unless that is before its home.
   void erase(std::uint32_t* table, const Way* ways, std::uint32_t line) const {
     std::uint32_t hole = home(line);
     while (ways[table[hole]].line != line) {

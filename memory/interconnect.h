@@ -22,12 +22,12 @@ namespace marti::memory {
 
 enum class InterconnectKind : std::uint8_t { ideal, bus, crossbar };
 
-/// held: a read keeps the bus from its address to its last data. split: it gives the bus back while the
-/// bank works, and its data compete for the bus like a request.
+/// held: a read keeps the bus from its address to its last data. split: it gives the bus back while the bank
+/// works, and its data compete for the bus as a request does.
 enum class BusMode : std::uint8_t { held, split };
 
-/// Whom a bus is granted to when several ask for it. fifo: who asked first. round_robin: the port after the
-/// one that had it last. fixed_priority: data before addresses and writes, then the lowest port.
+/// Which of several asking ports gets the bus. fifo: the one that asked first. round_robin: the next one
+/// after the port that had it last. fixed_priority: data before addresses and writes, then the lowest port.
 enum class Arbitration : std::uint8_t { fifo, round_robin, fixed_priority };
 inline constexpr std::array<std::string_view, 3> arbitration_names = {"fifo", "round_robin",
                                                                       "fixed_priority"};
@@ -40,7 +40,7 @@ struct InterconnectConfig {
   std::uint32_t width = 8;           ///< bytes a beat
   std::int64_t cycles_per_beat = 1;  ///< cycles to move one beat of data
   std::int64_t address_cycles = 1;   ///< bus: cycles to send an address
-  std::int64_t latency_cycles = 10;  ///< ideal: a whole read or write; crossbar: one way through it
+  std::int64_t latency_cycles = 10;  ///< ideal: for a whole read or write; crossbar: in each direction
 };
 
 /// One transaction of a port (a node of the cluster, counted from 0).
@@ -50,7 +50,7 @@ struct Transaction {
   std::uint32_t bytes = 0;  ///< at least 1
 };
 
-/// How a read's time divides. The four parts add up to `done` minus the time of the request.
+/// The parts of a read's time. The four parts add up to `done` minus the time of the request.
 struct Service {
   sim::Ticks done = 0;
   sim::Ticks wait_interconnect = 0;
@@ -59,20 +59,20 @@ struct Service {
   sim::Ticks bank = 0;
 };
 
-/// Who issues transactions. Both calls may come during the request itself and may name a future time; or they
+/// The issuer of transactions. Both calls may come during the request itself, with a future time, or they
 /// come later.
 class InterconnectClient {
  public:
   virtual ~InterconnectClient() = default;
   virtual void read_done(std::uint32_t port, const Service& service) = 0;
-  /// The port's oldest write of which nothing was said yet has left its write buffer for good at `done`. Each
-  /// port hears of its writes in the order in which it made them. `done` is past only for a write that was
-  /// done before an older one.
+  /// Reports the port's oldest write not reported yet: it leaves its write buffer at `done`. Each port's
+  /// writes are reported in the order in which they were made. `done` is in the past only for a write that
+  /// was done before an older one.
   virtual void write_done(std::uint32_t port, sim::Ticks done) = 0;
 };
 
-/// What went through an interconnect. `busy` sums the transfers of all its links; `links` is how many can
-/// transfer at the same time.
+/// The traffic of an interconnect. `busy` is the sum of the transfer times of all links; `links` is the
+/// number of transfers that are possible at the same time.
 struct InterconnectStatistics {
   std::int64_t reads = 0;
   std::int64_t writes = 0;
@@ -102,31 +102,31 @@ class Interconnect {
   virtual void read(const Transaction& transaction) = 0;
   /// A posted write at the engine's current time.
   virtual void write(const Transaction& transaction) = 0;
-  /// Reads that the port has made by itself, without asking: only where every read takes unloaded_read()
-  /// whatever else goes on. Any number, of so many bytes together, at any time.
+  /// Counts reads that the port has made without calling read(), `bytes` in all, at any times. Only for an
+  /// interconnect whose every read takes unloaded_read(), whatever other traffic there is.
   virtual void count_reads(std::int64_t reads, std::int64_t bytes);
-  /// The event of the site's reply class for `port` has come up; only an interconnect that posts such
-  /// events is ever called.
+  /// Handles the event of the site's reply class for `port`; called only if this interconnect posts such
+  /// events.
   virtual void reply(std::uint32_t port);
-  /// The event of the site's memory class for `port`, with this sequence number, has come up; likewise.
+  /// Handles the event of the site's memory class for `port` with this sequence number, if such are posted.
   virtual void proceed(std::uint32_t port, std::uint32_t sequence);
 
   [[nodiscard]] virtual const InterconnectStatistics& statistics() const = 0;
-  /// Statistics of the banks behind it; empty where no banks are modelled.
+  /// Statistics of the banks; empty where no banks are modelled.
   [[nodiscard]] virtual const std::vector<BankStatistics>& bank_statistics() const = 0;
-  /// Of a distributed memory, where the accesses went, and what its network carried; else null.
+  /// The destinations of accesses to a distributed memory; null for all others.
   [[nodiscard]] virtual const DistributedStatistics* distribution() const { return nullptr; }
   [[nodiscard]] virtual const NetworkStatistics* network_statistics() const { return nullptr; }
-  /// Statistics of the cache before them; null where there is none.
+  /// Statistics of the cache before the banks; null where there is none.
   [[nodiscard]] virtual const SharedCacheStatistics* cache_statistics() const { return nullptr; }
   /// Time of a read of `bytes` that meets no other transaction.
   [[nodiscard]] virtual sim::Ticks unloaded_read(std::uint32_t bytes) const = 0;
 };
 
-/// Where an interconnect is plugged in. Whoever handles the engine's events of `reply_class` and
-/// `memory_class` passes each on to `reply` or `proceed` of the interconnect whose ports the event's
-/// component lies among. The memory class comes after those in which requests are made, so that at its events
-/// all requests of the instant are known.
+/// What an interconnect is connected to. The handler of the engine's events of `reply_class` and
+/// `memory_class` passes each event to `reply` or `proceed` of the interconnect to which the event's
+/// component belongs. The memory class comes after the classes in which requests are made, so that at its
+/// events all requests of the instant are known.
 struct InterconnectSite {
   sim::Engine& engine;
   InterconnectClient& client;
@@ -136,7 +136,7 @@ struct InterconnectSite {
   std::uint8_t memory_class = 0;
 };
 
-/// What every read of an ideal interconnect takes.
+/// The time of every read of an ideal interconnect.
 [[nodiscard]] sim::Ticks ideal_read(const InterconnectConfig& config);
 
 /// Builds the interconnect that the configuration names. Engine and client must outlive it.

@@ -16,7 +16,7 @@ std::uint64_t round_up(std::uint64_t value, std::uint64_t multiple) {
   return (value + multiple - 1) / multiple * multiple;
 }
 
-// What the configuration calls the size of such a record.
+// The configuration key of the size of such a record.
 std::string key_of(std::string_view name) {
   return "layout." +
          std::string(name == record_kind_names[static_cast<std::size_t>(RecordKind::list)] ? "entry" : name);

@@ -1,10 +1,10 @@
-// The database layout: where each record lives, computed from record sizes and an alignment.
+// The database layout: the address of each record, computed from record sizes and an alignment.
 //
-// The sections lie one behind the other from address 0: nodes, object lists, primitives, materials,
-// texels, frame buffer. Records of a section are a stride apart: the record's size rounded up to the
-// record alignment (object lists, texels and pixels are packed arrays, so they are not padded). The
-// primitives are of two sizes: first all triangles, then the spheres, cylinders and cones (quadrics),
-// numbered on from them.
+// The sections follow one another from address 0: nodes, object lists, primitives, materials, texels, frame
+// buffer. Records of a section are a stride apart: the record's size rounded up to the record alignment
+// (object lists, texels and pixels are packed arrays, so they are not padded). Primitives have two sizes:
+// first come all triangles, then the spheres, cylinders and cones (quadrics), whose numbers continue those of
+// the triangles.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct LayoutConfig {
   NodeOrder node_order = NodeOrder::breadth_first;
 };
 
-/// Number of records in each section; of the primitives all, quadrics too.
+/// Number of records in each section; primitives include quadrics.
 using RecordCounts = std::array<std::uint64_t, record_kinds>;
 
 /// The layout of one database. Throws UserError for a size of zero, an alignment that is not a power of
@@ -47,7 +47,7 @@ class Layout {
     const Section& section = section_of(kind, index);
     return section.base + (index - section.first) * section.stride;
   }
-  /// Bytes of a record; of a primitive one that is a triangle.
+  /// Bytes of a record; for primitives, of a triangle.
   [[nodiscard]] std::uint32_t record_bytes(RecordKind kind) const {
     return sections_[static_cast<std::size_t>(kind)].bytes;
   }
@@ -59,7 +59,7 @@ class Layout {
   [[nodiscard]] std::uint32_t stride(RecordKind kind) const {
     return sections_[static_cast<std::size_t>(kind)].stride;
   }
-  /// Bytes of one section's records, without the gap behind it.
+  /// Bytes of one section's records, without the gap after the last.
   [[nodiscard]] std::uint64_t section_bytes(RecordKind kind) const {
     const Section& section = sections_[static_cast<std::size_t>(kind)];
     const std::uint64_t bytes = section.count * section.stride;
@@ -67,7 +67,7 @@ class Layout {
   }
   /// One past the last address, frame buffer included.
   [[nodiscard]] Address end() const { return end_; }
-  /// Bytes of all sections but the frame buffer: what a node or a cluster keeps a copy of.
+  /// Bytes of all sections except the frame buffer: the size of one copy of the database.
   [[nodiscard]] std::uint64_t database_bytes() const;
 
  private:

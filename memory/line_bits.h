@@ -1,4 +1,4 @@
-// A set of lines that grows as far as it is used.
+// A set of lines that takes host memory as far as the highest line in it.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@ namespace marti::memory {
 
 class LineBits {
  public:
-  /// Puts a line in; true when it was not there.
+  /// Inserts a line; true when it was not in the set.
   bool insert(std::uint32_t line) {
     if (line / 64 >= words_.size()) {
       words_.resize(line / 64 + 1);
@@ -19,7 +19,7 @@ class LineBits {
     word |= bit;
     return added;
   }
-  /// Takes a line out; true when it was there.
+  /// Removes a line; true when it was in the set.
   bool erase(std::uint32_t line) {
     if (line / 64 >= words_.size()) {
       return false;

@@ -12,10 +12,10 @@ namespace marti::memory {
 /// Sums over all clusters; a line that two clusters use is two lines.
 struct SharingResult {
   std::int64_t fetches = 0;
-  std::int64_t distinct = 0;                      ///< lines that anybody fetched
-  std::map<std::uint32_t, std::int64_t> fetched;  ///< by how many nodes: how many lines
+  std::int64_t distinct = 0;                      ///< lines that at least one node fetched
+  std::map<std::uint32_t, std::int64_t> fetched;  ///< lines by the number of nodes that fetched them
 
-  /// Fetches of lines that somebody of the cluster, perhaps the same node, had fetched before.
+  /// Fetches of lines that a node of the same cluster, perhaps the same node, had fetched before.
   [[nodiscard]] std::int64_t duplicates() const { return fetches - distinct; }
   /// Lines that exactly `nodes` nodes fetched.
   [[nodiscard]] std::int64_t by(std::uint32_t nodes) const {
@@ -38,7 +38,7 @@ class LineSharing {
   std::uint32_t nodes_;
   std::int64_t fetches_ = 0;
   std::vector<LineBits> fetched_by_;
-  std::vector<std::vector<std::uint32_t>> users_;  // of each cluster: of each line how many nodes
+  std::vector<std::vector<std::uint32_t>> users_;  // for each cluster and line: number of nodes
 };
 
 }  // namespace marti::memory

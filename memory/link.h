@@ -1,4 +1,4 @@
-// A shared wire: how long data take on it, and its queue, first come first served.
+// A shared link: how long data take on it, and its queue, first come first served.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 namespace marti::memory {
 
-/// Time of `bytes` on a link of the configured width, in whole beats. Nearly all transactions are of one
-/// size, so the last answer is kept.
+/// Time of `bytes` on a link of the configured width, in whole beats. Nearly all transactions have the same
+/// size, so the last result is kept.
 class BeatTime {
  public:
   explicit BeatTime(const InterconnectConfig& config)
@@ -31,9 +31,9 @@ class BeatTime {
 /// One server with a queue. Calls must come in the order of their arrivals.
 class Link {
  public:
-  /// When a tenure that asks at `arrival` begins.
+  /// The time at which a tenure that asks at `arrival` begins.
   [[nodiscard]] sim::Ticks begin(sim::Ticks arrival) const { return std::max(arrival, free_at_); }
-  /// The tenure that has begun last keeps the link until `end`.
+  /// Keeps the link until `end`, for the tenure that has begun last.
   void hold_until(sim::Ticks end) { free_at_ = end; }
 
  private:

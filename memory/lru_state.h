@@ -7,20 +7,20 @@
 
 namespace marti::memory {
 
-/// All 24 orders of four ways. A state is the number of its order times 16, so that state + match indexes
-/// the table, `match` being the look-up's result with one bit a way. State 0 has way 0 as the most recent
-/// and way 3 as the victim.
+/// All 24 orders of four ways. A state is the number of its order times 16, so that state + match indexes the
+/// table; `match` is the result of the look-up, one bit for each way. In state 0 way 0 is the most recent and
+/// way 3 the victim.
 struct LruStates {
   static constexpr std::uint32_t ways = 4;
   static constexpr std::size_t orders = 24;
   static constexpr std::size_t matches = 16;
 
-  /// [state + match]: the state after a hit of the lowest way in `match`, or, for match 0, after the victim
-  /// was replaced.
+  /// [state + match]: the state after a hit of the lowest way in `match`; for match 0, after the victim was
+  /// replaced.
   std::array<std::uint16_t, orders * matches> next{};
   /// [state / 16]: the least recent way.
   std::array<std::uint8_t, orders> victim{};
-  /// [state / 16 * ways + way]: the state after `way` was emptied: it is the next victim.
+  /// [state / 16 * ways + way]: the state after `way` was emptied, which makes it the next victim.
   std::array<std::uint16_t, orders * ways> emptied{};
 
   constexpr LruStates() {

@@ -1,11 +1,11 @@
-// Why a cache missed.
+// Classes of cache misses, by cause.
 //
 // The classes are those of Hill and Smith, Evaluating associativity in CPU caches, IEEE Transactions on
-// Computers 38(12), 1989, reference by reference, and beside them the misses that coherence makes:
-//   compulsory    the cache has never had the line
-//   invalidation  a write of somebody else has taken the line out since
+// Computers 38(12), 1989, reference by reference, and in addition the misses caused by coherence:
+//   compulsory    the cache has never held the line
+//   invalidation  a write by another node has removed the line since
 //   capacity      a fully associative LRU cache of as many lines would miss too
-//   conflict      the rest: it would have had the line
+//   conflict      the rest: that cache would have held the line
 #pragma once
 
 #include <array>
@@ -23,22 +23,22 @@ inline constexpr std::size_t miss_classes = 4;
 inline constexpr std::array<std::string_view, miss_classes> miss_class_names = {"compulsory", "capacity",
                                                                                 "conflict", "invalidation"};
 
-/// Follows many equal caches, each on its own.
+/// Classifies the misses of many equal caches, each independently of the others.
 class MissClassifier {
  public:
-  /// `lines` of each cache, at least 1.
+  /// `lines`, at least 1, is the number of lines of each cache.
   MissClassifier(std::uint64_t lines, std::uint32_t caches);
 
-  /// Every reference of a cache, in order.
+  /// Call hit() or miss() for every reference of a cache, in order.
   void hit(std::uint32_t cache, std::uint32_t line) { (void)full_.access(cache, line); }
   MissClass miss(std::uint32_t cache, std::uint32_t line);
-  /// A write has taken out a line that the cache had.
+  /// A write has removed a line that the cache held.
   void taken_out(std::uint32_t cache, std::uint32_t line);
 
  private:
   TagArray full_;
   std::vector<LineBits> had_;
-  std::vector<LineBits> taken_;  // and not brought in again
+  std::vector<LineBits> taken_;  // lines removed by a write and not brought in again
 };
 
 }  // namespace marti::memory

@@ -65,7 +65,7 @@ class IdealNetwork final : public CountedNetwork {
   }
 };
 
-// `holds_hop`: a link is held for the latency too, so that only one message is on its way at a time.
+// With `holds_hop` a link is also held for the latency, so that only one message is on its way at a time.
 template <class Routes, bool holds_hop>
 class RoutedNetwork final : public CountedNetwork {
  public:
@@ -101,7 +101,7 @@ class RoutedNetwork final : public CountedNetwork {
   }
 
   Routes routes_;
-  std::vector<Ticks> free_at_;  // of each link
+  std::vector<Ticks> free_at_;  // when each link is free
 };
 
 }  // namespace

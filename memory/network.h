@@ -1,14 +1,14 @@
 // The network that carries messages between the nodes of a cluster, and to and from the host.
 //
-// A message is sent whole: `send` grants it, in order of sending, every link of its way and says at once when
-// its last byte arrives. Links are first come first served by the time of sending; a message cuts through
-// (Kermani, Kleinrock, Virtual cut-through, Computer Networks 3, 1979): its head waits for each link in turn
-// and crosses it in the latency of a hop, each link is held for the beats of the data, and the last byte
-// arrives these beats after the head. Routers have room for whatever waits in them.
+// A message is sent whole: `send` grants it, in order of sending, every link of its way and returns the
+// arrival of its last byte at once. Links are first come first served by the time of sending. A message cuts
+// through (Kermani, Kleinrock, Virtual cut-through, Computer Networks 3, 1979): its head waits for each link
+// in turn and crosses it in the latency of a hop, each link is held for the beats of the data, and the last
+// byte arrives these beats after the head. Routers have unlimited buffers.
 //
 // Ports 0 .. nodes - 1 are the nodes, port `nodes` is the host. In a mesh and a hypercube each node has a
-// router, which it reaches without a link, and the host hangs on node 0's router by a link of its own each
-// way: so the host makes neither of them larger.
+// router, which it reaches without a link, and the host is connected to node 0's router by a link of its own
+// in each direction, so it does not enlarge the mesh or hypercube.
 #pragma once
 
 #include <array>
@@ -33,24 +33,24 @@ struct NetworkConfig {
   sim::Clock clock = sim::Clock::from_hertz(33e6);
   std::uint32_t width = 4;           ///< bytes a beat of one link
   std::int64_t cycles_per_beat = 1;  ///< cycles to move one beat
-  std::int64_t hop_cycles = 2;       ///< latency of each hop; ideal, bus, crossbar: of the whole way
+  std::int64_t hop_cycles = 2;       ///< latency of a hop; ideal, bus, crossbar: of the whole way
 };
 
 /// The course of one message. `arrival` is `wait + transfer` after it was sent.
 struct Delivery {
   sim::Ticks arrival = 0;
-  sim::Ticks wait = 0;      ///< for links
+  sim::Ticks wait = 0;      ///< waiting for links
   sim::Ticks transfer = 0;  ///< hops and beats
 };
 
-/// What went through a network. A message from a port to itself uses no link and is not counted.
+/// The traffic of a network. A message from a port to itself uses no link and is not counted.
 struct NetworkStatistics {
   std::int64_t messages = 0;
   std::int64_t bytes = 0;
   std::int64_t hops = 0;
   std::int64_t links = 0;
   sim::Ticks busy = 0;
-  WaitStatistics waits;  ///< of each message: all its links together
+  WaitStatistics waits;  ///< one for each message, the sum over its links
 
   static constexpr auto counters() {
     using C = sim::Counter<NetworkStatistics>;
@@ -68,12 +68,12 @@ class Network {
   virtual ~Network() = default;
 
   /// Sends `bytes` (at least 1) at `now`. Calls come in the order of simulated time. A message to its own
-  /// port arrives at once. Messages of one port to another arrive in the order of sending.
+  /// port arrives at once. Messages between the same two ports arrive in the order of sending.
   virtual Delivery send(sim::Ticks now, std::uint32_t from, std::uint32_t to, std::uint32_t bytes) = 0;
 
   /// Links on the way from one port to another; ideal: 0.
   [[nodiscard]] virtual std::uint32_t hops(std::uint32_t from, std::uint32_t to) const = 0;
-  /// Time of a message that meets no other: 0 to its own port.
+  /// Time of a message when there is no other traffic; 0 to its own port.
   [[nodiscard]] virtual sim::Ticks unloaded(std::uint32_t from, std::uint32_t to,
                                             std::uint32_t bytes) const = 0;
 
@@ -84,7 +84,7 @@ class Network {
 /// UserError for a width of 0.
 [[nodiscard]] std::unique_ptr<Network> make_network(const NetworkConfig& config, std::uint32_t nodes);
 
-/// Host bytes that the links of such a network take.
+/// Bytes of host memory for the links of such a network.
 [[nodiscard]] std::uint64_t network_bytes(const NetworkConfig& config, std::uint32_t nodes);
 
 }  // namespace marti::memory

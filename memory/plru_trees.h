@@ -1,11 +1,11 @@
 // Trees of bits for tree-PLRU replacement, one for each set of a cache.
 //
 // A set of 2^k ways has a binary tree of 2^k - 1 bits above its ways. Each bit says in which half below it
-// the next victim lies. Using a way turns the bits on its path away from it. (So, R., Rechtschaffen, R.,
-// Cache operations by MRU change, IEEE Transactions on Computers 37(6), 1988; Al-Zoubi et al., ACM Southeast
-// Regional Conference 2004, name it tree-based pseudo-LRU.)
+// the next victim lies. Using a way sets the bits on its path to point away from it. (So, R., Rechtschaffen,
+// R., Cache operations by MRU change, IEEE Transactions on Computers 37(6), 1988; Al-Zoubi et al., ACM
+// Southeast Regional Conference 2004, call it tree-based pseudo-LRU.)
 //
-// Taking a line out leaves the bits alone, so it commutes with uses of other lines of the set.
+// Removing a line leaves the bits unchanged, so it commutes with uses of other lines of the set.
 #pragma once
 
 #include <bit>
@@ -21,7 +21,7 @@ class PlruTrees {
   PlruTrees(std::size_t sets, std::uint32_t ways)
       : ways_(ways), words_((ways + word_bits - 1) / word_bits), bits_(sets * words_) {}
 
-  /// `way` of the set has been used or filled.
+  /// Notes that `way` of the set has been used or filled.
   void use(std::size_t set, std::uint32_t way) {
     std::uint64_t* const bits = bits_.data() + set * words_;
     // Numbered as a heap: the root is 1, below n are 2 n and 2 n + 1, and the ways follow the last bit.

@@ -1,4 +1,4 @@
-// A set of ports that finds its next member quickly, however many ports there are.
+// A set of ports that finds its next member in logarithmic time.
 #pragma once
 
 #include <bit>
@@ -7,7 +7,7 @@
 
 namespace marti::memory {
 
-/// Words of 64 bits, and above each level a bit for each word that is not zero.
+/// Bits in words of 64; each level above has a bit for each word of the level below that is not zero.
 class PortSet {
  public:
   static constexpr std::uint32_t none = ~std::uint32_t{0};
@@ -37,7 +37,7 @@ class PortSet {
   }
   [[nodiscard]] bool empty() const { return levels_.back()[0] == 0; }
 
-  /// The lowest member that is at least `from`; none if there is none.
+  /// The lowest member that is at least `from`; `none` if there is no such member.
   [[nodiscard]] std::uint32_t at_or_after(std::uint32_t from) const {
     std::uint64_t at = from;
     std::size_t level = 0;

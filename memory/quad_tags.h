@@ -1,5 +1,5 @@
-// Tags of 4-way LRU caches: all four compared at once, and the recency order kept beside them as a number.
-// The commonest cache of the field gets the one look-up without a loop or an unpredictable branch.
+// Tags of 4-way LRU caches: all four are compared at once, and their recency order is kept as a number. The
+// commonest cache of the field thus has a look-up without a loop or an unpredictable branch.
 #pragma once
 
 #include <bit>
@@ -28,7 +28,7 @@ class QuadTags {
     std::uint32_t tags[4] = {no_line, no_line, no_line, no_line};
   };
 
-  /// One of the caches, with all that a look-up needs in registers.
+  /// One of the caches, with everything that a look-up needs in registers.
   class View {
    public:
     View(const SetIndex& index, Set* sets, std::uint16_t* states)

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t first_stamps = 1U << 13U;
 constexpr std::uint32_t most_stamps = 1U << 30U;
-// Stamping anew costs each use as much as it takes for 1 / (this - 1) lines.
+// Restamping adds to each use the time of stamping 1 / (stamps_a_line - 1) lines.
 constexpr std::uint32_t stamps_a_line = 4;
 
 }  // namespace

@@ -1,12 +1,12 @@
 // Lines in the order of their last use, with the number of lines used since a given one.
 //
-// Each use has a time stamp, and each stamp a bit that says whether it is the last one of its line. The
-// number of lines used since a stamp is the number of bits behind it: bits are counted by words of 64, by 4
-// words, by blocks of 16 words, and from there on by 16 of the level below, so the sum takes a part of one
-// group of each level, and nothing of the levels above the one where that group is also the newest. The bits
-// of a word are set when its first stamp is used, and a block is counted in the levels above when it has been
-// used up, so that a use costs them nothing. When all stamps are used up, the lines are stamped anew in their
-// order.
+// Each use has a time stamp, and each stamp has a bit that is set if it is the last one of its line. The
+// number of lines used since a stamp is the number of set bits behind it. Bits are counted by words of 64, by
+// 4 words, by blocks of 16 words, and from there on by groups of 16 of the level below. A sum therefore takes
+// a part of one group of each level, and needs no levels above the one where that group is also the newest.
+// The bits of a word are set in advance when its first stamp is used, and a block is counted in the levels
+// above when all its stamps are used, so that a use does not have to update them. When all stamps are used
+// up, the lines get new stamps in the same order.
 #pragma once
 
 #include <array>
@@ -22,8 +22,8 @@ class RecencyTree {
 
   RecencyTree();
 
-  /// How many other lines have been used since `line` was, or `absent` when it has never been used. Makes it
-  /// the newest one.
+  /// Returns how many other lines have been used since the last use of `line`, or `absent` when it has never
+  /// been used. Makes it the newest one.
   [[gnu::always_inline]] std::uint32_t use(std::uint32_t line) {
     if (next_ % 64 == 0) [[unlikely]] {
       begin_word();
@@ -45,10 +45,10 @@ class RecencyTree {
     return newer - (64 - now % 64);  // without the bits from now on
   }
 
-  /// Lines that have been used.
+  /// Number of lines that have been used.
   [[nodiscard]] std::uint32_t lines() const { return lines_; }
 
-  /// No line has been used.
+  /// Forgets all uses.
   void clear();
 
  private:
@@ -59,18 +59,18 @@ class RecencyTree {
   static constexpr unsigned page_bits = 10;
   using Page = std::array<std::uint32_t, 1U << page_bits>;
 
-  // The bits of 1,024 stamps. Four counts of 16 bits to a word: of each word, and of each four words.
+  // The bits of 1,024 stamps, and counts of them, four 16-bit ones to a word: by words and by four words.
   struct alignas(8) Block {
     std::array<std::uint64_t, 16> words{};
     std::array<std::uint64_t, 4> of_words{};
     std::uint64_t of_fours = 0;
   };
   static std::uint64_t lane(std::uint32_t index) { return std::uint64_t{1} << (16 * (index % 4)); }
-  // The sum of the counts behind that of `index`.
+  // The sum of the counts after that of `index`.
   static std::uint32_t behind(std::uint64_t counts, std::uint32_t index) {
     return static_cast<std::uint32_t>(((counts >> 16U >> (16 * (index % 4))) * 0x0001000100010001U) >> 48U);
   }
-  // As std::popcount, which is a call where the processor may lack the instruction.
+  // std::popcount without its function call on processors that may lack the instruction.
   static std::uint32_t bits_of(std::uint64_t word) {
     word -= (word >> 1U) & 0x5555555555555555U;
     word = (word & 0x3333333333333333U) + ((word >> 2U) & 0x3333333333333333U);
@@ -104,22 +104,22 @@ class RecencyTree {
   static std::uint32_t bits_of(const Block& block) {
     return static_cast<std::uint32_t>((block.of_fours * 0x0001000100010001U) >> 48U);
   }
-  // Before the first stamp of a word is used.
+  // Call it before the first stamp of a word is used.
   void begin_word();
-  // A bit of a block before the current one, `now`, is about to go; returns the bits behind that block.
+  // Counts off a bit in `block`, a block before the current one, `now`; returns the bits behind `block`.
   std::uint32_t leave_block(std::uint32_t block, std::uint32_t now);
   void size_for(std::uint32_t stamps);
   void stamp_anew();
   template <class Use>
   void for_each_here(const Use& use) const;
 
-  std::uint32_t stamps_ = 0;  // how many there are
-  std::uint32_t next_ = 0;    // the first one not yet used
+  std::uint32_t stamps_ = 0;  // number of stamps
+  std::uint32_t next_ = 0;    // the first stamp not used yet
   std::uint32_t lines_ = 0;
   std::vector<Block> here_;
   std::vector<std::vector<std::uint32_t>> blocks_;  // bits of blocks, of 16 blocks, and so on
-  std::vector<std::uint32_t> line_of_;              // of each stamp
-  // Of each line its last stamp + 1, or 0: a page for numbers of which any has been used.
+  std::vector<std::uint32_t> line_of_;              // by stamp
+  // For each line its last stamp + 1, or 0. Pages exist only for ranges of line numbers that have been used.
   std::vector<std::unique_ptr<Page>> pages_;
 };
 

@@ -1,8 +1,8 @@
-// The links of each kind of network, and the way of a message over them.
+// The links of each kind of network, and the route of a message over them.
 //
-// A `Routes` has: table_size(), the number of link numbers; links(), how many of them are links; hops(from,
-// to), and route(from, to, cross), which calls cross(link) for each link of the way in order. Ports are as in
-// network.h: the nodes and, last, the host. `from` and `to` differ.
+// A `Routes` has: table_size(), the number of link numbers; links(), how many of these are links; hops(from,
+// to); and route(from, to, cross), which calls cross(link) for each link of the route in order. Ports are as
+// in network.h: the nodes and, last, the host. `from` and `to` differ.
 #pragma once
 
 #include <bit>
@@ -12,7 +12,7 @@
 
 namespace marti::memory {
 
-/// One link for all.
+/// One link for all messages.
 class BusRoutes {
  public:
   explicit BusRoutes(std::uint32_t /*nodes*/) {}
@@ -41,8 +41,8 @@ class CrossbarRoutes {
   std::size_t ports_;
 };
 
-/// Adds the host, which hangs on router 0, to the routes between nodes. `Between` has table_size(), links(),
-/// hops(from, to) and route(from, to, cross) for nodes, which may be the same.
+/// Adds the host, which is connected to router 0, to the routes between nodes. `Between` has table_size(),
+/// links(), hops(from, to) and route(from, to, cross) for nodes, where `from` and `to` may be equal.
 template <class Between>
 class WithHost {
  public:
@@ -71,10 +71,10 @@ class WithHost {
 };
 
 /// A rectangle of routers: ceil(sqrt(nodes)) columns, node n in column n mod columns of row n / columns. The
-/// last row may be short. A message goes along its row first, then along its column. Only one kind of way
-/// would so meet a router that is not there: from the short row to a column beyond its end. It goes along its
-/// column first: the columns of the short row have all rows, and its goal lies in a full row. Turns from a
-/// column into a row are so always the same, upwards and to the right, which closes no circle of waiting.
+/// last row may be short. A message goes along its row first, then along its column. Only a message from the
+/// short row to a column beyond its end would so meet a missing router. It goes along its column first: the
+/// columns of the short row are complete, and its destination lies in a full row. All turns from a column
+/// into a row are thus upwards and to the right, which creates no cycle of waiting messages.
 class MeshRoutes {
  public:
   explicit MeshRoutes(std::uint32_t nodes)
@@ -128,19 +128,19 @@ class MeshRoutes {
   std::uint32_t last_length_;
 };
 
-/// A hypercube of the least dimension that holds all nodes; routers with numbers beyond the last node are not
-/// there (Katseff, Incomplete hypercubes, IEEE Trans. Computers 37(5), 1988). At each router a message
-/// crosses the lowest dimension in which it still differs from its goal and whose neighbour is there. There
-/// always is one: clearing a bit leads to a lower number; when only bits of the goal are left to be set,
-/// every way of setting them leads to a number not above the goal. With all routers there this is e-cube
-/// routing.
+/// A hypercube of the least dimension that holds all nodes; routers with numbers beyond the last node are
+/// missing (Katseff, Incomplete hypercubes, IEEE Trans. Computers 37(5), 1988). At each router a message
+/// crosses the lowest dimension in which it still differs from its destination and whose neighbour exists.
+/// There always is one: clearing a bit leads to a lower number; when only bits of the destination are left to
+/// be set, every order of setting them leads to numbers not above the destination. Without missing routers
+/// this is e-cube routing.
 class HypercubeRoutes {
  public:
   explicit HypercubeRoutes(std::uint32_t nodes)
       : nodes_(nodes), dimension_(static_cast<std::uint32_t>(std::bit_width(nodes - 1))) {}
   [[nodiscard]] std::size_t table_size() const { return std::size_t{nodes_} * dimension_; }
   [[nodiscard]] std::int64_t links() const {
-    std::int64_t pairs = 0;  // each pair once, from its higher number
+    std::int64_t pairs = 0;  // each pair counts once, at its higher number
     for (std::uint32_t node = 0; node < nodes_; ++node) {
       pairs += std::popcount(node);
     }

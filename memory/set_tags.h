@@ -14,7 +14,7 @@
 
 namespace marti::memory {
 
-/// Line numbers are 32 bits; this one is never a line of a database.
+/// Line numbers have 32 bits; this one is never a line of a database.
 inline constexpr std::uint32_t no_line = 0xffffffffU;
 
 /// The set of a line: the line's number modulo the number of sets.
@@ -29,9 +29,9 @@ class SetIndex {
   bool masked_;
 };
 
-/// `Policy` decides the victim; `Ways` is the number of ways where it is known when compiling, 0 where it
-/// is not. Within a set, LRU and FIFO keep the newest line first (LRU also moves a line there when it
-/// hits), so the victim is always the last; random replacement and tree-PLRU leave lines where they are.
+/// `Policy` decides the victim; `Ways` is the number of ways if it is known at compile time, else 0. Within a
+/// set, LRU and FIFO keep the newest line first (LRU also moves a line to the front when it hits), so the
+/// victim is always the last; random replacement and tree-PLRU leave lines in their ways.
 template <Replacement Policy, std::uint32_t Ways>
 class SetTags {
  public:
@@ -56,13 +56,13 @@ class SetTags {
   class View {
    public:
     View(SetTags& tags, std::uint32_t cache) : tags_(&tags), cache_(cache) {}
-    /// Looks `line` up; true when it is there. Brings it in when it is not.
+    /// Looks `line` up; true when the cache holds it. Brings a missing line in.
     bool access(std::uint32_t line) const { return tags_->access(cache_, line); }
-    /// The same, but a line that is not there is not brought in.
+    /// As access(), but does not bring a missing line in.
     bool touch(std::uint32_t line) const { return tags_->touch(cache_, line); }
-    /// Whether `line` is there; changes nothing.
+    /// Whether the cache holds `line`; changes nothing.
     [[nodiscard]] bool holds(std::uint32_t line) const { return tags_->holds(cache_, line); }
-    /// Takes `line` out; true when it was there. Its way is empty, and empty ways are filled first.
+    /// Removes `line`; true when the cache held it. Its way is then empty, and empty ways are filled first.
     bool remove(std::uint32_t line) const { return tags_->remove(cache_, line); }
 
    private:
@@ -72,7 +72,7 @@ class SetTags {
   [[nodiscard]] View view(std::uint32_t cache) { return {*this, cache}; }
 
  private:
-  // Lines stay in the way that they came into.
+  // Whether lines stay in the way that they were brought into.
   static constexpr bool stays = Policy == Replacement::random || Policy == Replacement::plru;
 
   bool access(std::uint32_t cache, std::uint32_t line) {
@@ -120,7 +120,7 @@ class SetTags {
   bool touch(std::uint32_t cache, std::uint32_t line) {
     const std::uint32_t* const tags = set_of(cache, line);
     const std::uint32_t ways = Ways == 0 ? ways_ : Ways;
-    // A line that is there is looked up without bringing anything in.
+    // access() brings nothing in here, because the line is found.
     return std::find(tags, tags + ways, line) != tags + ways && access(cache, line);
   }
 
@@ -134,7 +134,7 @@ class SetTags {
     if constexpr (stays) {
       *at = no_line;
     } else {
-      // Empty ways are the oldest, so they go first.
+      // Empty ways count as the oldest, so they are kept last.
       std::copy(at + 1, end, at);
       *(end - 1) = no_line;
     }
@@ -155,7 +155,7 @@ class SetTags {
     }
   }
 
-  // Empty ways are filled from the first on before there is a victim.
+  // Fills the first empty way; only if there is none, a victim is replaced.
   void replace(std::uint32_t* tags, std::uint32_t ways, std::size_t set, std::uint32_t line) {
     std::uint32_t way = 0;
     while (way < ways && tags[way] != no_line) {

@@ -1,11 +1,11 @@
 // A cache before the banks of a shared memory, used by all nodes of a cluster: a second level on the
 // memory's side of the interconnect.
 //
-// Reads look it up in the order in which they arrive. A hit is ready `hit_cycles` after its arrival and keeps
-// nobody else waiting; but a line that its bank is still reading is not ready before the bank has it. A
-// miss costs nothing here: it goes to its bank at once, and its line is brought in. Writes go through to
-// their banks and change the data of a line that is here, so nothing is ever stale; they bring nothing in and
-// are no use of a line.
+// Reads look it up in the order in which they arrive. A hit is ready `hit_cycles` after its arrival and
+// delays no other access; but a line that its bank is still reading is not ready before the bank has it. A
+// miss costs no time here: it goes to its bank at once, and its line is brought in. Writes go through to
+// their banks and update a line that the cache holds, so no line is ever stale; they bring no line in and do
+// not count as a use of a line.
 #pragma once
 
 #include <cstdint>
@@ -39,9 +39,9 @@ class SharedCache {
     sim::Ticks start = 0;
     sim::Ticks ready = 0;
   };
-  /// A read whose address arrives at `arrival`, in the order of arrivals. After a miss fill() must follow.
+  /// Looks up a read that arrives at `arrival`, in order of arrival. After a miss (std::nullopt) call fill().
   std::optional<Hit> read(Address address, sim::Ticks arrival);
-  /// The line of the read that missed last will be here at `ready`.
+  /// Says that the line of the last miss arrives at `ready`.
   void fill(sim::Ticks ready);
 
   [[nodiscard]] const SharedCacheStatistics& statistics() const { return statistics_; }
@@ -55,7 +55,7 @@ class SharedCache {
   SharedCacheStatistics statistics_;
   std::uint32_t missed_ = 0;
   sim::Ticks missed_at_ = 0;
-  /// When lines that were brought in lately are here. Those that have come are forgotten now and then.
+  /// The arrival times of lines brought in lately. Past ones are removed from time to time.
   std::unordered_map<std::uint32_t, sim::Ticks> coming_;
   std::size_t most_coming_ = 64;
 };

@@ -1,9 +1,9 @@
-// How far apart the uses of each line are: the misses of LRU caches of every size from one pass.
+// The distances between uses of each line, hence the misses of LRU caches of every size, from one pass.
 //
-// The distance of a reference is the number of other lines used since its line was used last. A fully
-// associative LRU cache holds the lines used last, so it misses a reference when the distance is at least its
-// number of lines, whatever that number is (Mattson, Gecsei, Slutz, Traiger, "Evaluation techniques for
-// storage hierarchies", IBM Systems Journal 9(2), 1970).
+// The distance of a reference is the number of other lines used since the last use of its line. A fully
+// associative LRU cache holds the lines used last, so a cache of any number of lines misses a reference
+// exactly when the distance is at least that number (Mattson, Gecsei, Slutz, Traiger, "Evaluation techniques
+// for storage hierarchies", IBM Systems Journal 9(2), 1970).
 //
 // Distances are counted in a tree over time stamps (Bennett and Kruskal, "LRU stack processing", IBM J. Res.
 // Dev. 19(4), 1975; Olken, "Efficient methods for calculating the success function of fixed space replacement
@@ -18,17 +18,17 @@
 
 namespace marti::memory {
 
-/// What became of all references of a pass.
+/// The counts of a pass.
 struct StackHistogram {
   std::int64_t references = 0;
   std::int64_t compulsory = 0;     ///< first uses of a line; every cache misses them
   std::vector<std::int64_t> hits;  ///< [d]: references at distance d; the last is not 0
 
-  /// Misses of a fully associative LRU cache of so many lines. Takes a time that grows with `lines`.
+  /// Misses of a fully associative LRU cache of so many lines. Takes time proportional to `lines`.
   [[nodiscard]] std::int64_t misses(std::uint64_t lines) const;
-  /// The smallest cache, in lines, that misses at most so many, which are at least the compulsory ones.
+  /// The smallest cache, in lines, with at most `most_misses` misses, which must not be below `compulsory`.
   [[nodiscard]] std::uint64_t lines_for(std::int64_t most_misses) const;
-  /// The smallest cache, in lines, that misses nothing but first uses.
+  /// The smallest cache, in lines, that misses only first uses.
   [[nodiscard]] std::uint64_t enough() const { return hits.size(); }
 
   StackHistogram& operator+=(const StackHistogram& other);
@@ -53,7 +53,7 @@ class StackDistances {
     }
   }
 
-  /// The same cache, empty: the references that follow are another node's. What is counted stays.
+  /// Empties the cache, for the references of another node. The counts stay.
   void forget();
 
   [[nodiscard]] StackHistogram histogram() const;
@@ -65,7 +65,7 @@ class StackDistances {
   std::uint32_t newest_ = no_line;
   std::int64_t repeats_ = 0;  // at distance 0
   std::int64_t compulsory_ = 0;
-  std::vector<std::int64_t> hits_;  // [d]: at distance d; as many as lines have been used
+  std::vector<std::int64_t> hits_;  // [d]: at distance d; one for each line used
 };
 
 }  // namespace marti::memory

@@ -1,5 +1,5 @@
-// The tags of many equal caches of any kind, behind one call: for look-ups that are too rare to be worth
-// code of their own for each kind of cache.
+// The tags of many equal caches of any kind, behind one interface: for look-ups that are too rare to justify
+// separate code for each kind of cache.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace marti::memory {
 /// - 1.
 class TagArray {
  public:
-  /// Throws UserError when the configuration describes no cache.
+  /// Throws UserError when no cache can have this configuration.
   TagArray(const CacheConfig& config, std::uint32_t caches);
   ~TagArray();
   TagArray(TagArray&&) noexcept;
@@ -21,16 +21,16 @@ class TagArray {
   TagArray(const TagArray&) = delete;
   TagArray& operator=(const TagArray&) = delete;
 
-  /// Looks `line` up; true when it is there. Brings it in when it is not.
+  /// Looks `line` up; true when the cache holds it. Brings a missing line in.
   bool access(std::uint32_t cache, std::uint32_t line);
-  /// The same, but a line that is not there is not brought in.
+  /// As access(), but does not bring a missing line in.
   bool touch(std::uint32_t cache, std::uint32_t line);
-  /// Takes `line` out; true when it was there.
+  /// Removes `line`; true when the cache held it.
   bool remove(std::uint32_t cache, std::uint32_t line);
-  /// Whether `line` is there; changes nothing.
+  /// Whether the cache holds `line`; changes nothing.
   [[nodiscard]] bool holds(std::uint32_t cache, std::uint32_t line);
 
-  /// The look-up behind the interface; defined in tag_array.cpp.
+  /// The implementation of the look-ups; defined in tag_array.cpp.
   struct Store;
 
  private:

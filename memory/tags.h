@@ -1,4 +1,4 @@
-// Chooses the tag store for a cache: the seam between a run-time configuration and the compiled look-ups.
+// Chooses the tag store for a cache: turns a configuration at run time into one of the compiled look-ups.
 #pragma once
 
 #include <utility>

@@ -11,7 +11,7 @@ namespace marti::memory {
 
 struct WaitStatistics {
   std::int64_t count = 0;
-  sim::Ticks sum = 0;  ///< equals the area under the queue's length (Little's law as an identity)
+  sim::Ticks sum = 0;  ///< equals the queue length integrated over time (Little's law as an identity)
   sim::Ticks max = 0;
   sim::LogHistogram histogram;
 
@@ -21,7 +21,7 @@ struct WaitStatistics {
     max = std::max(max, wait);
     histogram.add(wait);
   }
-  /// So many that did not wait.
+  /// Adds `tenures` that did not wait.
   void add_unwaited(std::int64_t tenures) {
     count += tenures;
     histogram.add_repeated(0, tenures);

@@ -11,7 +11,7 @@ namespace marti::sim {
 
 namespace {
 
-/// Is `key` the name itself or a key below the section of that name?
+/// Whether `key` is `name` itself or a key in the section `name`.
 bool covers(std::string_view name, std::string_view key) {
   return key == name || (key.starts_with(name) && key[name.size()] == '.');
 }
@@ -128,10 +128,10 @@ std::string Config::where(const Entry& entry) const {
 void Config::fail(std::string_view key, std::string_view message) const {
   const Entry& entry = entries_[index_of(key)];
   const bool assigned = entry.given != nullptr && entry.line() == 0;
-  if (assigned && entry.given->place.starts_with("--set ")) {  // which names the key itself
+  if (assigned && entry.given->place.starts_with("--set ")) {  // the place names the key itself
     throw UserError(shown(entry.given->place) + ": " + shown(message, all_shown));
   }
-  // A default cannot be pointed at: the file in which it could be changed can.
+  // For a default the message names the file in which it could be changed.
   throw UserError(place_in_file(name_, entry.line(), key) + ": " + shown(message, all_shown) +
                   (assigned ? " (in " + shown(entry.given->place) + ")" : ""));
 }
@@ -163,7 +163,7 @@ void Config::refuse_unused() const {
   std::string_view key;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const Entry& entry = entries_[i];
-    // The first by line; assignments, which have line 0, only when nothing in the file is unused.
+    // The unused key on the lowest line; one of an assignment, with line 0, only if the file has none.
     const bool earlier =
         first == nullptr || (entry.line() > 0 && (first->line() == 0 || entry.line() < first->line()));
     if (entry.given == nullptr || entry.used || !earlier) {

@@ -17,7 +17,7 @@ const EffectiveValue* find(std::span<const EffectiveValue> values, std::string_v
   return found == values.end() ? nullptr : &*found;
 }
 
-// Seconds of a cycle of the clock that the section's cycles are counted by; 0 when none is known.
+// The period of the clock in whose cycles a section counts; 0 seconds when there is none.
 struct Period {
   double seconds = 0.0;
   std::string key;
@@ -57,7 +57,7 @@ void fail_at(const Config& config, int line, std::string_view key, std::string_v
 }
 
 std::string longest_duration(std::span<const EffectiveValue> values) {
-  // A cycle of an ordinary clock takes some nanoseconds, and what it does some cycles.
+  // Usual clocks have periods of some nanoseconds, and usual latencies are some cycles.
   constexpr double usual_period = 1e-9;
   double longest = 0.0;
   std::string key;

@@ -1,4 +1,4 @@
-// The place of an error in a configuration: file and line, or the --set option, and the key.
+// Locates an error in a configuration: file and line, or the --set option, and the key.
 #pragma once
 
 #include <span>
@@ -10,27 +10,27 @@
 
 namespace marti::sim {
 
-/// "file:line: key", both shown as sim/shown.h says: how a message about a key in a file begins. Line 0:
-/// "file: key".
+/// "file:line: key", the beginning of messages about a key in a file, both parts shown as in sim/shown.h.
+/// Line 0: "file: key".
 [[nodiscard]] std::string place_in_file(std::string_view file, int line, std::string_view key);
 
-/// Throws the UserError "file:line: key: message" of what stands in that line of the configuration's file.
+/// Throws the UserError "file:line: key: message" for that line of the configuration's file.
 [[noreturn]] void fail_at(const Config& config, int line, std::string_view key, std::string_view message);
 
-/// The key that makes the longest duration, of those that had these values: a number of cycles
-/// ("bus.latency_cycles", "costs.test") or the clock by which it is counted (KEY'S SECTION.clock, else
-/// node.clock), whichever is further from usual. Empty when there is none.
+/// The key behind the longest duration among those with these values: a number of cycles
+/// ("bus.latency_cycles", "costs.test") or the clock in which it is counted (SECTION OF THE KEY.clock, else
+/// node.clock), whichever is further from usual values. Empty when there is no such key.
 [[nodiscard]] std::string longest_duration(std::span<const EffectiveValue> values);
 
-/// Throws `error` again with the place of its key among `values`, which were read from the file of that name.
+/// Throws `error` again with the place of its key in `values`, which were read from `file`.
 [[noreturn]] void fail_placed(std::span<const EffectiveValue> values, std::string_view file,
                               const KeyError& error);
 
-/// Likewise at the key of longest_duration().
+/// Throws `error` again with the place of the key from longest_duration().
 [[noreturn]] void fail_overflow(std::span<const EffectiveValue> values, std::string_view file,
                                 const TimeOverflow& error);
 
-/// Calls `work`; a KeyError or TimeOverflow out of it gets the place of its key in the configuration.
+/// Calls `work`; adds to a KeyError or TimeOverflow from it the place of its key in the configuration.
 template <class Work>
 decltype(auto) placed(const Config& config, const Work& work) {
   try {
@@ -42,7 +42,7 @@ decltype(auto) placed(const Config& config, const Work& work) {
   }
 }
 
-/// Likewise with the values that a configuration of that file had.
+/// The same for the values that a configuration read from `file` had.
 template <class Work>
 decltype(auto) placed(std::span<const EffectiveValue> values, std::string_view file, const Work& work) {
   try {

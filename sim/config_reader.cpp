@@ -1,13 +1,13 @@
-// Reading a Config: TOML through toml++, which no other file of the project includes.
+// Reads a Config, through toml++, which no other file of the project includes.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <iterator>
 #include <memory>
 
-// toml++ 3.3 asserts that a name begins where one must, before it looks ("[#" is a header without a name);
-// and without assertions some compilers are told that it is so. Its own checks, which follow, refuse such
-// texts.
+// toml++ 3.3 asserts that a name begins at a position before it checks that ("[#" is a header without a
+// name); without assertions some compilers are told to assume it. The checks of toml++ that follow refuse
+// such texts, so the assertions are switched off.
 #undef NDEBUG
 #define TOML_ASSERT(expr) static_assert(true)
 #include <toml++/toml.h>
@@ -26,13 +26,13 @@ namespace marti::sim {
 namespace {
 
 constexpr std::int64_t longest_file = 1 << 20;
-// toml++ follows tables with recursive calls and bounds only the depth of values: a key of 100,000 parts
-// would overflow its stack.
+// toml++ recurses into tables and bounds only the depth of values, so a key of 100,000 parts would overflow
+// the stack.
 constexpr std::size_t most_key_parts = 32;
 constexpr std::string_view name_too_deep = "a name has more than 32 parts joined by dots";
 
 struct Origin {
-  std::string place;  // how a message begins: "file:line: key" or "--set key=value"
+  std::string place;  // the beginning of a message: "file:line: key" or "--set key=value"
   int line = 0;
   std::string assignment;
 };
@@ -46,11 +46,11 @@ bool is_key_character(char c) {
          c == '"' || c == '\'';
 }
 
-/// The line of a dotted name of too many parts, which toml++ must not see; 0 when there is none.
+/// The line of a dotted name with too many parts, which toml++ must not read; 0 when there is none.
 std::size_t line_too_deep(std::string_view text) {
   std::size_t line = 1;
   std::size_t parts = 0;
-  bool after_dot = true;  // a further dot would not separate two parts of a name
+  bool after_dot = true;  // another dot here would not separate two parts of a name
   for (const char c : text) {
     if (c == '\n') {
       ++line;
@@ -73,7 +73,7 @@ std::size_t line_too_deep(std::string_view text) {
 
 DocumentValue document_of(const toml::node& node, int line);
 
-/// Where two names of one table stand in the file decides their order, not their letters.
+/// The entries of a table in the order of the file; toml++ sorts them by name.
 DocumentValue::Table entries_of(const toml::table& table) {
   struct Place {
     toml::source_position at;
@@ -95,7 +95,7 @@ DocumentValue::Table entries_of(const toml::table& table) {
   return entries;
 }
 
-/// `line` is that of what surrounds the node, for a node that does not know its own.
+/// `line` is that of the surrounding node, for a node without a line of its own.
 DocumentValue document_of(const toml::node& node, int line) {
   DocumentValue value;
   value.line = node.source().begin ? static_cast<int>(node.source().begin.line) : line;
@@ -130,7 +130,7 @@ DocumentValue document_of(const toml::node& node, int line) {
   return value;
 }
 
-/// Refuses what no free section may hold.
+/// Refuses values that a free section must not contain.
 void check_free(const DocumentValue& value, const std::string& name, std::string_view file) {
   const auto fail = [&] {
     throw UserError(place_in_file(file, value.line, name) + ": must not be " + describe(value));
@@ -162,7 +162,7 @@ std::string_view trim(std::string_view text, std::string_view blanks = " \t") {
 struct FaultyLine {
   std::string_view text;  // without its comment
   std::string section;    // "cache."
-  std::string_view key;   // what stands before the last '=' sign that a line begins with; may be empty
+  std::string_view key;   // of the last line with a '=' up to this one; may be empty
 };
 
 FaultyLine line_of(std::string_view text, std::size_t line) {
@@ -183,8 +183,8 @@ FaultyLine line_of(std::string_view text, std::size_t line) {
   return found;
 }
 
-/// What to write where a value that is a text lacks its quotation marks, the commonest fault of all; else
-/// nothing.
+/// The correction to suggest where a text lacks its quotation marks, the commonest fault; empty for other
+/// faults.
 std::string missing_quotes(const FaultyLine& line) {
   const std::size_t equals = line.text.find('=');
   if (equals == std::string_view::npos || line.text.find_first_of("\"'[]{}") != std::string_view::npos) {
@@ -194,7 +194,7 @@ std::string missing_quotes(const FaultyLine& line) {
   if (value.empty()) {
     return "; the value is missing";
   }
-  // A number, a truth value or a date has another fault.
+  // The fault of a number, a boolean or a date is another one.
   const bool letters =
       std::any_of(value.begin(), value.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
   return !letters || value == "true" || value == "false"
@@ -203,7 +203,7 @@ std::string missing_quotes(const FaultyLine& line) {
                    shown(value) + "\"";
 }
 
-/// Is it an integer but for its size?
+/// Whether the text is an integer of more than 18 characters, which probably exceeds 64 bits.
 bool is_long_integer(std::string_view text) {
   text.remove_prefix(text.starts_with('-') || text.starts_with('+') ? 1 : 0);
   return text.size() > 18 && text.find_first_not_of("0123456789_") == std::string_view::npos;
@@ -211,7 +211,7 @@ bool is_long_integer(std::string_view text) {
 
 }  // namespace
 
-/// Builds one Config. Everything wrong is thrown at once, in the order of the text.
+/// Builds one Config. Throws at the first fault, in the order of the text.
 class ConfigReader {
  public:
   ConfigReader(std::shared_ptr<const Schema> schema, std::string name)
@@ -259,16 +259,16 @@ class ConfigReader {
     }
   }
 
-  /// "file:place: key"; without a key where the line seems to have none.
+  /// "file:place: key"; without the key where the line seems to have none.
   [[nodiscard]] std::string place_of(const FaultyLine& line, const std::string& place) const {
     return shown(config_.name_) + ":" + place +
            (line.key.empty() ? "" : ": " + shown(line.section + std::string(line.key)));
   }
 
-  /// Lists the values below `table` under their dotted names. A table without values stands for itself.
+  /// Lists the values below `table` under their dotted names. An empty table is listed itself.
   void flatten(const toml::table& table, const std::string& prefix, std::vector<Found>& found) {
     for (const auto& [key, node] : table) {
-      // A part that has dots itself would look like several: it is shown in quotation marks and unknown.
+      // A part that contains dots would look like several parts; in quotation marks it is an unknown key.
       const bool plain = key.str().find('.') == std::string_view::npos && !key.str().empty();
       const std::string part = plain ? std::string(key.str()) : "\"" + std::string(key.str()) + "\"";
       const std::string name = prefix.empty() ? part : prefix + "." + part;
@@ -277,7 +277,7 @@ class ConfigReader {
         keep_free(*inner, name, static_cast<int>(key.source().begin.line), found);
         continue;
       }
-      // An empty section of a known name says nothing and does no harm.
+      // An empty section with a known name has no effect and is allowed.
       if (inner != nullptr && !config_.schema_->find(name)) {
         if (!inner->empty()) {
           flatten(*inner, name, found);
@@ -291,7 +291,7 @@ class ConfigReader {
     }
   }
 
-  /// What a free section holds stays as it is, but for the declared keys.
+  /// Keeps the content of a free section unread, except for declared keys.
   void keep_free(const toml::table& table, const std::string& name, int line, std::vector<Found>& found) {
     DocumentValue::Table free;
     for (DocumentEntry& entry : entries_of(table)) {
@@ -323,7 +323,7 @@ class ConfigReader {
       fail_at(origin, std::string(name_too_deep));
     }
     const DocumentValue bare{text, 0};
-    // A line break could smuggle in further keys.
+    // A line break could add further keys.
     if (text.find_first_of("\r\n") == std::string::npos && line_beyond_ascii(text) == 0) {
       try {
         const toml::table document = toml::parse("value = " + text);
@@ -334,7 +334,7 @@ class ConfigReader {
           return;
         }
       } catch (const toml::parse_error&) {
-        // Not TOML: a bare text, or a number that toml++ has no room for.
+        // Not TOML: an unquoted text, or a number out of toml++'s range.
         if (is_long_integer(text) &&
             (declared.type == ValueType::integer || declared.type == ValueType::real)) {
           fail_at(origin, "must be " + expected_of(declared) + " that fits in 64 bits, not " + shown(text));
@@ -344,7 +344,7 @@ class ConfigReader {
     store(key, bare, origin);
   }
 
-  /// The declaration of `key`, or a UserError that knows the nearest valid name.
+  /// The declaration of `key`; throws a UserError with the nearest valid name if there is none.
   const Key& find(const std::string& key, const DocumentValue* value, const Origin& origin) const {
     const Schema& schema = *config_.schema_;
     if (const std::optional<std::size_t> index = schema.find(key)) {
@@ -381,8 +381,8 @@ class ConfigReader {
     return listed;
   }
 
-  /// The key of the same last part when there is just one such key ("size": "cache.size"), else the
-  /// nearest by edit distance.
+  /// The key with the same last part if there is exactly one ("size": "cache.size"), else the nearest by edit
+  /// distance.
   [[nodiscard]] std::string suggestion(const std::string& key) const {
     const std::string ending = "." + key.substr(key.rfind('.') + 1);
     std::vector<std::string> same;

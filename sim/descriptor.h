@@ -1,4 +1,4 @@
-// A file descriptor that is closed when it is no longer needed.
+// A file descriptor that is closed when its owner is destroyed.
 #pragma once
 
 #include <unistd.h>
@@ -20,11 +20,11 @@ class Descriptor {
     std::swap(number_, other.number_);
     return *this;
   }
-  /// Negative: none.
+  /// The descriptor; negative if there is none.
   [[nodiscard]] int get() const { return number_; }
-  /// The caller closes it.
+  /// Gives the descriptor to the caller, who closes it.
   [[nodiscard]] int release() { return std::exchange(number_, -1); }
-  /// As close(2), for those to whom its error matters.
+  /// As close(2), for callers to whom its error matters.
   int close() { return ::close(release()); }
 
  private:

@@ -1,5 +1,5 @@
-// A part of a TOML file as it was written, with the line of each value: what a free section of a schema holds
-// (sim/schema.h), and what the value of a key is read from.
+// A part of a TOML file as it was written, with the line of each value: the content of a free section of a
+// schema (sim/schema.h), and the source of a key's values.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace marti::sim {
 
 struct DocumentEntry;
 
-/// One value. A free section's has neither dates nor times, and its reals are finite.
+/// One value. In a free section there are no dates and times, and reals are finite.
 struct DocumentValue {
   using List = std::vector<DocumentValue>;
   using Table = std::vector<DocumentEntry>;
@@ -20,7 +20,7 @@ struct DocumentValue {
   using Content = std::variant<std::monostate, bool, std::int64_t, double, std::string, List, Table>;
 
   Content content;
-  int line = 0;  ///< in the file, from 1; 0 where it comes from no file
+  int line = 0;  ///< in the file, from 1; 0 if it comes from no file
 
   [[nodiscard]] const List* list() const { return std::get_if<List>(&content); }
   [[nodiscard]] const Table* table() const { return std::get_if<Table>(&content); }
@@ -37,7 +37,7 @@ struct DocumentEntry {
 /// In words: "the integer 3", "a table".
 [[nodiscard]] std::string describe(const DocumentValue& value);
 
-/// The entry of that name; null when there is none.
+/// The entry with that name; null when there is none.
 [[nodiscard]] const DocumentEntry* find(const DocumentValue::Table& table, std::string_view name);
 
 }  // namespace marti::sim

@@ -10,14 +10,14 @@
 
 namespace marti::sim {
 
-/// Whatever events are handed to. Handlers do not own the engine and outlive its run.
+/// Receives events. Handlers do not own the engine and outlive its run.
 class EventHandler {
  public:
   virtual ~EventHandler() = default;
   /// `event.time` is the engine's current time. New events may be posted from here.
   virtual void handle(const Event& event) = 0;
-  /// `event` will probably be handled soon: a chance to fetch what it needs into the host's caches. Called
-  /// only when so many events are pending that they cannot all be there.
+  /// `event` will probably be handled soon, so its data may be prefetched into the host's caches. Called only
+  /// when so many events are pending that their data do not all fit there.
   virtual void prepare(const Event& /*event*/) {}
 };
 
@@ -42,15 +42,15 @@ class Engine {
     queue_.push(event);
   }
 
-  /// Handles events until none is left. Throws InternalError when more than `limit` events are handled
-  /// at one tick, which only a machine that makes no progress can do.
+  /// Handles events until none is left. Throws InternalError when more than `limit_per_tick` events are
+  /// handled at one tick, which only a machine that makes no progress can cause.
   void run(std::uint64_t limit_per_tick);
 
-  /// Lets results differ, for speed: simulated time is cut into pieces of `quantum` ticks, and the component
-  /// whose event is next goes on with all that it posts for itself in the piece before any other has its
-  /// turn. Time goes back by less than a quantum then, when another component's turn comes, so handlers must
-  /// bear requests that are late. (The quantum of S. K. Reinhardt et al., "The Wisconsin Wind Tunnel",
-  /// SIGMETRICS 1993, on one thread.) With 0 or 1, the order is the exact one. To be said before run().
+  /// Trades exactness for speed: simulated time is cut into pieces of `quantum` ticks, and within a piece the
+  /// component of the next event first handles all events that it posts for itself before another component
+  /// is handled. Time then goes back, by less than a quantum, when another component's events follow, so
+  /// handlers must accept late requests. (The quantum of S. K. Reinhardt et al., "The Wisconsin Wind Tunnel",
+  /// SIGMETRICS 1993, on one thread.) With 0 or 1 the order is exact. Call it before run().
   void relax(Ticks quantum) { quantum_ = quantum; }
 
   [[nodiscard]] Ticks now() const { return now_; }
@@ -58,7 +58,7 @@ class Engine {
   void reserve(std::size_t events) { queue_.reserve(events); }
 
  private:
-  // Hands over one event.
+  // Passes one event to its handler.
   void handle(const Event& event, std::uint64_t& at_this_tick, std::uint64_t limit_per_tick);
   void run_relaxed(std::uint64_t limit_per_tick);
 
@@ -67,7 +67,7 @@ class Engine {
   Ticks now_ = 0;
   std::uint64_t events_ = 0;
   Ticks quantum_ = 0;
-  Ticks turn_end_ = 0;  // end of the piece of time in which component turn_ runs ahead; 0: nobody does
+  Ticks turn_end_ = 0;  // end of the piece of time in which component turn_ runs ahead; 0: none does
   std::uint32_t turn_ = 0;
   std::vector<Event> ahead_;  // what the component has posted for itself in its turn
 };

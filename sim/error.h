@@ -1,5 +1,5 @@
-// Errors. A UserError is the user's input being wrong (exit status 2); an InternalError is a fault of
-// ours (exit status 1). Library code throws one of the two; it never prints and never ends the process.
+// Errors. A UserError is a fault of the user's input (exit status 2); an InternalError is a fault of the
+// program (exit status 1). Library code throws one of the two; it never prints and never ends the process.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace marti::sim {
 
-/// The user's input is wrong. The message is complete as it stands: where it helps it begins with
-/// "file:line: key:", and it says what would be right.
+/// A fault of the user's input. The message is complete: where that helps it begins with "file:line: key:",
+/// and it says what would be right.
 class UserError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -21,7 +21,7 @@ class InternalError : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
-/// Throws InternalError with `what` unless `holds`. For invariants that a release build keeps checking.
+/// Throws InternalError with `what` unless `holds`. For invariants that release builds check too.
 inline void ensure(bool holds, const char* what) {
   if (!holds) [[unlikely]] {
     throw InternalError(what);

@@ -13,8 +13,8 @@ inline constexpr unsigned sequence_bits = 24;
 inline constexpr unsigned component_bits = 32;
 
 /// One event. Events are ordered by (time, class, component, sequence), packed so that two integer
-/// comparisons decide; equal times never depend on the order of insertion. The poster gives a component
-/// that may have several events of one class pending a sequence number that tells them apart.
+/// comparisons decide; the order at equal times never depends on the order of insertion. A component that may
+/// have several events of one class pending gives each a sequence number of its own.
 struct Event {
   Ticks time = 0;
   std::uint64_t order = 0;
@@ -68,8 +68,8 @@ class EventQueue {
     heap_[at] = event;
   }
 
-  /// Calls visit(event) for the few events of which one is next, unless an earlier one is pushed. To be asked
-  /// between a pop and the push that follows it.
+  /// Calls visit(event) for the few events that may be next unless an earlier one is pushed. Call it between
+  /// a pop and the push that follows.
   template <class Visit>
   void each_likely_next(Visit&& visit) const {
     for (std::size_t at = 1; at <= arity && at < heap_.size(); ++at) {

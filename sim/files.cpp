@@ -23,7 +23,7 @@ namespace {
 }  // namespace
 
 std::string read_file(const std::filesystem::path& file, std::int64_t max_bytes) {
-  // O_NONBLOCK: opening a pipe nobody writes to must fail below and not wait for ever.
+  // O_NONBLOCK: opening a pipe without a writer must not wait for ever; it is refused below.
   const Descriptor input(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (input.get() < 0) {
     fail(file, "cannot be read", errno);
@@ -45,7 +45,7 @@ std::string read_file(const std::filesystem::path& file, std::int64_t max_bytes)
   if (status.st_size > max_bytes) {
     too_long();
   }
-  // One byte more than expected shows the end, also of files (in /proc) that state no size.
+  // Reading one byte more than expected finds the end, also of files in /proc, which state no size.
   content.resize(static_cast<std::size_t>(status.st_size) + 1);
   std::size_t length = 0;
   while (true) {

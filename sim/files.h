@@ -15,12 +15,12 @@ namespace marti::sim {
 /// is a UserError.
 std::string read_file(const std::filesystem::path& file, std::int64_t max_bytes);
 
-/// Writes `content` to `file` in one step. A UserError says why it cannot be done (no such directory, no
-/// permission, disk full, ...); nothing is left behind then, and an older file stays as it was.
+/// Writes `content` to `file` in one step. If that fails a UserError says why (no such directory, no
+/// permission, disk full, ...); no partial file is left then, and an older file is unchanged.
 void write_file(const std::filesystem::path& file, std::string_view content,
                 Durability durability = Durability::cached);
 
-/// Makes a directory with its parents, if it is not there. UserError when that cannot be done.
+/// Makes a directory with its parents if it does not exist. UserError if that fails.
 void make_directory(const std::filesystem::path& directory);
 
 }  // namespace marti::sim

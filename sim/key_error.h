@@ -1,4 +1,4 @@
-// Errors of a configuration that are found where nobody knows who gave the key: the reader of the
+// Errors in a key's value that are found where the source of the value is not known: the code that read the
 // configuration adds the place (sim/config_errors.h).
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace marti::sim {
 
-/// What is wrong with the value of one key. what() is "key: reason".
+/// A fault in the value of one key. what() is "key: reason".
 class KeyError : public UserError {
  public:
   KeyError(std::string key, std::string reason)
@@ -19,7 +19,7 @@ class KeyError : public UserError {
   [[nodiscard]] const std::string& key() const { return key_; }
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
-  /// Calls `work`. A UserError that names no key is thrown on as one about `key`, with `prefix` before it.
+  /// Calls `work`. A UserError that names no key becomes one about `key`, with `prefix` before its text.
   template <class Work>
   static decltype(auto) laid_at(std::string_view key, const Work& work, std::string_view prefix = {}) {
     try {
@@ -36,7 +36,7 @@ class KeyError : public UserError {
   std::string reason_;
 };
 
-/// A simulated time that does not fit in Ticks. Which key is to blame follows from all durations together.
+/// A simulated time that overflows Ticks. The key at fault is found by comparing all durations.
 class TimeOverflow : public UserError {
  public:
   using UserError::UserError;

@@ -54,7 +54,7 @@ Value real(const DocumentValue& node, const Wrong& wrong) {
   double value = 0;
   if (is<std::int64_t>(node)) {
     value = static_cast<double>(as<std::int64_t>(node));
-    if (std::abs(value) > 0x1p53) {  // not every integer beyond is a double
+    if (std::abs(value) > 0x1p53) {  // beyond this not every integer is a double
       wrong();
     }
   } else if (is<double>(node)) {
@@ -68,7 +68,7 @@ Value real(const DocumentValue& node, const Wrong& wrong) {
   return value;
 }
 
-/// The node as the key's type, its range not yet checked.
+/// The node converted to the key's type; the range is not checked yet.
 Value typed(const Key& key, const DocumentValue& node, std::string_view place) {
   const auto wrong = [&]() { fail_at(place, "must be " + expectation(key) + ", not " + describe(node)); };
   const auto parsed = [&](auto parse) -> Value {

@@ -1,4 +1,4 @@
-// The values of a key from what a file or an assignment says.
+// The values of a key, from the file or an assignment.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace marti::sim {
 
-/// What a value of the key must be, in words: "a size such as \"16 KiB\"".
+/// The values that a key accepts, in words: "a size such as \"16 KiB\"".
 [[nodiscard]] std::string expected_of(const Key& key);
 
 /// The values of `key`: one, or those of a list. Throws the UserError "place: message" for another type and

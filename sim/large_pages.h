@@ -1,5 +1,5 @@
-// An allocator for tables that are read at random and too big for the host's address translation caches:
-// it asks the system for large pages. Where there are none it is an ordinary allocator.
+// An allocator for tables that are accessed at random and exceed the reach of the host's TLBs: it asks the
+// system for large pages. Where there are none it is an ordinary allocator.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +34,7 @@ class LargePageAllocator {
     }
 #ifdef __linux__
     if (bytes >= page) {
-      // Advice only: without it everything works as well, only slower.
+      // Advice only: without large pages everything works, only slower.
       (void)madvise(memory, bytes, MADV_HUGEPAGE);
     }
 #endif

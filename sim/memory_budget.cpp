@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint64_t most_bytes = std::numeric_limits<std::int64_t>::max();
 constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20U;
 
-// From a mebibyte on, whole ones: what is needed rounded up, what there is rounded down.
+// Sizes from a mebibyte on are shown in whole ones: a need rounded up, a limit rounded down.
 std::string needed_text(std::uint64_t bytes) {
   bytes = std::min(bytes, most_bytes - mebibyte);
   return print_size(
@@ -31,7 +31,7 @@ std::string limit_text(std::uint64_t bytes, bool exact) {
       static_cast<std::int64_t>(exact || bytes < mebibyte ? bytes : bytes / mebibyte * mebibyte));
 }
 
-// The number that a file begins with; none where there is no such file or it says "max".
+// The number that a file begins with; most_bytes if there is no such file or it says "max".
 std::uint64_t number_in(const std::filesystem::path& file) {
   std::string text;
   std::ifstream(file) >> text;
@@ -40,7 +40,7 @@ std::uint64_t number_in(const std::filesystem::path& file) {
   return error == std::errc{} && end == text.data() + text.size() ? number : most_bytes;
 }
 
-// The least limit of a group and of those above it.
+// The least limit of a control group and its ancestors.
 std::uint64_t least_limit(const std::filesystem::path& mount, std::filesystem::path group,
                           const std::string& file) {
   std::uint64_t least = number_in(mount / file);
@@ -52,7 +52,7 @@ std::uint64_t least_limit(const std::filesystem::path& mount, std::filesystem::p
 
 std::uint64_t group_limit(const std::filesystem::path& root) {
   const std::filesystem::path mount = root / "sys/fs/cgroup";
-  // Inside of a container the group's own path may not be there, but the mount is then the group.
+  // In a container the group's own path may not exist; the mount is then the group itself.
   std::uint64_t least =
       std::min(number_in(mount / "memory.max"), number_in(mount / "memory/memory.limit_in_bytes"));
   std::ifstream groups(root / "proc/self/cgroup");
@@ -73,7 +73,7 @@ std::uint64_t group_limit(const std::filesystem::path& root) {
   return least;
 }
 
-// "MemTotal:  24683304 kB", in units of 1,024 bytes.
+// The host's memory, from a line such as "MemTotal:  24683304 kB", in units of 1,024 bytes.
 std::uint64_t host_memory(const std::filesystem::path& root) {
   std::ifstream info(root / "proc/meminfo");
   std::string name;
@@ -130,7 +130,7 @@ std::uint64_t usable_memory(const std::filesystem::path& root) {
 }
 
 std::uint64_t default_memory_limit(std::uint64_t processes) {
-  static const std::uint64_t usable = usable_memory();  // a sweep asks for each of its points
+  static const std::uint64_t usable = usable_memory();  // a sweep asks at each of its points
   return usable / 4 * 3 / std::max<std::uint64_t>(1, processes);
 }
 

@@ -7,7 +7,7 @@ namespace marti::sim {
 
 namespace {
 
-constexpr std::size_t longest = 200;  // of a name that is compared
+constexpr std::size_t longest = 200;  // characters of a name that are compared
 
 }  // namespace
 
@@ -37,7 +37,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string_view nearest_name(std::string_view name, std::span<const std::string> candidates) {
   std::string_view best;
-  std::size_t least = std::min(name.size(), longest) / 2 + 1;  // at most half of the name may be wrong
+  std::size_t least = std::min(name.size(), longest) / 2 + 1;  // at most half of the name may differ
   for (const std::string& candidate : candidates) {
     const std::size_t distance = edit_distance(name, candidate);
     if (distance < least) {

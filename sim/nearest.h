@@ -12,8 +12,8 @@ namespace marti::sim {
 /// string alignment). Time and memory are proportional to |a| |b|; names over 200 characters are cut.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The candidate with the least edit distance to `name` (the first on ties), or an empty view when none
-/// is near enough to be what was meant (more than half of `name` would have to change).
+/// The candidate with the least edit distance to `name` (the first on ties), or an empty view when no
+/// candidate is near enough to be meant (more than half of `name` would have to change).
 std::string_view nearest_name(std::string_view name, std::span<const std::string> candidates);
 
 /// ` (did you mean "x"?)`, or an empty text when no candidate is near.

@@ -24,9 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Each lock takes a descriptor, of which a program may have a thousand or so. Files beyond this many have
-// names by which they are not taken for what a killed program has left, and look for no such files: each look
-// reads the whole directory.
+// Each lock takes a file descriptor, of which a program may have about a thousand. Files beyond this number
+// are not locked; their names differ so that they are not taken for leftovers of a killed program, and making
+// them does not search for leftovers, because each search reads the whole directory.
 constexpr std::size_t most_locks = 64;
 constexpr std::string_view locked_mark = ".tmp-";
 constexpr std::string_view unlocked_mark = ".part-";
@@ -36,8 +36,8 @@ constexpr std::size_t random_digits = 16;
   throw UserError(file.string() + ": cannot be written: " + std::generic_category().message(error));
 }
 
-/// Those that are neither committed nor removed. Never destroyed: a program may end while another thread
-/// looks.
+/// The files that are neither committed nor removed. Never destroyed: the program may end while another
+/// thread uses it.
 struct Pending {
   std::mutex mutex;
   std::set<const PendingFile*> files;
@@ -84,8 +84,8 @@ bool is_named(int descriptor, const fs::path& file) {
          open_file.st_ino == named_file.st_ino;
 }
 
-/// Removes the temporary files of that target whose program has ended: nobody holds their lock. What cannot
-/// be looked at stays.
+/// Removes the temporary files of that target whose program has ended, so that their lock is free. Files that
+/// cannot be opened stay.
 void remove_leftovers(const fs::path& target) {
   std::error_code error;
   const fs::path directory = target.has_parent_path() ? target.parent_path() : ".";
@@ -94,7 +94,7 @@ void remove_leftovers(const fs::path& target) {
     if (!is_locked_name_of(target, entry->path().filename().string())) {
       continue;
     }
-    // For writing: some file systems lock exclusively only then. O_NONBLOCK: it may be a pipe.
+    // For writing, because some file systems lock exclusively only then. O_NONBLOCK: it may be a pipe.
     const Descriptor file(::open(entry->path().c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
     if (file.get() >= 0 && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 &&
         is_named(file.get(), entry->path())) {
@@ -133,7 +133,7 @@ PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
   pending().locks += lock_.get() >= 0 ? 1U : 0U;
 }
 
-// False when another name is to be tried.
+// Tries to make the file under a new random name; false if another name must be tried.
 bool PendingFile::make() {
   const bool locked = pending().locks < most_locks;
   temporary_ = temporary_name(target_, locked);
@@ -152,9 +152,9 @@ bool PendingFile::make() {
   }
   if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0) {
     if (errno == EWOULDBLOCK) {
-      return false;  // somebody has taken it for a leftover, and removes it
+      return false;  // another process took it for a leftover and removes it
     }
-    // A file system without locks: nobody else can lock it either.
+    // A file system without locks: no other process can lock the file either.
     return true;
   }
   lock_ = std::move(file);
@@ -218,7 +218,7 @@ void PendingFile::commit() {
 }
 
 void abandon_pending_files() {
-  pending().mutex.lock();  // for good
+  pending().mutex.lock();  // never unlocked: no other file can be made or committed
   for (const PendingFile* file : pending().files) {
     file->remove();
   }

@@ -1,4 +1,4 @@
-// A file that is written under a temporary name and gets its own when it is complete.
+// A file that is written under a temporary name and gets its final name when it is complete.
 #pragma once
 
 #include <sys/types.h>
@@ -15,12 +15,12 @@ enum class Durability {
   synced,  // also against a crash of the machine: the data are on the disk before the rename
 };
 
-/// Makes an empty file under a temporary name, which this object or somebody else (an image library, a
-/// database) fills, and which gets its own name by commit(). Without commit() the temporary file is removed.
+/// Makes an empty file under a temporary name, which this object or other code (an image library, a database)
+/// fills; commit() gives it its final name. Without commit() the temporary file is removed.
 ///
-/// The temporary name is random and the file is new: nothing that was there is written through or removed. It
-/// is locked (flock) while it is pending; those of the same target that a killed program has left have no
-/// such lock, and the next PendingFile of that target removes them.
+/// The temporary name is random and the file is new, so no existing file is overwritten or removed. The file
+/// is locked (flock) while it is pending; leftovers of a killed program have no lock, and the next
+/// PendingFile of the same target removes them.
 class PendingFile {
  public:
   /// UserError when the file cannot be made.
@@ -29,15 +29,15 @@ class PendingFile {
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;
 
-  /// In the target's directory and with its extension. Whoever writes it must write this very file, not put
-  /// another one in its place.
+  /// A name in the target's directory with the target's extension. Other code must write to this file and not
+  /// replace it by another.
   [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
-  /// The file, emptied and open for writing. UserError when it is not there any more.
+  /// The file, emptied and open for writing. UserError if it does not exist any more.
   [[nodiscard]] Descriptor open() const;
-  /// Replaces what the file holds. UserError says why it cannot be done.
+  /// Replaces the file's content. UserError says why if that fails.
   void write(std::string_view content, Durability durability = Durability::cached);
-  /// Renames the temporary file. UserError when that cannot be done, or when the name has come to be another
-  /// file's.
+  /// Renames the temporary file to the target. UserError if that fails, or if another file has taken the
+  /// temporary name.
   void commit();
 
  private:
@@ -48,14 +48,14 @@ class PendingFile {
 
   std::filesystem::path target_;
   std::filesystem::path temporary_;
-  dev_t device_ = 0;  // which file it is, whatever its name
+  dev_t device_ = 0;  // with the inode: the identity of the file, whatever its name
   ino_t inode_ = 0;
   Descriptor lock_;
   bool committed_ = false;
 };
 
-/// Removes the temporary files of every PendingFile, and lets no other be made or committed: for a program
-/// that is about to end itself because of a signal. Not for signal handlers.
+/// Removes the temporary files of every PendingFile and blocks all further ones: for a program that is about
+/// to end itself because of a signal. Must not be called from a signal handler.
 void abandon_pending_files();
 
 }  // namespace marti::sim

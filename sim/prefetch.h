@@ -5,7 +5,7 @@
 
 namespace marti::sim {
 
-/// Asks for all of `object`, to be written. A hint: it changes nothing but time.
+/// Prefetches all of `object` for writing. A hint: it affects nothing but speed.
 template <class T>
 void prefetch(const T& object) {
   const char* const bytes = reinterpret_cast<const char*>(&object);

@@ -39,7 +39,7 @@ std::string in_words(const std::vector<std::string>& names) {
   return words;
 }
 
-/// A value in a range, without the quotation marks of TOML.
+/// A value as in a range, without TOML's quotation marks.
 std::string print_bare(ValueType type, const Value& value) {
   std::string printed = print_value(type, value);
   if (printed.front() == '"') {
@@ -203,7 +203,7 @@ std::string print_range(const Key& key) {
 }
 
 bool in_range(const Key& key, const Value& value) {
-  // Values of one type compare as their numbers do.
+  // Values of one type are ordered as their numbers are.
   return (!key.minimum || value >= *key.minimum) && (!key.maximum || value <= *key.maximum) &&
          (key.choices.empty() || std::find(key.choices.begin(), key.choices.end(),
                                            std::get<std::string>(value)) != key.choices.end());

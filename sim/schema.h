@@ -1,5 +1,5 @@
-// The keys a configuration may hold. Each key is declared once, with type, default, range, unit and
-// meaning; reading (sim/config.h), `marti config` and the reference in docs/ all come from here. Each
+// The keys that a configuration may have. Each key is declared once, with type, default, range, unit and
+// meaning; reading (sim/config.h), `marti config` and the reference in docs/ all use these declarations. Each
 // folder declares its own keys in a function `void declare_<what>_keys(sim::Schema&)`.
 #pragma once
 
@@ -29,7 +29,7 @@ std::string_view name_of(ValueType type);
 /// percentage (fraction): double; text, choice: string.
 using Value = std::variant<bool, std::int64_t, double, std::string>;
 
-/// As one would write it in a TOML file: `"16 KiB"`, `3`, `0.5`, `true`.
+/// The value as written in a TOML file: `"16 KiB"`, `3`, `0.5`, `true`.
 std::string print_value(ValueType type, const Value& value);
 
 struct Key {
@@ -40,21 +40,21 @@ struct Key {
   std::optional<Value> minimum;      // inclusive; never for boolean, text, choice
   std::optional<Value> maximum;
   std::vector<std::string> choices;  // of a choice, in the order of their indices
-  std::string unit;                  // of an integer or a real: "cycles"; empty when it has none
+  std::string unit;                  // for an integer or a real: "cycles"; empty if it has none
   std::string meaning;               // one or two sentences, without the full stop
 };
 
-/// The values of `key`, a list in brackets, as one would write them in a TOML file.
+/// The values of `key` as written in a TOML file, a list in brackets.
 std::string print_values(const Key& key, std::span<const Value> values);
-/// "16 KiB to 1 GiB", "lru, fifo or random", "at least 1"; empty when everything of the type is allowed.
+/// "16 KiB to 1 GiB", "lru, fifo or random", "at least 1"; empty when every value of the type is allowed.
 std::string print_range(const Key& key);
 
-/// Does a value of the key's type lie within its range or among its choices?
+/// Whether a value of the key's type lies in its range or is one of its choices.
 bool in_range(const Key& key, const Value& value);
 
 /// A headed group of keys: "cache" holds "cache.size". Names may be dotted themselves.
 struct Section {
-  std::string name;  // prefix without the last dot
+  std::string name;  // the keys' prefix without the final dot
   std::string meaning;
 };
 
@@ -73,12 +73,12 @@ class Schema {
 
   /// Describes the keys with this prefix. Call it before declaring them.
   void section(std::string_view name, std::string_view meaning);
-  /// Likewise, and what a file writes below this name, a table of the first level, is kept unread, but for
-  /// the keys that are declared there (Config::free_section).
+  /// As section(). In addition, everything that a file has below this name, a table of the first level, is
+  /// kept unread, except for the keys declared there (Config::free_section).
   void free_section(std::string_view name, std::string_view meaning);
 
-  /// What a file writes below this section is read by `command` and by no other: an error message says so.
-  /// For sections of which this schema declares no key.
+  /// Declares that only `command` reads this section; an error message about its keys says so. For sections
+  /// in which this schema declares no key.
   void elsewhere(std::string_view section, std::string_view command);
 
   // A declaration throws InternalError when the name was declared before, is not made of lower-case
@@ -105,7 +105,7 @@ class Schema {
   void reals(std::string_view name, std::vector<double> default_value, Range<double> range,
              std::string_view unit, std::string_view meaning);
   void texts(std::string_view name, std::vector<std::string> default_value, std::string_view meaning);
-  /// Any key, for what the functions above do not cover (lists of choices, of sizes, ...).
+  /// Declares any key, for kinds that the functions above do not cover (lists of choices, of sizes, ...).
   void add(Key key);
 
   /// In the order of declaration.
@@ -115,9 +115,9 @@ class Schema {
   /// Index into keys(), if the key is declared.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
   [[nodiscard]] bool is_free_section(std::string_view name) const;
-  /// The command that reads this key, when it is not that of this schema; empty if that is not known.
+  /// The command that reads this key, if elsewhere() names one; else empty.
   [[nodiscard]] std::string_view elsewhere_of(std::string_view name) const;
-  /// Is `name` a proper prefix of declared keys ("cache" of "cache.size"), or a free section?
+  /// Whether `name` is a proper prefix of declared keys ("cache" of "cache.size"), or a free section.
   [[nodiscard]] bool is_section(std::string_view name) const;
 
  private:
@@ -126,14 +126,14 @@ class Schema {
   std::vector<Section> sections_;
   std::vector<std::string> free_sections_;
   std::vector<std::pair<std::string, std::string>> elsewhere_;  // section and command
-  // Looked up for every key of every machine of a sweep: without a copy of the name.
+  // Looked up for every key of every machine of a sweep, hence without a copy of the name.
   std::unordered_map<std::string, std::size_t, NameHash, std::equal_to<>> index_;
   std::unordered_set<std::string, NameHash, std::equal_to<>> prefixes_;
 };
 
 /// Every key with type, default, unit, range and meaning, for a terminal `width` columns wide.
 std::string list_keys_as_text(const Schema& schema, int width = 100);
-/// The same as Markdown, one table a section.
+/// As list_keys_as_text(), in Markdown with one table a section.
 std::string list_keys_as_markdown(const Schema& schema);
 
 }  // namespace marti::sim

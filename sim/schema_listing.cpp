@@ -9,7 +9,7 @@ namespace marti::sim {
 
 namespace {
 
-/// The key's section: the longest declared one that is a prefix, else what stands before the last dot.
+/// The key's section: the longest declared section that is a prefix, else the name up to the last dot.
 std::string section_of(const Schema& schema, const Key& key) {
   std::string longest;
   for (const Section& section : schema.sections()) {

@@ -69,7 +69,7 @@ void add_block(State& state, std::string_view block) {
   }
 }
 
-/// A message that comes in pieces.
+/// The hash of a message that is given piece by piece.
 class Hash {
  public:
   void add(std::string_view piece) {

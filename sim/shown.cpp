@@ -38,7 +38,7 @@ Character first_of(std::string_view text) {
   return code < least[bytes] || code > 0x10ffff || surrogate ? Character{} : Character{code, bytes};
 }
 
-// Controls of C0 and C1, separators of lines and paragraphs, and what turns the direction of writing.
+// C0 and C1 controls, line and paragraph separators, and bidirectional formatting characters.
 bool unprintable(std::uint32_t code) {
   return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x200e || code == 0x200f ||
          (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069) || code == 0xfeff;

@@ -7,7 +7,7 @@ namespace marti::sim {
 
 namespace {
 
-/// An unsigned number of 256 bits, least significant limb first; just what an exact variance needs.
+/// An unsigned number of 256 bits, least significant limb first, with the operations for an exact variance.
 struct Number256 {
   std::array<std::uint64_t, 4> limbs{};
 };
@@ -71,7 +71,7 @@ std::optional<double> Moments::mean() const {
   if (count_ == 0) {
     return std::nullopt;
   }
-  // Whole part and remainder apart: the sum itself may need more bits than a long double has.
+  // Quotient and remainder are converted separately, as the sum may have more bits than a long double.
   const __int128 whole = sum_ / count_;
   const __int128 rest = sum_ % count_;
   return static_cast<double>(static_cast<long double>(whole) +
@@ -105,7 +105,7 @@ std::int64_t LogHistogram::lowest_of(std::size_t bucket) {
   if (bucket < 16) {
     return static_cast<std::int64_t>(bucket);
   }
-  const std::size_t octave = (bucket - 16) / 8;  // samples from 2^(octave + 4)
+  const std::size_t octave = (bucket - 16) / 8;  // of samples from 2^(octave + 4) on
   const std::size_t part = (bucket - 16) % 8;
   return static_cast<std::int64_t>(8 + part) << (octave + 1);
 }

@@ -37,7 +37,7 @@ namespace marti::sim {
 
 enum class MergeRule {
   sum,
-  maximum,  // of a peak, such as the longest queue
+  maximum,  // for a peak, such as the longest queue
 };
 
 /// One declared counter. `unit` is "1" for a plain count, else "byte", "ps", "ps2", "cycle", ...
@@ -59,7 +59,7 @@ struct Formula {
   std::optional<double> (*value)(const S&);
 };
 
-/// numerator / denominator, or nothing when the denominator is zero.
+/// numerator / denominator; std::nullopt when the denominator is zero.
 constexpr std::optional<double> ratio(std::int64_t numerator, std::int64_t denominator) {
   if (denominator == 0) {
     return std::nullopt;
@@ -77,7 +77,7 @@ concept HasFormulas = requires(const S& s) {
   { S::formulas()[0].value(s) } -> std::convertible_to<std::optional<double>>;
 };
 
-/// For structs that hold nothing but counters: is every member declared, once? Use it in a static_assert.
+/// For structs with no members but counters: whether each member is declared exactly once. For static_assert.
 template <HasCounters S>
 constexpr bool declares_every_member() {
   constexpr auto table = S::counters();
@@ -123,8 +123,8 @@ void merge(S& into, const S& from) {
   }
 }
 
-/// What was counted between two snapshots, so that a warm-up can be removed. A maximum cannot be taken
-/// back: it stays that of `later`.
+/// The counts between two snapshots, so that a warm-up can be removed. A maximum cannot be subtracted: the
+/// result has that of `later`.
 template <HasCounters S>
 S difference(const S& later, const S& earlier) {
   constexpr auto table = S::counters();
@@ -155,13 +155,13 @@ class Moments {
   [[nodiscard]] std::int64_t count() const { return count_; }
   /// The sum, or an InternalError when it does not fit in 64 bits.
   [[nodiscard]] std::int64_t sum() const;
-  /// Zero without samples.
+  /// Zero if there are no samples.
   [[nodiscard]] std::int64_t minimum() const { return count_ == 0 ? 0 : minimum_; }
   [[nodiscard]] std::int64_t maximum() const { return count_ == 0 ? 0 : maximum_; }
-  /// Nothing without samples.
+  /// The mean; std::nullopt if there are no samples.
   [[nodiscard]] std::optional<double> mean() const;
-  /// Of the samples themselves, E[x^2] - E[x]^2, computed as (n sum(x^2) - sum(x)^2) / n^2 in whole
-  /// numbers of 256 bits. Nothing without samples.
+  /// The variance of the samples themselves, E[x^2] - E[x]^2, computed as (n sum(x^2) - sum(x)^2) / n^2 in
+  /// integers of 256 bits; std::nullopt if there are no samples.
   [[nodiscard]] std::optional<double> variance() const;
 
   friend bool operator==(const Moments&, const Moments&) = default;
@@ -181,9 +181,9 @@ class Moments {
   Wide squares_ = 0;
 };
 
-/// A histogram of samples >= 0: exact below 16, then 8 buckets for each power of two, so that a bucket is
-/// at most 12.5 % of its lower bound wide. Memory grows with the logarithm of the largest sample (at most
-/// 4 KB).
+/// A histogram of samples >= 0: exact below 16, then with 8 buckets for each power of two, so that a bucket's
+/// width is at most 12.5 % of its lower bound. Its memory grows with the logarithm of the largest sample (at
+/// most 4 KB).
 class LogHistogram {
  public:
   /// An InternalError when `sample` is negative.
@@ -196,7 +196,7 @@ class LogHistogram {
     ++count_;
     maximum_ = std::max(maximum_, sample);
   }
-  /// The same `times` times, at least 0.
+  /// Adds a sample `times` times, at least 0.
   void add_repeated(std::int64_t sample, std::int64_t times) {
     if (times == 0) {
       return;
@@ -208,10 +208,10 @@ class LogHistogram {
   void merge(const LogHistogram& other);
 
   [[nodiscard]] std::int64_t count() const { return count_; }
-  /// Exact; zero without samples.
+  /// The largest sample, exact; zero if there are no samples.
   [[nodiscard]] std::int64_t maximum() const { return maximum_; }
-  /// The p-th percentile by nearest rank, 0 < p <= 100: never below the exact one and at most 12.5 % above
-  /// it; percentile(100) is the maximum. Nothing without samples.
+  /// The p-th percentile by nearest rank, 0 < p <= 100: never below the exact value and at most 12.5 % above
+  /// it; percentile(100) is the maximum. std::nullopt if there are no samples.
   [[nodiscard]] std::optional<std::int64_t> percentile(double p) const;
 
   struct Bucket {
@@ -237,7 +237,7 @@ class LogHistogram {
   friend bool operator==(const LogHistogram&, const LogHistogram&) = default;
 
  private:
-  std::vector<std::int64_t> buckets_;  // up to the last that is not empty
+  std::vector<std::int64_t> buckets_;  // up to the last non-empty one
   std::int64_t count_ = 0;
   std::int64_t maximum_ = 0;
 };

@@ -1,5 +1,5 @@
-// Simulated time: a signed 64-bit count of picoseconds (2^63 ps are 107 days). Additions are checked:
-// a time that does not fit is a UserError, because only the durations of the user's machine can cause it.
+// Simulated time: a signed 64-bit count of picoseconds (2^63 ps are 107 days). Additions are checked: an
+// overflow is a UserError, because only the durations of the user's machine can cause it.
 #pragma once
 
 #include <cstdint>
@@ -34,8 +34,8 @@ inline Ticks multiply_ticks(Ticks a, std::int64_t b) {
   return product;
 }
 
-/// A component's clock. The frequency is turned into a whole number of ticks once; every duration of the
-/// component is a whole number of these periods afterwards.
+/// A component's clock. The frequency is rounded once to a period of whole ticks; every duration of the
+/// component is then a whole number of periods.
 class Clock {
  public:
   /// `hertz` from 1 to 1e12. The period is 1e12 / hertz rounded to the nearest tick, at least 1.

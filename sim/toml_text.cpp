@@ -6,7 +6,7 @@ namespace {
 
 enum class In { plain, comment, string };
 
-// Walks over a text, inside of a string by its quotes: one character or three of them.
+// Walks over a text and tracks strings by their quotes, one character or three of them.
 class Walk {
  public:
   explicit Walk(std::string_view text) : text_(text) {}
@@ -51,7 +51,7 @@ class Walk {
 
   void inside(char c) {
     if (c == '\\' && quote_ == '"') {
-      ++at_;  // what is escaped ends nothing
+      ++at_;  // an escaped character does not end the string
       line_ += at_ < text_.size() && text_[at_] == '\n' ? 1 : 0;
     } else if (long_) {
       if (c == quote_ && three(quote_)) {
@@ -59,7 +59,7 @@ class Walk {
         at_ += 2;
       }
     } else if (c == quote_ || c == '\n') {
-      in_ = In::plain;  // a line break is an error, which toml++ finds there
+      in_ = In::plain;  // a line break in a string is an error, which toml++ reports
     }
   }
 

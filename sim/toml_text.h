@@ -1,4 +1,4 @@
-// What has to be known of a TOML text before toml++ may see it.
+// Checks of a TOML text that must precede toml++.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +7,9 @@
 namespace marti::sim {
 
 /// The line (from 1) of the first byte beyond ASCII outside of strings and comments; 0 when there is none.
-/// TOML allows none there, but toml++ 3.3 runs into what it declares unreachable when it asks whether one is
-/// white space (is_non_ascii_horizontal_whitespace of most letters). A byte order mark at the beginning does
-/// not count.
+/// TOML allows no such byte, but toml++ 3.3 runs into undefined behaviour when it tests it for white space
+/// (is_non_ascii_horizontal_whitespace of most letters). A byte order mark at the beginning does not
+/// count.
 [[nodiscard]] std::size_t line_beyond_ascii(std::string_view text);
 
 }  // namespace marti::sim

@@ -100,12 +100,12 @@ std::int64_t exact_product(std::string_view text, const Quantity& quantity, std:
   while (!fraction.empty() && fraction.back() == '0') {
     fraction.remove_suffix(1);
   }
-  // A scale of at most 2^40 or 10^12 has at most 40 factors of 2 and 12 of 5: more digits cannot cancel.
+  // A scale up to 2^40 or 10^12 has at most 40 factors of 2 and 12 of 5, so further digits cannot cancel.
   constexpr std::size_t most_digits = 40;
   if (fraction.size() > most_digits) {
     fail(text, not_whole);
   }
-  // Long division of scale * 0.fraction: from the last digit on, every step must leave no remainder.
+  // Long division of scale * 0.fraction: each step, from the last digit on, must leave no remainder.
   __int128 part = 0;
   constexpr __int128 limit = std::numeric_limits<std::int64_t>::max();
   for (std::size_t i = fraction.size(); i-- > 0;) {
@@ -128,7 +128,7 @@ std::int64_t exact_product(std::string_view text, const Quantity& quantity, std:
   return static_cast<std::int64_t>(whole * scale + part);
 }
 
-/// The digits of `hertz`-like decimal texts with the point moved left by `places`: 33300000, 6 -> 33.3.
+/// The digits of a decimal text with the point moved left by `places`: 33300000, 6 -> 33.3.
 std::string shift_point(std::string digits, int places) {
   std::size_t point = digits.find('.');
   if (point == std::string::npos) {
@@ -171,7 +171,7 @@ double nearest_real(std::string_view text, const Quantity& quantity, int exponen
   return value;
 }
 
-/// With the largest unit that divides the value.
+/// The value with the largest unit that divides it.
 std::string print_exact(std::int64_t value, std::span<const Unit> units) {
   const Unit* best = &units.front();
   for (const Unit& unit : units) {
@@ -223,7 +223,7 @@ std::string print_frequency(double hertz) {
       best = &unit;
     }
   }
-  // The shortest digits of the hertz, moved as text: no rounding, so that it reads back as the same double.
+  // The shortest digits in hertz, the point moved as text: not rounded, so they read back as the same double.
   return shift_point(decimal(hertz), static_cast<int>(best->scale)) + " " + std::string(best->name);
 }
 
@@ -251,7 +251,7 @@ double parse_percentage(std::string_view text) {
 
 std::string print_percentage(double fraction) {
   ensure(std::isfinite(fraction) && fraction >= 0, "a percentage is finite and not negative");
-  // The point moves two places to the right in the text of the number: no rounding.
+  // The point is moved two places to the right in the text of the number, so nothing is rounded.
   std::string digits = decimal(fraction);
   std::size_t point = digits.find('.');
   if (point == std::string::npos) {

@@ -1,7 +1,7 @@
-// Numbers with units as people write them: sizes ("16 KiB"), frequencies ("33 MHz"), durations ("10 ns")
-// and percentages ("42 %"). A number is decimal digits with an optional fraction; blanks between number
-// and unit are optional; units are case-sensitive. Parsing is exact: what is not a whole number of bytes
-// or ticks, or does not fit, is a UserError that says what would be right. Every parse_x(print_x(v)) == v.
+// Numbers with units as people write them: sizes ("16 KiB"), frequencies ("33 MHz"), durations ("10 ns") and
+// percentages ("42 %"). A number is decimal digits with an optional fraction; blanks between number and unit
+// are optional; units are case-sensitive. Parsing is exact: a value that is not a whole number of bytes or
+// ticks, or does not fit, is a UserError that says what would be right. Every parse_x(print_x(v)) == v.
 #pragma once
 
 #include <cstdint>

@@ -47,8 +47,8 @@ struct StepCounts {
   std::int64_t refraction_rays = 0;
   std::int64_t branches = 0;
   std::int64_t leaves = 0;
-  std::int64_t lists = 0;         ///< leaves whose object list was read: those of which entries were read
-  std::int64_t tests = 0;         ///< all of them
+  std::int64_t lists = 0;         ///< leaves whose object list was read
+  std::int64_t tests = 0;         ///< of all kinds of primitive
   std::int64_t sphere_tests = 0;  ///< of these, spheres
   std::int64_t cone_tests = 0;    ///< of these, cylinders and cones
   std::int64_t lookups = 0;
@@ -87,8 +87,8 @@ inline constexpr std::array<std::int64_t StepCounts::*, ray_kinds> ray_counters 
     &StepCounts::camera_rays, &StepCounts::shadow_rays, &StepCounts::reflection_rays,
     &StepCounts::refraction_rays};
 
-/// References count lines touched (parts of at most one interleave unit where there is no cache); one
-/// record may be several.
+/// References are lines touched (without a cache: parts of at most one interleave unit each); one record may
+/// take several references.
 struct ReferenceCounts {
   std::array<std::int64_t, memory::record_kinds> hits{};
   std::array<std::int64_t, memory::record_kinds> misses{};
@@ -116,7 +116,7 @@ struct NodeStatistics {
   }
 };
 
-/// The counters of one record kind.
+/// The hits counted for one record kind.
 inline std::int64_t& hits_of(NodeStatistics& statistics, memory::RecordKind kind) {
   return statistics.references.hits[static_cast<std::size_t>(kind)];
 }
@@ -124,12 +124,12 @@ inline std::int64_t& misses_of(NodeStatistics& statistics, memory::RecordKind ki
   return statistics.references.misses[static_cast<std::size_t>(kind)];
 }
 
-/// Records read or written, by kind: they follow from the steps.
+/// Records read or written, by kind. The numbers follow from the steps.
 [[nodiscard]] std::array<std::int64_t, memory::record_kinds> records_of(const StepCounts& steps);
 
 [[nodiscard]] sim::Ticks sum_of(const TimeDivision& time);
 
-/// The parts of a read, each to its activity.
+/// Adds the parts of a read to their activities.
 inline void add_service(TimeDivision& time, const memory::Service& service) {
   time[static_cast<std::size_t>(Activity::interconnect_wait)] += service.wait_interconnect;
   time[static_cast<std::size_t>(Activity::transfer)] += service.transfer;

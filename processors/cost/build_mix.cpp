@@ -15,7 +15,7 @@ namespace {
 using accel::Counted;
 using accel::OperationCounts;
 
-// A count may lie below the share of it that the mean of others predicts.
+// Counts minus the share that the mean `each` predicts for them; 0 where a count is below its share.
 OperationCounts beyond(const OperationCounts& counts, const OperationMix& each, std::uint64_t times) {
   const auto rest = [times](std::uint64_t count, std::int64_t mean) {
     const std::uint64_t share = (static_cast<std::uint64_t>(mean) * times + 500) / 1000;

@@ -1,6 +1,6 @@
-// How many arithmetic operations it takes to split a node of the tree, and what they cost. As for the steps
-// of the log (operation_mix.h) the table is not guessed: it is what the octree's sorting of triangles into
-// children (accel/octree_sort.h) executes when it is run with a scalar that counts, and a test counts again.
+// How many arithmetic operations it takes to split a node of the tree, and what they cost. As with the steps
+// of the log (operation_mix.h) the table is measured: it holds what the octree's sorting of triangles into
+// children (accel/octree_sort.h) executes when run with a counting scalar. A test measures it again.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ class Octree;
 
 namespace marti::processors {
 
-/// Means in thousandths of an operation:
-///   listed   one listed primitive against the middle planes: its bounding box, and which children it can
-///   meet overlap  one triangle against box test child    the planes and boxes of one child
+/// Means in thousandths of an operation. listed: one listed primitive against the middle planes (its
+/// bounding box, and which children it can meet). overlap: one triangle against one box. child: the planes
+/// and boxes of one child.
 struct BuildMixes {
   OperationMix listed;
   OperationMix overlap;
@@ -29,7 +29,7 @@ struct BuildMixes {
 /// bsp tree's node is priced by it too: it tests the same triangles against boxes made in the same way.
 [[nodiscard]] const BuildMixes& build_mixes();
 
-/// What a measurement saw: the means, and how many they are means of.
+/// The result of a measurement: the means, and how many samples each mean is of.
 struct MeasuredBuild {
   BuildMixes mixes;
   std::uint64_t listed = 0;
@@ -37,13 +37,13 @@ struct MeasuredBuild {
   std::uint64_t children = 0;
 };
 
-/// Splits every branch of the tree once more, with the counting scalar. The operations of `listed` are those
-/// of the primitives that need no overlap test; what the others take beyond that is divided among their
-/// tests, so that the means multiply to the operations counted.
+/// Splits every branch of the tree once more, with the counting scalar. The mean `listed` is over the
+/// primitives that need no overlap test; what the others take beyond that is divided among their overlap
+/// tests, so that means times numbers give the operations counted.
 [[nodiscard]] MeasuredBuild measure_build_mixes(const accel::Octree& octree);
 
-/// Compute cycles of the parts of a split. Fetching a record's words and storing them is in them, waiting for
-/// memory is not.
+/// Compute cycles of the parts of a split. They include the fetching and storing of a record's words, but not
+/// waiting for memory.
 struct BuildCycles {
   std::int64_t lock = 0;     ///< an integer operation, a load and a store
   std::int64_t listed = 0;   ///< one entry of the node's list: fetch its id and primitive, classify it
@@ -54,7 +54,7 @@ struct BuildCycles {
 };
 [[nodiscard]] BuildCycles build_cycles(const OperationCycles& cycles, const RecordWords& words);
 
-/// The same in ticks of one machine.
+/// The times of BuildCycles in ticks of one machine.
 struct BuildTicks {
   sim::Ticks lock = 0;
   sim::Ticks listed = 0;

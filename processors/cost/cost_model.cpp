@@ -18,7 +18,7 @@ struct Preset {
 constexpr std::array<std::string_view, 3> names{"unit", "mc68882", "modern"};
 
 constexpr std::array<Preset, 3> presets{{
-    // Every operation one cycle: for arguments about counts, and for tests.
+    // One cycle for every operation: for arguments about counts, and for tests.
     {"unit",
      {.add = 1,
       .multiply = 1,
@@ -61,7 +61,7 @@ constexpr std::array<Preset, 3> presets{{
       .store = 1}},
 }};
 
-/// Reading one record: an integer operation for its address, then its words.
+/// Cycles to read one record: an integer operation for its address, then its words.
 std::int64_t read_record(const OperationCycles& cycles, std::int64_t words) {
   return sim::add_ticks(cycles.integer, sim::multiply_ticks(cycles.load, words));
 }
@@ -69,7 +69,7 @@ std::int64_t read_record(const OperationCycles& cycles, std::int64_t words) {
 }  // namespace
 
 std::int64_t price(const OperationMix& mix, const OperationCycles& cycles, std::int64_t fixed) {
-  // Prices may be anything that fits 64 bits; six of them times their counts then fit 128.
+  // Prices may be anything that fits 64 bits; a sum of six prices times their counts then fits 128.
   __extension__ using Wide = __int128;
   const auto times = [](std::int64_t count, std::int64_t price) { return static_cast<Wide>(count) * price; };
   const Wide thousandths = times(mix.add, cycles.add) + times(mix.multiply, cycles.multiply) +
@@ -107,7 +107,7 @@ StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words, 
   const std::int64_t entry = read_record(cycles, words.entry);
   const std::int64_t primitive = read_record(cycles, words.primitive);
   const std::int64_t quadric = read_record(cycles, words.quadric);
-  // With mailboxes the entry is fetched to look its mailbox up, and a test leaves the ray's number there.
+  // With mailboxes the look-up fetches the entry, and a test leaves the ray's number in the mailbox.
   if (mailboxes) {
     steps.lookup = price(mixes.lookup, cycles, sim::add_ticks(entry, read_record(cycles, 1)));
   }

@@ -1,5 +1,5 @@
-// From operations to cycles: what each kind of step costs a processor node in compute time. References
-// to memory are not part of it; the node adds them from the database layout.
+// From operations to cycles: the compute time of each kind of step at a processor node. References to memory
+// are not part of it; the node adds them from the database layout.
 #pragma once
 
 #include <array>
@@ -33,10 +33,10 @@ struct StepCycles {
   std::int64_t branch = 0;                    ///< reading a branch and ordering its children
   std::int64_t leaf = 0;                      ///< reading a leaf, without its tests
   std::int64_t lookup = 0;  ///< with mailboxes, one entry of a leaf's list: fetch its id, look at its mailbox
-  std::int64_t test = 0;    ///< one test: fetch the entry's id, unless it was looked up, and the triangle,
-                            ///< test it, and with mailboxes leave the ray's number
-  std::int64_t sphere_test = 0;  ///< the same of a sphere
-  std::int64_t cone_test = 0;    ///< the same of a cylinder or cone
+  std::int64_t test = 0;    ///< one test: fetch the triangle, and its id unless it was looked up, test it,
+                            ///< and with mailboxes leave the ray's number in the mailbox
+  std::int64_t sphere_test = 0;  ///< a test of a sphere instead
+  std::int64_t cone_test = 0;    ///< a test of a cylinder or cone instead
   std::int64_t shade = 0;
   std::int64_t light = 0;
   std::int64_t texel = 0;
@@ -52,7 +52,7 @@ struct StepCycles {
 /// cost_model.cpp.
 [[nodiscard]] OperationCycles cost_preset(std::string_view name);
 
-/// The cycles of a mix, rounded to the nearest, halves up, and `fixed` whole ones; UserError beyond 64 bits.
+/// The cycles of a mix, rounded to nearest with halves up, plus `fixed` cycles; UserError beyond 64 bits.
 [[nodiscard]] std::int64_t price(const OperationMix& mix, const OperationCycles& cycles, std::int64_t fixed);
 
 /// Prices the measured operation mixes of a traversal (operation_mix.h). Rounds each step to whole cycles,

@@ -29,7 +29,7 @@ struct Buckets {
   OperationCounts pixel;
 };
 
-/// Takes its own arithmetic out of the thread's counters again.
+/// Restores the thread's counters when it ends, so that what is computed meanwhile is not counted.
 class Uncounted {
  public:
   Uncounted() : saved_(accel::operation_counts()) {}
@@ -56,7 +56,7 @@ class CountingRecorder {
   void phase(Phase phase, RayKind kind) {
     close();
     if (phase == Phase::shade && nearest_wanted_ && best_->found()) {
-      // The last thing closest() does after a hit is to divide three edge functions by their sum.
+      // After a hit closest() ends with dividing three edge functions by their sum: a part of shading.
       current_->divide -= 3;
       buckets_.shade.divide += 3;
     }
@@ -84,8 +84,8 @@ class CountingRecorder {
     mailed_leaf(node, tests, entries, nullptr);
   }
 
-  /// The tests were done since the last event, with the walk to this leaf. They are done once more here to
-  /// tell the two apart.
+  /// The counters since the last event include both the walk to this leaf and its tests. To separate the two,
+  /// the tests are done once more here.
   void mailed_leaf(std::uint32_t node, std::uint32_t read, std::uint32_t /*entries*/,
                    const std::uint32_t* tested) {
     ++steps_.leaves;
@@ -124,7 +124,7 @@ class CountingRecorder {
   void light(std::uint32_t /*light*/) { ++steps_.lights; }
   void texel(std::uint32_t /*texture*/, std::uint32_t /*texel*/) { ++steps_.texels; }
 
-  /// Operations that follow count for nothing.
+  /// Operations that follow are not counted.
   void end() { close(); }
 
   [[nodiscard]] const Buckets& buckets() const { return buckets_; }
@@ -134,12 +134,12 @@ class CountingRecorder {
  private:
   using Bucket = OperationCounts Buckets::*;
 
-  /// What the walk does after a leaf; null: nothing.
+  /// The step that operations after a leaf belong to; null: no step.
   static Bucket after_leaf(accel::Traversal traversal) {
     switch (traversal) {
       case accel::Traversal::octree:
       case accel::Traversal::bsp_recursive:
-        return &Buckets::branch;  // its parent goes on
+        return &Buckets::branch;  // the walk of its parent continues
       case accel::Traversal::bsp_push_point:
       case accel::Traversal::grid:
         return &Buckets::leaf;
@@ -190,13 +190,13 @@ class CountingRecorder {
 /// three table look-ups of its channels (integers).
 constexpr OperationMix texel_sampling{2000, 2000, 0, 0, 0, 11000};
 
-/// A finished pixel, by hand: three channels are scaled, clamped at both ends and rounded, and packed
-/// into one word.
+/// Converting a finished pixel, counted by hand: three channels are scaled, clamped at both ends and rounded,
+/// and packed into one word.
 constexpr OperationMix pixel_conversion{0, 3000, 0, 0, 6000, 5000};
 
-/// A small node, by hand from accel/octree_cut.h: its size (an addition, two products, three comparisons),
-/// the nearest triangle's t compared, the covered share (the form's six products and five sums, the area, a
-/// comparison, a root, over the projection, compared), and the voxel's number looked up.
+/// A node taken as one voxel, by hand from accel/octree_cut.h: its size (an addition, two products, three
+/// comparisons), the nearest triangle's t compared, the covered share (the form's six products and five sums,
+/// the area, a comparison, a root, over the projection, compared), and the voxel's number looked up.
 constexpr OperationMix voxel_cut{6000, 10000, 0, 1000, 6000, 2000};
 
 OperationMix sum(const OperationMix& a, const OperationMix& b) {
@@ -284,7 +284,7 @@ MeasuredWalks measure_walks(const accel::Structure& structure, std::span<const a
 
 namespace {
 
-/// What the traversals differ in.
+/// The mixes in which the traversals differ.
 struct WalkMixes {
   std::array<OperationMix, ray_kinds> ray;
   OperationMix branch;

@@ -1,6 +1,6 @@
-// How many arithmetic operations each kind of step takes. The table is not guessed: it is what the real
-// templates (camera, traversal, intersection kernel, shading) execute when they are run with a scalar
-// that counts, and a test measures it again. Every traversal has a table of its own.
+// How many arithmetic operations each kind of step takes. The table is measured: it holds what the real
+// templates (camera, traversal, intersection kernel, shading) execute when run with a scalar that counts. A
+// test measures it again. Every traversal has a table of its own.
 #pragma once
 
 #include <array>
@@ -73,9 +73,9 @@ struct OperationMixes {
 /// says how).
 [[nodiscard]] const OperationMixes& operation_mixes(accel::Traversal traversal);
 
-/// What a measurement saw: the means and how many steps they are means of.
+/// The result of a measurement: the means, and how many steps they are means of.
 struct MeasuredMixes {
-  OperationMixes mixes;  ///< a kind of step that did not occur has a mix of zeros
+  OperationMixes mixes;  ///< all zero for a kind of step that did not occur
   LogTotals steps;
   std::array<std::uint64_t, 3> tests{};  ///< of `steps.tests`, each accel::PrimitiveKind
 };
@@ -86,7 +86,7 @@ struct MeasuredMixes {
                                                     const accel::Structure& structure,
                                                     const RenderOptions& options);
 
-/// What single rays took: sums, not means.
+/// Operations that some rays took: sums, not means.
 struct MeasuredWalks {
   accel::OperationCounts ray;  ///< setting up kernel and traversal
   accel::OperationCounts branch;

@@ -1,4 +1,4 @@
-// A machine's step costs in ticks, and the division of a node's computing time that follows from counts.
+// A machine's step costs in ticks, and how a node's computing time divides among activities, from counts.
 #pragma once
 
 #include "processors/cost/accounting.h"
@@ -12,7 +12,7 @@ struct StepTicks {
   std::array<sim::Ticks, ray_kinds> ray{};
   sim::Ticks branch = 0;
   sim::Ticks leaf = 0;
-  sim::Ticks lookup = 0;  ///< one entry's mailbox; 0 without mailboxes
+  sim::Ticks lookup = 0;  ///< looking up the mailbox of one entry; 0 without mailboxes
   sim::Ticks test = 0;
   sim::Ticks sphere_test = 0;
   sim::Ticks cone_test = 0;
@@ -25,7 +25,7 @@ struct StepTicks {
   sim::Ticks hit = 0;
 };
 
-/// For the walk that made `log`.
+/// The times on this machine of the steps of the traversal that made `log`.
 [[nodiscard]] StepTicks step_ticks(const MachineConfig& config, const WorkLog& log);
 
 /// Adds traversal, intersection, shading and cache access of `counts` to `time`.

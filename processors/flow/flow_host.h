@@ -1,10 +1,10 @@
 // The host of the schemes in which rays move: sends camera rays into each cluster and collects what the rays
 // contribute to the pixels.
 //
-// There is one host a frame, with a way of its own into each cluster's network (port `nodes`). A cluster's
-// camera rays come pixel by pixel, row by row, and of each pixel sample by sample, from its current packet;
-// when that is used up, the cluster draws the next packet of the frame. The first ray may be sent after
-// `latency_cycles`, and each keeps that cluster's way busy for `occupancy_cycles`. Rays enter while fewer
+// There is one host for the frame, with a link of its own into each cluster's network (port `nodes`). A
+// cluster's camera rays are those of its current packet, pixel by pixel, row by row, sample by sample; when
+// the packet is used up, the cluster takes the next packet of the frame. The first ray may be sent after
+// `latency_cycles`, and each keeps that cluster's link busy for `occupancy_cycles`. Rays enter while fewer
 // than a limit are in flight.
 #pragma once
 
@@ -32,23 +32,23 @@ class FlowHost {
   /// At most `limit` rays may be in flight in each cluster.
   FlowHost(const WorkLog& log, const PacketList& packets, const MachineConfig& config, std::uint32_t limit);
 
-  /// Whether a camera ray is left for the cluster. Pixels without rays are passed over. Draws a packet when
-  /// the cluster's is used up, so clusters ask in the order of simulated time, from an event each.
+  /// Whether a camera ray is left for the cluster. Skips pixels without rays. Takes a packet when the
+  /// cluster's is used up, so clusters must ask in the order of simulated time, each from its own event.
   [[nodiscard]] bool has_ray(std::uint32_t cluster);
-  /// Not before this may the cluster's next camera ray be sent.
+  /// The earliest time at which the cluster's next camera ray may be sent.
   [[nodiscard]] sim::Ticks ready_at(std::uint32_t cluster) const { return ways_[cluster].ready_at; }
-  /// The next camera ray's sample; the ray is sent at `now`, at least ready_at(). There must be one, and it
-  /// must have entered.
+  /// Sends the next camera ray at `now`, at least ready_at(), and returns its sample. There must be a ray,
+  /// and enter() must have been called for it.
   SentSample send(std::uint32_t cluster, sim::Ticks now);
 
   /// Whether one more ray may enter the cluster.
   [[nodiscard]] bool has_credit(std::uint32_t cluster) const { return ways_[cluster].in_flight < limit_; }
-  /// A ray enters: from the host, or after it was set aside.
+  /// A ray enters the cluster, from the host or after it was set aside.
   void enter(std::uint32_t cluster) {
     ++ways_[cluster].in_flight;
     most_in_flight_ = std::max(most_in_flight_, ++in_flight_);
   }
-  /// A ray has ended and nothing has taken its place.
+  /// A ray has ended and frees its place.
   void leave(std::uint32_t cluster) {
     --ways_[cluster].in_flight;
     --in_flight_;
@@ -66,18 +66,18 @@ class FlowHost {
   [[nodiscard]] std::int64_t most_in_flight() const { return most_in_flight_; }
   /// When the last contribution arrived.
   [[nodiscard]] sim::Ticks last_arrival() const { return last_arrival_; }
-  /// `requests` are the camera rays sent.
+  /// `requests` is the number of camera rays sent.
   [[nodiscard]] const HostStatistics& statistics() const { return statistics_; }
 
  private:
   struct Way {
     sim::Ticks ready_at = 0;
     std::uint32_t in_flight = 0;
-    bool drawn = false;  // a packet with pixels left
+    bool drawn = false;  // has a packet with pixels left
     Packet packet;
     std::uint32_t x = 0;
     std::uint32_t y = 0;
-    std::size_t word = 0;  // of the pixel: the words before it belong to samples that were sent
+    std::size_t word = 0;  // in the pixel: words before it belong to samples already sent
   };
 
   const WorkLog& log_;

@@ -1,5 +1,5 @@
-// What the nodes of all schemes in which rays move have in common: counters, messages, and the way to the
-// cluster's memory.
+// The common part of the nodes of all schemes in which rays move between nodes: counters, messages, and the
+// path to the cluster's memory.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace marti::processors {
 
-/// `Derived` has read_done(node, service): a read that the node waits for has been served.
+/// `Derived` has read_done(node, service), called when a read that the node waits for has been served.
 template <class Derived>
 class FlowNodesBase : public FlowNodes {
  public:
@@ -40,7 +40,7 @@ class FlowNodesBase : public FlowNodes {
     }
   }
 
-  // All clusters, in an order drawn from `seed` (0: ascending).
+  // The numbers of all clusters, in an order drawn from `seed` (0: ascending).
   [[nodiscard]] std::vector<std::uint32_t> first_order(std::uint64_t seed) const {
     return order_drawn_from(seed, input_.config.clusters);
   }
@@ -60,21 +60,21 @@ class FlowNodesBase : public FlowNodes {
     add_service(statistics_[node].time, service);
   }
 
-  // Tells who watches, if anybody does, that the node was in `state` from where it was told last to `to`.
+  // Tells the observer, if there is one, that the node was in `state` since the last time told, until `to`.
   void watch(std::uint32_t node, NodeState state, sim::Ticks to, PixelPlace place = {}) {
     if (input_.observer != nullptr && watched_[node].until != to) {
       input_.observer->spent(node, state, watched_[node].until, to, place);
       watched_[node].until = to;
     }
   }
-  // The same of a read that the node has waited for since then.
+  // Tells the observer of a read that the node has waited for since the last time told.
   void watch_read(std::uint32_t node, const memory::Service& service, PixelPlace place) {
     if (input_.observer != nullptr) {
       spent_reading(*input_.observer, node, service, watched_[node].until, place);
       watched_[node].until = service.done;
     }
   }
-  // The same of work for a ray, with the misses on the way.
+  // Tells the observer of work for a ray since the last time told, and of the misses in it.
   void watch_work(std::uint32_t node, sim::Ticks to, PixelPlace place) {
     watch(node, NodeState::working, to, place);
     if (input_.observer != nullptr) {
@@ -85,7 +85,7 @@ class FlowNodesBase : public FlowNodes {
     }
   }
 
-  // Sends a ray to another node; when it arrives.
+  // Sends a ray to another node; returns its time of arrival.
   sim::Ticks send_ray(std::uint32_t from, std::uint32_t to, sim::Ticks now) {
     const std::uint32_t bytes = input_.config.messages.ray_bytes;
     ++counts_[from].passed_on;
@@ -99,14 +99,14 @@ class FlowNodesBase : public FlowNodes {
     counts_[from].bytes_sent += bytes;
     host_.collect(networks_[cluster_of(from)]->send(now, port_of(from), input_.config.nodes, bytes).arrival);
   }
-  // Sends a camera ray to a node; when it arrives.
+  // Sends a camera ray to a node; returns its time of arrival.
   sim::Ticks send_camera_ray(std::uint32_t to, sim::Ticks now) {
     return networks_[cluster_of(to)]
         ->send(now, input_.config.nodes, port_of(to), input_.config.messages.ray_bytes)
         .arrival;
   }
 
-  // The node's time up to its `finish` is in its statistics but for what follows from counts.
+  // Completes the node's time: adds what follows from counts, and the idle time after its `finish`.
   void finish_node(std::uint32_t node, const StepTicks& ticks) {
     NodeStatistics& statistics = statistics_[node];
     add_counted_time(ticks, statistics.steps, statistics.references.all_hits(), statistics.time);
@@ -123,8 +123,8 @@ class FlowNodesBase : public FlowNodes {
   sim::Ticks end_ = 0;  // of the nodes' work so far
 
  private:
-  // One cluster's ports, with port numbers turned into node numbers. Nothing is written to the memory: the
-  // host has the pixels.
+  // One cluster's ports, with port numbers turned into node numbers. Pixels are kept by the host, so there
+  // are no writes to memory.
   class Client final : public memory::InterconnectClient {
    public:
     Client(Derived& nodes, std::uint32_t first) : nodes_(nodes), first_(first) {}
@@ -138,7 +138,7 @@ class FlowNodesBase : public FlowNodes {
     std::uint32_t first_;
   };
 
-  // What an observer has been told of a node.
+  // How far the observer has been told of a node.
   struct Watched {
     sim::Ticks until = 0;
     std::int64_t misses = 0;

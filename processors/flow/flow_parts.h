@@ -1,4 +1,4 @@
-// What the nodes of all schemes in which rays move have in common, and what they are made with.
+// The interface of the nodes in all schemes in which rays move, and the objects that they are made with.
 #pragma once
 
 #include <vector>
@@ -10,15 +10,15 @@
 
 namespace marti::processors {
 
-/// Event classes of these schemes. At equal times progress inside a node comes first, then what was sent or
-/// has ended, then what wakes a node, then the host, then the memory. Those they share with the image scheme
-/// keep their numbers, because the memory posts them.
+/// Event classes of these schemes. At equal times the order is: progress inside a node, arrivals and
+/// completions, events that wake a node, the host, the memory. Classes shared with the image scheme keep
+/// their numbers, because the memory posts them.
 enum class FlowEvent : std::uint8_t {
   step = static_cast<std::uint8_t>(EventClass::step),
   reply = static_cast<std::uint8_t>(EventClass::reply),
   read = static_cast<std::uint8_t>(EventClass::read),
-  done = 8,    ///< a node has finished what it did for a ray
-  wake = 9,    ///< a node without work looks for some
+  done = 8,    ///< a node has finished its work on a ray
+  wake = 9,    ///< a node without work looks for a ray
   admit = 10,  ///< the host looks for camera rays that it may send; the component is the cluster
   memory = 11  ///< EventClass::memory
 };
@@ -26,11 +26,11 @@ enum class FlowEvent : std::uint8_t {
 /// The nodes of all clusters, between which rays move.
 class FlowNodes : public NodeArray {
  public:
-  /// After finish(): fills in what these schemes count, beside what the host and the networks know.
+  /// After finish(): fills in the nodes' counts; those of the host and the networks are left to the caller.
   virtual void report(FlowResult& result) const = 0;
 };
 
-/// What such nodes are made with; all of it outlives them.
+/// The objects that such nodes are made with; all of them outlive the nodes.
 struct FlowParts {
   const ReplayInput& input;
   sim::Engine& engine;

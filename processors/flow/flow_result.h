@@ -1,4 +1,4 @@
-// What a scheme in which rays move from node to node counts beside what every scheme does.
+// What schemes in which rays move between nodes count in addition to the counts of every scheme.
 #pragma once
 
 #include <array>
@@ -45,16 +45,17 @@ static_assert(sim::declares_every_member<FlowCounts>());
 
 /// Empty (no nodes) for the image scheme.
 struct FlowResult {
-  std::vector<FlowCounts> nodes;                    ///< one a node
-  std::vector<memory::NetworkStatistics> networks;  ///< one a cluster
+  std::vector<FlowCounts> nodes;                    ///< one for each node
+  std::vector<memory::NetworkStatistics> networks;  ///< one for each cluster
   std::vector<std::uint64_t> memory_bytes;          ///< of the database, in each node's own memory
-  std::int64_t rays = 0;                            ///< camera rays the host sent and rays made
+  std::int64_t rays = 0;                            ///< camera rays sent and rays made at nodes
   std::int64_t collected = 0;                       ///< contributions that reached the host
-  std::int64_t most_in_flight = 0;                  ///< rays at a time, of all clusters
-  std::uint64_t regions = 0;                        ///< space: cut out of the tree
+  std::int64_t most_in_flight = 0;                  ///< most rays at a time, of all clusters together
+  std::uint64_t regions = 0;                        ///< space: number of regions that the tree is cut into
   std::uint64_t top_nodes = 0;                      ///< space: tree nodes that every node has
-  std::uint64_t duplicated_primitives = 0;          ///< space: records beyond one of each, in a cluster
-  sim::Ticks sampling_work = 0;                     ///< space: computing of a pre-pass before the frame
+  std::uint64_t duplicated_primitives = 0;          ///< space: in a cluster, primitive records beyond one of
+                                                    ///< each
+  sim::Ticks sampling_work = 0;                     ///< space: compute time of a pre-pass before the frame
 };
 
 }  // namespace marti::processors

@@ -1,4 +1,4 @@
-// Which of many nodes has the least load, the lowest number on ties; in constant time for small loads.
+// The node with the least load among many, the lowest number on ties, in constant time for small loads.
 #pragma once
 
 #include <bit>
@@ -10,8 +10,8 @@ namespace marti::processors {
 
 /// Nodes 0 to nodes - 1 in the order of their loads. A node without room is left out.
 ///
-/// The nodes of one load are a set of bits; above them, bits say which words are not zero, layer by layer.
-/// All sets lie in one array.
+/// The nodes with the same load are a set of bits; further layers of bits above it say which words are not
+/// zero. All sets lie in one array.
 class LoadOrder {
  public:
   static constexpr std::uint32_t none = 0xffffffffU;
@@ -29,7 +29,7 @@ class LoadOrder {
     }
   }
 
-  /// The node now has this load, or none: no room.
+  /// Sets the load of a node; `none` means that the node has no room.
   void set(std::uint32_t node, std::uint32_t load) {
     const std::uint32_t before = load_[node];
     if (load == before) {
@@ -50,9 +50,9 @@ class LoadOrder {
     least_ = load < least_ ? load : least_;
   }
 
-  /// The node with the least load, or none when no node has room.
+  /// The node with the least load; `none` when no node has room.
   [[nodiscard]] std::uint32_t least() {
-    // The last word of a set is its uppermost layer.
+    // The last word of a set is its top layer.
     while (least_ < loads_ && bits_[(std::size_t{least_} + 1) * words_of_set_ - 1] == 0) {
       ++least_;
     }
@@ -90,8 +90,8 @@ class LoadOrder {
     }
   }
 
-  std::uint32_t least_ = 0;  // no set below it has a node
-  std::uint32_t loads_ = 0;  // sets there are
+  std::uint32_t least_ = 0;  // all sets below it are empty
+  std::uint32_t loads_ = 0;  // number of sets
   std::uint32_t words_of_set_ = 0;
   std::vector<std::uint32_t> layers_;  // first word of each layer in a set
   std::vector<std::uint32_t> load_;

@@ -1,5 +1,5 @@
-// The trees of rays of the samples that are being traced: a pool, because a frame's trees would be larger
-// than its log.
+// The trees of rays of the samples that are being traced. They are made and freed sample by sample, because
+// the trees of a whole frame would be larger than its log.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@ namespace marti::processors {
 
 class PixelTrees {
  public:
-  /// The tree of a sample with at least one ray; its camera ray is ray 0 and is alive.
+  /// Makes the tree of a sample with at least one ray. Its camera ray is ray 0 and is counted as alive.
   std::uint32_t open(const SentSample& sample);
 
   [[nodiscard]] const LoggedRay& ray(std::uint32_t tree, std::uint32_t number) const {
     return trees_[tree].rays[number];
   }
   [[nodiscard]] PixelPlace place(std::uint32_t tree) const { return trees_[tree].place; }
-  /// A ray of the tree comes alive.
+  /// Counts one more live ray of the tree.
   void begin_ray(std::uint32_t tree) { ++trees_[tree].alive; }
-  /// A ray has ended and its children have come alive; without any alive the tree is forgotten.
+  /// Ends a ray whose children have been counted; the tree is freed when no ray is alive.
   void end_ray(std::uint32_t tree);
 
  private:

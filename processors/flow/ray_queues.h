@@ -1,4 +1,4 @@
-// Rays in flight, all in one pool, and the queues of rays before the nodes.
+// Rays in flight, all in one pool, and the queues of rays at the nodes.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,17 @@
 
 namespace marti::processors {
 
-/// A ray that is under way, waits in a queue, or is in a node.
+/// A ray on its way to a node, in a queue, or in service at a node.
 struct FlowRay {
   const std::uint32_t* word = nullptr;  ///< its next step
   const std::uint32_t* end = nullptr;
-  sim::Ticks arrival = 0;    ///< at the node before which it waits
-  std::uint32_t next = 0;    ///< in the queue, or in the list of free entries
-  std::uint32_t tree = 0;    ///< of its pixel
+  sim::Ticks arrival = 0;    ///< at the node in whose queue it is
+  std::uint32_t next = 0;    ///< next ray in the queue, or in the list of free entries
+  std::uint32_t tree = 0;    ///< the tree of its sample
   std::uint32_t number = 0;  ///< in the tree
-  std::uint32_t from = 0;    ///< who sends it when a slot is free
+  std::uint32_t from = 0;    ///< the node that sends it when a slot is free
   RayKind kind = RayKind::camera;
-  bool record_read = false;  ///< of the leaf at `word`
+  bool record_read = false;  ///< the record of the leaf at `word` was read
   bool lit = false;          ///< a light's contribution was added
 };
 
@@ -28,7 +28,7 @@ class RayPool {
  public:
   static constexpr std::uint32_t none = 0xffffffffU;
 
-  /// A new ray; references to others may end.
+  /// Makes a new ray; invalidates references to rays.
   std::uint32_t take() {
     if (free_ == none) {
       rays_.emplace_back();
@@ -52,14 +52,14 @@ class RayPool {
   std::uint32_t free_ = none;
 };
 
-/// The rays that wait before one node or are under way to it, in the order in which they arrive; those that
-/// arrive together in the order in which they were sent.
+/// The rays that wait at a node or are on their way to it, in the order of arrival; rays that arrive at the
+/// same time, in the order in which they were sent.
 struct RayQueue {
   std::uint32_t head = RayPool::none;
   std::uint32_t tail = RayPool::none;
-  std::uint32_t count = 0;  ///< slots in use, those reserved for rays not sent yet included
+  std::uint32_t count = 0;  ///< slots in use, including those reserved for rays not sent yet
 
-  /// Adds a ray; its slot has been counted.
+  /// Adds a ray whose slot has been counted before.
   void insert(RayPool& rays, std::uint32_t ray) {
     rays[ray].next = RayPool::none;
     if (head == RayPool::none) {
@@ -80,7 +80,7 @@ struct RayQueue {
     *link = ray;
   }
 
-  /// Takes the first ray out; its slot is free. The queue must have one.
+  /// Removes the first ray and frees its slot. The queue must not be empty.
   std::uint32_t pop(RayPool& rays) {
     const std::uint32_t ray = head;
     head = rays[ray].next;

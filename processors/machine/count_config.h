@@ -1,4 +1,4 @@
-// What is counted about caches beside hits and misses, as values; all of it only when asked.
+// Which counts of the caches beyond hits and misses are kept; none by default.
 #pragma once
 
 #include <string_view>
@@ -11,11 +11,11 @@ struct CountConfig {
   bool attribution = false;  ///< references, misses and waits by record kind, tree level, ray kind and bounce
   bool working_set = false;  ///< misses of caches of other sizes and ways (processors/passes/working_set.h)
 
-  /// Of those that nodes count while they are timed; the working set is worked out afterwards.
+  /// Whether nodes count anything while they are timed; the working set is worked out afterwards.
   [[nodiscard]] bool any() const { return miss_classes || sharing || attribution; }
 };
 
-/// The key of the first that is asked for, which messages name. One must be.
+/// The key of the first count that is asked for, for messages. At least one must be.
 [[nodiscard]] std::string_view key_of(const CountConfig& count);
 
 }  // namespace marti::processors

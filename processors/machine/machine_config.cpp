@@ -9,7 +9,7 @@ namespace marti::processors {
 
 namespace {
 
-// A tree that is built while others read it needs a memory that serves in the order of asking.
+// A tree that is built while others read it needs a memory that serves requests in their order.
 void check_order(const MachineConfig& config) {
   if (config.build.sharing != Sharing::shared || !writes_done_later(config)) {
     return;

@@ -1,5 +1,5 @@
-// A whole simulated machine, as values. Defaults are those of the configuration reference, except for the
-// operations: here each takes one cycle.
+// A whole simulated machine, as values. Defaults are those of the configuration reference, except that each
+// operation takes one cycle.
 #pragma once
 
 #include <array>
@@ -29,10 +29,10 @@ namespace marti::processors {
 enum class Placement : std::uint8_t { shared, replicated, distributed };
 inline constexpr std::array<std::string_view, 3> placement_names = {"shared", "replicated", "distributed"};
 
-/// How a distributed database is spread and asked for. Times are those of LocalMemoryConfig.
+/// How a distributed database is spread over the nodes. Access times are those of LocalMemoryConfig.
 struct DistributionConfig {
   std::uint32_t interleave = 32;   ///< bytes in a row at one node; a power of two, at least a line
-  std::uint32_t header_bytes = 8;  ///< of each message; a request is nothing else
+  std::uint32_t header_bytes = 8;  ///< of each message; a request consists of a header only
 };
 
 /// none: every reference goes to memory. unified: one cache for all records. split: one for nodes, one for
@@ -52,8 +52,8 @@ struct NodeCacheConfig {
   std::int64_t hit_cycles = 1;
 };
 
-/// The memory of a replicated database or of private trees: no contention, one line after `access_cycles`
-/// plus its beats. Of a distributed database: the same, one access after the other.
+/// The memory of a replicated database or of private trees: no contention, a line takes `access_cycles` plus
+/// its beats. A distributed database's memory takes as long, but serves one access after the other.
 struct LocalMemoryConfig {
   sim::Clock clock = sim::Clock::from_hertz(33e6);
   std::uint32_t width = 8;  ///< bytes a beat
@@ -94,15 +94,15 @@ struct MachineConfig {
   [[nodiscard]] std::uint32_t reference_bytes() const {
     return cache.organisation == CacheOrganisation::none ? banks.interleave : cache.cache.line;
   }
-  /// Reads a node may have outstanding: one for each context, then one for each prefetch.
+  /// Reads that a node may have outstanding: one for each context and one for each prefetch.
   [[nodiscard]] std::uint32_t ports_of_node() const {
     return contexts + (prefetch.on() ? prefetch.outstanding : 0);
   }
 };
 
-/// What a machine's speed-up is measured against: the same with one cluster of one node. A single node has
-/// nobody to send rays to, so it traces packets: a pipeline's with its memory, a space-parallel machine's
-/// with the whole database in its own.
+/// The machine that a speed-up is measured against: `config` with one cluster of one node. A single node
+/// sends rays to nobody, so it traces packets: a pipeline's node with the pipeline's memory, a space-parallel
+/// machine's with the whole database in its own memory.
 [[nodiscard]] MachineConfig one_node_of(const MachineConfig& config);
 
 /// The most nodes a machine may have; event keys and node tables are sized by it.
@@ -111,10 +111,10 @@ inline constexpr std::uint32_t most_nodes = 1U << 24U;
 /// The part of check() for contexts and prefetching.
 void check_contexts(const MachineConfig& config);
 
-/// check() for what only schemes other than image have; nothing with the image scheme.
+/// The part of check() for all schemes other than image; checks nothing for the image scheme.
 void check_flow(const MachineConfig& config);
 
-/// The second-level cache of `config` with the line that it has on this machine.
+/// The second-level cache of `config`, with the line size that it gets on this machine.
 [[nodiscard]] memory::CacheConfig second_level_cache(const MachineConfig& config);
 
 /// Throws UserError when the machine cannot have the second level that it asks for.
@@ -123,7 +123,7 @@ void check_second_level(const MachineConfig& config);
 /// Throws UserError when the machine cannot count what it is asked to.
 void check_counting(const MachineConfig& config);
 
-/// Whether the memory system may say later than during the write when a write is done. It then does not
+/// Whether the end of a write may be known only after the write was issued. Such a memory system does not
 /// serve its transactions in the order in which they are made.
 [[nodiscard]] bool writes_done_later(const MachineConfig& config);
 

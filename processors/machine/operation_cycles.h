@@ -5,8 +5,8 @@
 
 namespace marti::processors {
 
-/// Cycles of one primitive operation. `load` and `store` are the issue of one word; waiting for memory is
-/// simulated, not priced here.
+/// Cycles of one primitive operation. `load` and `store` are the cycles to issue one word; waiting for memory
+/// is simulated and not included here.
 struct OperationCycles {
   std::int64_t add = 1;
   std::int64_t multiply = 1;

@@ -16,7 +16,7 @@ inline constexpr std::array<std::string_view, 3> second_level_names = {"none", "
 
 struct SecondLevelConfig {
   SecondLevel sharing = SecondLevel::none;
-  /// Its line does not count: it is the first level's; of a shared one without a first level the interleave.
+  /// `line` is ignored: the first level's is used, or without a first level the interleave of the banks.
   memory::CacheConfig cache{.size = 256 * 1024, .line = 32, .ways = 8};
   std::int64_t hit_cycles = 4;  ///< private: of the node's clock; shared: of the banks' clock
 };

@@ -10,13 +10,13 @@
 
 namespace marti::processors {
 
-/// Each list is put together when it is first asked for, and kept. Not shared between threads.
+/// Each list is built when it is first asked for, and kept. An object belongs to one thread.
 class BranchLists {
  public:
   explicit BranchLists(const accel::Topology& topology) : topology_(topology) {}
 
-  /// Ascending, without repetition. A primitive that the branch listed and none of its leaves does is not in
-  /// it: only the rounding of an overlap test can make one.
+  /// The list, ascending and without repetition. It lacks a primitive that the branch listed and none of its
+  /// leaves lists, which only the rounding of an overlap test can cause.
   [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t branch);
 
  private:

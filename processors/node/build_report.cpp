@@ -22,7 +22,7 @@ void count_visits(const WorkLog& log, std::vector<BuildLevel>& levels) {
   }
 }
 
-// How many of the trees have split a lazy branch, and how many databases have a tree that has.
+// How many trees have split a lazy branch, and how many databases have at least one such tree.
 struct Builders {
   std::int64_t trees = 0;
   std::int64_t databases = 0;
@@ -40,7 +40,7 @@ Builders builders_of(const TreeCopies& copies, std::uint32_t lazy, std::uint32_t
   return builders;
 }
 
-// Of each tree node whether it is a branch whose children every copy has.
+// For each tree node: 1 for a branch whose children exist in every copy, else 0.
 std::vector<std::uint8_t> built_branches(const accel::Topology& topology, const TreePlan& plan,
                                          const TreeCopies& copies) {
   std::vector<std::uint8_t> built(topology.nodes.size());
@@ -97,7 +97,7 @@ BuildResult report_build(const ReplayInput& input, const TreeCopies& copies) {
   if (input.report_built) {
     result.built = built_branches(topology, plan, copies);
   }
-  // Trees in which a node is there, by the lazy number of its parent.
+  // The number of trees in which a node exists, by the lazy number of its parent.
   std::vector<std::int64_t> trees_with(plan.lazy().size());
   for (std::uint32_t number = 0; number < topology.nodes.size(); ++number) {
     const accel::TopologyNode& node = topology.nodes[number];
@@ -131,7 +131,7 @@ BuildResult report_build(const ReplayInput& input, const TreeCopies& copies) {
       level.partial += there - builders.trees;
       const bool own_record = plan.lazy()[place.lazy].slot != TreePlan::none;
       level.node_bytes += own_record ? result.trees * record_bytes : 0;
-      // A list that several trees begin with stays: some processor node may still need it.
+      // A list that several trees begin with is kept: another processor node may still need it.
       const std::int64_t released = own_record && result.databases < result.trees ? 0 : builders.trees;
       level.released_bytes += released * list_bytes;
       level.list_bytes += (records - released) * list_bytes;

@@ -1,4 +1,4 @@
-// What is left of a build when the frame is over: levels, bytes, and the laws they obey.
+// The state of the trees when the frame is over: levels, bytes, and the laws that they obey.
 #pragma once
 
 #include "processors/cost/accounting.h"
@@ -9,13 +9,13 @@
 
 namespace marti::processors {
 
-/// Levels and copies; start-up time and counts of nodes are left to the caller. `input.tree` must be set.
+/// Levels and copies; the caller adds start-up time and the nodes' counts. `input.tree` must be set.
 [[nodiscard]] BuildResult report_build(const ReplayInput& input, const TreeCopies& copies);
 
 /// Adds the compute cycles of `counts` to the node's time for building.
 void add_building_time(const BuildTicks& ticks, const BuildCounts& counts, TimeDivision& time);
 
-/// Throws InternalError unless what the nodes count agrees with the trees that are there.
+/// Throws InternalError unless the counts of the nodes agree with the trees that exist.
 void check_build(const WorkLog& log, const MachineConfig& config, const BuildResult& result);
 
 }  // namespace marti::processors

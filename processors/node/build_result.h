@@ -1,4 +1,4 @@
-// What building the tree took, and what it left behind.
+// What building the tree took, and what trees there are at the end.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace marti::processors {
 
-/// What one processor node did for the tree, before the frame and during it.
+/// The work of one processor node on the tree, before the frame and during it.
 struct BuildCounts {
   std::int64_t start_up_splits = 0;
   std::int64_t splits = 0;
@@ -49,21 +49,21 @@ struct BuildCounts {
 };
 static_assert(sim::declares_every_member<BuildCounts>());
 
-/// One level of all trees together, at the end of the frame. With private trees the nodes of the initial tree
-/// count once a database, but its P nodes and all below count once for each processor node.
+/// One level of all trees together, at the end of the frame. With private trees, nodes of the initial tree
+/// count once for each database; its P nodes and all nodes below count once for each processor node.
 struct BuildLevel {
   std::int64_t branches = 0;  ///< B nodes
   std::int64_t leaves = 0;    ///< L nodes, empty ones included
-  std::int64_t partial = 0;   ///< P nodes left
+  std::int64_t partial = 0;   ///< P nodes that were never split
   std::int64_t start_up_splits = 0;
   std::int64_t splits = 0;
   std::int64_t made = 0;             ///< nodes made by splitting their parents, before or during the frame
   std::int64_t made_entries = 0;     ///< entries of the lists they were made with
   std::int64_t distinct_splits = 0;  ///< different branches among the splits of the frame, by database
-  std::int64_t visits = 0;           ///< of the log: how often rays visited nodes of this level
+  std::int64_t visits = 0;           ///< visits of rays in the log to nodes of this level
   std::int64_t node_bytes = 0;       ///< of records
   std::int64_t list_bytes = 0;       ///< of the lists of L and P nodes
-  std::int64_t released_bytes = 0;   ///< of lists that splitting made useless
+  std::int64_t released_bytes = 0;   ///< of lists no longer needed after a split
 
   static constexpr auto counters() {
     using C = sim::Counter<BuildLevel>;
@@ -86,19 +86,19 @@ static_assert(sim::declares_every_member<BuildLevel>());
 
 struct BuildResult {
   Sharing sharing = Sharing::given;
-  sim::Ticks start_up = 0;         ///< when the initial trees are there and the host begins; within the frame
-  sim::Ticks start_up_wait = 0;    ///< of all nodes together for it; part of their dispatch_wait
+  sim::Ticks start_up = 0;         ///< when the initial trees are built and the host starts; within the frame
+  sim::Ticks start_up_wait = 0;    ///< sum over all nodes of their waits for it; part of their dispatch_wait
   std::int64_t databases = 0;      ///< copies of the initial tree
-  std::int64_t trees = 0;          ///< copies of what is below it
+  std::int64_t trees = 0;          ///< copies of the tree below the initial one
   std::vector<BuildLevel> levels;  ///< levels[i] is level i + 1; empty when the tree is given
   std::vector<BuildCounts> nodes;  ///< one a processor node; empty when the tree is given
-  /// Of each tree node 1 for a branch whose children are there in every copy of the tree at the end, else 0:
-  /// what the next frame can begin with. Empty unless ReplayOptions::report_built asks for it.
+  /// For each tree node: 1 for a branch whose children exist in every copy of the tree at the end, else 0;
+  /// the next frame can begin with these. Empty unless ReplayOptions::report_built asks for it.
   std::vector<std::uint8_t> built{};
 
   [[nodiscard]] BuildCounts counts() const;
   [[nodiscard]] BuildLevel all_levels() const;
-  /// Splits of a private tree that another of the same database had made too.
+  /// Splits of branches that another private tree of the same database has split too.
   [[nodiscard]] std::int64_t wasted_splits() const;
 };
 

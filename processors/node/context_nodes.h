@@ -1,5 +1,5 @@
 // Nodes of the image scheme that hide their misses: each holds several packets, its contexts, and works on
-// one of them at a time; on a miss it takes up the next that can go on. Lines may be prefetched.
+// one of them at a time; on a miss it switches to the next one that is ready. Lines may be prefetched.
 //
 // Switching on a miss, after Weber, Gupta, Exploring the benefits of multiple hardware contexts in a
 // multiprocessor architecture, ISCA 1989, and Agarwal, Performance tradeoffs in multithreaded processors,
@@ -18,8 +18,8 @@
 
 namespace marti::processors {
 
-/// `Caches` is one of node_caches.h. See node_array.h for what the members do. The cursor that the node works
-/// on is in cursors_; those of its other contexts are put aside.
+/// `Caches` is one of node_caches.h. The members are described in node_array.h. The cursor of the context
+/// that the node works on is in cursors_, those of its other contexts in contexts_.
 template <class Caches>
 class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
   using Base = PacketNodes<ContextNodes<Caches>, Cursor>;
@@ -55,7 +55,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     }
   }
 
-  // The request of context c of node n has component c * nodes + n: all first contexts come first.
+  // A request by context c of node n has component c * nodes + n, so all first contexts come first.
   void start(std::uint64_t seed) override {
     const std::uint32_t nodes = input_.config.all_nodes();
     for (const std::uint32_t node : Base::first_order(seed)) {
@@ -126,10 +126,10 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
   enum class Wait : std::uint8_t { none, miss, line, host, done };
 
   struct Context {
-    Cursor cursor;             // while another context is worked on
-    sim::Ticks ready = never;  // when it can go on, as far as that is known
-    std::uint64_t packet = 0;  // the host's number of it
-    std::uint32_t slot = 0;    // of the transaction it waits for
+    Cursor cursor;             // of this context, while the node works on another
+    sim::Ticks ready = never;  // when it is ready to continue; never while that is not known
+    std::uint64_t packet = 0;  // its number at the host
+    std::uint32_t slot = 0;    // the transaction that it waits for
     Wait wait = Wait::none;
   };
 
@@ -138,8 +138,8 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     sim::Ticks wake = never;  // when the wait is known to end
     std::uint32_t active = 0;
     std::uint32_t live = 0;  // contexts that may still get a packet
-    bool waiting = true;     // none of the contexts can go on
-    bool fresh = true;       // none of them has been taken up yet
+    bool waiting = true;     // no context is ready
+    bool fresh = true;       // no context has been worked on yet
     bool due = false;        // the walk stopped with Stop::due
   };
 
@@ -153,7 +153,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     return context == cores_[node].active ? cursors_[node] : context_of(node, context).cursor;
   }
 
-  // A context is free: the one that is worked on, or one at the beginning of the frame.
+  // A context asks for a packet: the active one, or any at the beginning of the frame.
   void dispatch(std::uint32_t component) {
     const std::uint32_t nodes = input_.config.all_nodes();
     const std::uint32_t node = component % nodes;
@@ -187,7 +187,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     }
   }
 
-  // Lets the context that is worked on go on until it needs something shared.
+  // Works on the active context until it needs something shared.
   void run(std::uint32_t node) {
     Cursor& cursor = cursors_[node];
     NodeStatistics& statistics = statistics_[node];
@@ -248,7 +248,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     return static_cast<std::uint32_t>(walker_.missed_address(cursor) / input_.config.cache.cache.line);
   }
 
-  // The reference at hand asks memory; a miss may have the next line prefetched.
+  // Reads the reference that missed from memory; a miss may also prefetch the next line.
   void miss(std::uint32_t node, const Cursor& cursor, Context& context) {
     const std::uint32_t slot = cores_[node].active;
     context.wait = Wait::miss;
@@ -290,12 +290,12 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     interconnect_of(node).read({port_of(node) + slot, address, bytes});
   }
 
-  // `port` counts through all nodes.
+  // `port` is numbered through all nodes.
   void read_done(std::uint32_t port, const memory::Service& service) {
     const std::uint32_t node = port / ports_;
     const std::uint32_t slot = port % ports_;
     service_of(node, slot) = service;
-    end_ = std::max(end_, service.done);  // nobody may wait for a prefetched line
+    end_ = std::max(end_, service.done);  // a prefetched line may arrive after all nodes are done
     if constexpr (Caches::present) {
       walker_.caches().view(node).arrives(slot, service.done);
     }
@@ -311,7 +311,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     }
   }
 
-  // A waiting node can go on at `time`.
+  // Lets a waiting node continue at `time`.
   void expect(std::uint32_t node, sim::Ticks time) {
     Core& core = cores_[node];
     if (time < core.wake) {
@@ -320,8 +320,8 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     }
   }
 
-  // The context that was worked on has asked for something, or has done its last packet. It goes on itself
-  // when what it has asked for takes no time.
+  // The active context has asked for something, or its last packet is done. The context continues at once
+  // when what it asked for takes no time.
   void stall(std::uint32_t node) {
     const sim::Ticks now = engine_.now();
     Core& core = cores_[node];
@@ -339,7 +339,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     }
   }
 
-  // The wait of a node ends, unless this event was posted before an earlier end was known.
+  // Ends a node's wait, unless an event for an earlier end was posted after this one.
   void wake(std::uint32_t node) {
     Core& core = cores_[node];
     const sim::Ticks now = engine_.now();
@@ -367,11 +367,11 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     take_up(node, next, now);
   }
 
-  // The first context after the one worked on last that can go on; `none` when none can.
+  // The first context that is ready, from the one after the active context on; `none` if no context is ready.
   std::uint32_t next_ready(std::uint32_t node, sim::Ticks now) {
     const std::uint32_t contexts = input_.config.contexts;
     const std::uint32_t last = cores_[node].active;
-    // At first there is no last one, and the first is as good as any.
+    // At first no context is active, so the search begins with the first.
     for (std::uint32_t step = cores_[node].fresh ? 0 : 1; step <= contexts; ++step) {
       const std::uint32_t number = last + step < contexts ? last + step : last + step - contexts;
       if (context_of(node, number).ready <= now) {
@@ -388,7 +388,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     const bool other = number != core.active;
     if (other) {
       watch_misses(node, place_of(node));
-      const std::uint32_t writes = cursor.writes;  // the write buffer is the node's
+      const std::uint32_t writes = cursor.writes;  // the contexts share the write buffer
       context_of(node, core.active).cursor = cursor;
       cursor = context.cursor;
       cursor.writes = writes;
@@ -427,7 +427,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
   sim::Ticks switch_;
   sim::LargeVector<Core> cores_;
   sim::LargeVector<Context> contexts_;  // node by node
-  // Of the last transaction of each port, node by node; done: never while that is not known.
+  // The last transaction of each port, node by node; done is `never` while its end is not known.
   sim::LargeVector<memory::Service> services_;
 };
 

@@ -9,24 +9,24 @@
 
 namespace marti::processors {
 
-/// What follows when the bytes from DynamicCursor::at to `end` are dealt with.
+/// What the node does after it has read or written the bytes from DynamicCursor::at to `end`.
 enum class Todo : std::uint8_t {
-  step,     ///< the next step of the log, or the next branch to split before the frame
+  step,     ///< take the next step of the log, or the next branch to split before the frame
   list,     ///< a leaf's record was read: read its list
   tests,    ///< test the next primitive of the leaf
-  branch,   ///< a lazy branch's record was read: is it built?
+  branch,   ///< a lazy branch's record was read: see whether the branch is built
   inherit,  ///< a private tree's slot was empty and the shared record was read: split the branch
-  voxel,    ///< the record of a node that is taken as one voxel was read; it may stay a P node
+  voxel,    ///< the record of a node that is shaded as one voxel was read; it may remain a P node
   lock,     ///< the lock transaction is under way
   split,    ///< a branch to be split before the frame was read: split it
   sort,     ///< the list of the branch was read: read and sort its next primitive
-  make,     ///< the next child: write its list
-  record,   ///< its list was written: write its record
+  make,     ///< make the next child: write its list
+  record,   ///< the child's list was written: write its record
   publish,  ///< all children were written: write the branch's own record
-  done,     ///< it was written
+  done,     ///< the branch's own record was written
 };
 
-/// How a lock transaction came out.
+/// The result of a lock transaction.
 enum class Lock : std::uint8_t { won, wait, built };
 
 struct DynamicCursor {
@@ -34,7 +34,7 @@ struct DynamicCursor {
   const std::uint32_t* word = nullptr;
   const std::uint32_t* word_end = nullptr;
   memory::Address at = 0;                ///< next byte to read or write
-  memory::Address end = 0;               ///< one past the last of them
+  memory::Address end = 0;               ///< one past the last byte to read or write
   const std::uint32_t* entry = nullptr;  ///< primitives still to be tested or sorted
   const std::uint32_t* entry_end = nullptr;
   const std::uint32_t* tested = nullptr;  ///< of a mailed leaf: a bit for each entry; null: all are tested
@@ -45,8 +45,8 @@ struct DynamicCursor {
   std::uint32_t eager = 0;            ///< next branch to split before the frame
   std::uint32_t tests = 0;            ///< entries of the leaf's list to read
   std::uint32_t entry_number = 0;     ///< of `entry` in the mailed leaf's list
-  std::uint32_t first_waiter = none;  ///< of the nodes that wait for this one to publish
-  std::uint32_t next_waiter = none;   ///< in the list this one waits in
+  std::uint32_t first_waiter = none;  ///< list of the nodes that wait for this node to publish
+  std::uint32_t next_waiter = none;   ///< in the list that this node waits in
   std::uint32_t x = 0;
   std::uint32_t y = 0;
   std::uint32_t writes = 0;  ///< where the next posted write goes in the write buffer
@@ -57,14 +57,14 @@ struct DynamicCursor {
   bool writing = false;  ///< the bytes are written, not read
   bool due = false;      ///< the simulation has reached the reference that comes next
   bool seen = false;     ///< the lazy branch just read was seen built
-  bool before = false;   ///< it still splits branches before the frame
+  bool before = false;   ///< the node still splits branches before the frame
 
   static constexpr std::uint32_t none = 0xffffffffU;
 };
 
-/// Why a walk stopped. due: the reference at the cursor's time must wait for the simulation. lock, miss: it
-/// asks the interconnect. write: it posts a write, of a pixel when todo is `step`. ready: nothing is left to
-/// split before the frame.
+/// Why a walk stopped. due: the reference at the cursor must wait until the simulation reaches the cursor's
+/// time. lock, miss: it needs the interconnect. write: it posts a write, of a pixel when todo is `step`.
+/// ready: no branch is left to split before the frame.
 enum class DynamicStop : std::uint8_t { due, miss, lock, write, ready };
 
 }  // namespace marti::processors

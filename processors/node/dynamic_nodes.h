@@ -1,6 +1,6 @@
-// Nodes of the image scheme on a machine whose tree is built while it is used: packets, misses and pixel
-// writes as in ImageNodes, and beside them the building before the frame, locks, waiting, and writes of the
-// tree.
+// Nodes of the image scheme on a machine whose tree is built while it is used. Packets, misses and pixel
+// writes are as in ImageNodes; in addition there are the building before the frame, locks, waits for a lock,
+// and writes of the tree.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace marti::processors {
 
-/// `Caches` is one of node_caches.h. See node_array.h for what the members do.
+/// `Caches` is one of node_caches.h. The members are described in node_array.h.
 template <class Caches>
 class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCursor> {
   using Base = PacketNodes<DynamicNodes<Caches>, DynamicCursor>;
@@ -108,12 +108,12 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
 
   static bool for_pixel(const DynamicCursor& cursor) { return !cursor.before; }
 
-  // The first node of each cluster builds its database's tree; with a database in every node, each does.
+  // The first node of each cluster builds the database's tree; with a replicated database every node does.
   bool builds_before(std::uint32_t node) const {
     return input_.config.placement == Placement::replicated || port_of(node) == 0;
   }
 
-  // One builder has nothing left to split. The frame begins when all have, and their writes are done.
+  // A builder has nothing left to split. The frame begins when all builders are ready and their writes done.
   void ready(std::uint32_t node) {
     DynamicCursor& cursor = cursors_[node];
     cursor.before = false;
@@ -178,7 +178,7 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
     interconnect_of(node).read({port_of(node), walker_.address(cursor), walker_.bytes(cursor)});
   }
 
-  // The order in which lock transactions are made decides who wins.
+  // The first lock transaction for a branch wins.
   void lock(std::uint32_t node) {
     DynamicCursor& cursor = cursors_[node];
     TreeCopies& copies = walker_.copies();
@@ -218,7 +218,7 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
     run(node);
   }
 
-  // A waiting node goes on when it knows that the branch is taken and when it can be seen.
+  // Lets a waiting node continue once both its lock transaction and the time of publication are known.
   void go_on_waiting(std::uint32_t node) {
     DynamicCursor& cursor = cursors_[node];
     if (cursor.arrived < 0 || cursor.published < 0) {
@@ -241,8 +241,8 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
     }
   }
 
-  // A part of a record or list of the tree. Copies of its line in other caches of the cluster are stale; the
-  // node's own is written too.
+  // Writes a part of a record or list of the tree. Copies of its line in other caches of the cluster become
+  // stale and are removed; the node's own copy is updated.
   void write_tree(std::uint32_t node) {
     DynamicCursor& cursor = cursors_[node];
     const memory::Address address = walker_.address(cursor);
@@ -288,7 +288,7 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
 
   DynamicWalker<Caches> walker_;
   sim::LargeVector<BuildCounts> built_;
-  std::vector<std::uint32_t> order_;  // in which first events are posted; it changes nothing
+  std::vector<std::uint32_t> order_;  // in which first events are posted; does not change the result
   std::uint32_t builders_left_ = 0;
   bool begun_ = false;
   sim::Ticks start_up_ = 0;

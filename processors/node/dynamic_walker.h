@@ -1,11 +1,11 @@
-// Walks a node through its log on a machine whose tree is built while it is used: as LogWalker, and splits
-// branches on the way. It knows no event and no queue.
+// Walks a node through its log on a machine whose tree is built while it is used: as LogWalker does, and
+// splits branches on the way. It does not depend on events or queues.
 //
-// A reference whose outcome another node may still change (a line that is not settled, so that somebody may
-// write it) is not taken ahead of its time: the walk stops before it and goes on when the simulation has got
-// there. A line that is brought in may push another out, and somebody may have emptied a way by then: so a
-// miss too changes the cache only when its time has come. Hits of settled lines change nothing that others
-// see, and taking lines out of a cache and using others in it commute; they are taken ahead.
+// A line is settled when nobody can write it any more. A reference to a line that is not settled is not taken
+// ahead of its time: the walk stops before it and continues when the simulation has reached that time. A miss
+// too changes the cache only when its time has come, because the line brought in may push another out, and
+// another node's write may have emptied a way by then. Hits of settled lines are taken ahead: they change
+// nothing that others see, and the order of using a line and removing another does not matter.
 #pragma once
 
 #include <algorithm>
@@ -56,7 +56,7 @@ class DynamicWalker {
     }
   }
 
-  DynamicWalker(const DynamicWalker&) = delete;  // its parts know each other
+  DynamicWalker(const DynamicWalker&) = delete;  // its members refer to each other
   DynamicWalker& operator=(const DynamicWalker&) = delete;
 
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
@@ -64,12 +64,12 @@ class DynamicWalker {
   [[nodiscard]] TreeCopies& copies() { return copies_; }
   [[nodiscard]] const TreeCopies& copies() const { return copies_; }
   [[nodiscard]] const PrivateSecondLevel& second_level() const { return second_level_; }
-  /// Takes a line out of a node's caches; how many copies there were.
+  /// Removes a line from a node's caches; returns how many copies there were.
   [[nodiscard]] std::int64_t take_out(std::uint32_t node, std::uint32_t line) {
     return caches_.view(node).remove(line) + second_level_.remove(node, line);
   }
 
-  /// Takes `node` on from its cursor. Without RunAhead it stops before every reference.
+  /// Continues `node` from its cursor. Without RunAhead it stops before every reference.
   template <bool RunAhead>
   DynamicStop advance(std::uint32_t node, DynamicCursor& cursor, NodeStatistics& statistics,
                       BuildCounts& built) {
@@ -188,20 +188,20 @@ class DynamicWalker {
     }
   }
 
-  /// Address and bytes of the transaction that the node stopped for: of a miss a whole line with a cache,
-  /// else its own part of the interleave unit; of a write its part of a line.
+  /// Address and bytes of the transaction that the node stopped for. A miss reads a whole line with a cache,
+  /// else the referenced bytes within the interleave unit; a write has the written bytes within a line.
   [[nodiscard]] memory::Address address(const DynamicCursor& cursor) const {
     return Caches::present && !cursor.writing ? (cursor.at >> unit_shift_) << unit_shift_ : cursor.at;
   }
   [[nodiscard]] std::uint32_t bytes(const DynamicCursor& cursor) const {
     return Caches::present && !cursor.writing ? line_bytes_ : part(cursor);
   }
-  /// The record that a lock transaction is about.
+  /// Address of the record that a lock transaction is for.
   [[nodiscard]] memory::Address locked_address(std::uint32_t node, const DynamicCursor& cursor) const {
     return addresses_.record(copies_.copy_of(node), cursor.node);
   }
 
-  /// The time of the miss has come: its line is brought in. False when the second level has served it.
+  /// Brings in the line of a miss whose time has come. False when the second level has served the miss.
   bool miss(std::uint32_t node, DynamicCursor& cursor, NodeStatistics& statistics) {
     const std::uint32_t copy = copies_.copy_of(node);
     const auto line = static_cast<std::uint32_t>(cursor.at >> unit_shift_);
@@ -217,7 +217,7 @@ class DynamicWalker {
     }
     return true;
   }
-  /// The transaction has been made.
+  /// Moves the cursor past a transaction that has been made.
   void pass(DynamicCursor& cursor) const { cursor.at = ((cursor.at >> unit_shift_) + 1) << unit_shift_; }
 
   /// Whether the bytes just written were the last of a lazy branch's own record.
@@ -258,14 +258,14 @@ class DynamicWalker {
     read(cursor, kind, layout_.address(kind, index), layout_.record_bytes(kind, index));
   }
 
-  // A test's computing, at its price.
+  // Counts a test and spends its compute time.
   void begin_test(DynamicCursor& cursor, StepCounts& steps, std::uint32_t primitive) const {
     cursor.time = sim::add_ticks(cursor.time, count_test(ticks_, input_.log.kind_of(primitive), steps));
   }
 
-  // Takes visits to the initial tree whose lines are all settled and in the cache. The visit at which that
-  // ends is made record by record from its beginning: using lines once more in the same order changes
-  // nothing.
+  // Takes visits to the initial tree whose lines are all settled and in the cache. The first visit that is
+  // not of this kind is left to be taken record by record, from its beginning: its lines looked up here are
+  // then used a second time in the same order, which changes nothing.
   void take_planned(const LineStates& lines, View cache, DynamicCursor& cursor, NodeStatistics& statistics) {
     VisitCounts counts;
     std::uint32_t visits = 0;
@@ -298,11 +298,11 @@ class DynamicWalker {
       const auto at = static_cast<std::size_t>(line - visits_.lines.data());
       return cache.touch(kind_of_label(visits_.labels[at]), *line);
     } else {
-      return cache.touch(memory::RecordKind::node, *line);  // such caches do not look at the kind
+      return cache.touch(memory::RecordKind::node, *line);  // such caches ignore the kind
     }
   }
 
-  // Whether the node sees the lazy branch built whose record it reads now.
+  // Notes whether the lazy branch whose record the node now reads is built.
   void look(std::uint32_t copy, DynamicCursor& cursor) const {
     if (cursor.todo == Todo::branch) {
       cursor.seen = copies_.built(copy, plan_.place(cursor.node).lazy);
@@ -348,7 +348,7 @@ class DynamicWalker {
     use_local(cursor, statistics, part(cursor));
     pass(cursor);
     if (publishes(cursor)) {
-      // Only a tree of its own lies in a node's own memory, so nobody else looks.
+      // Only a private tree lies in a node's own memory, so no other node reads the branch.
       copies_.publish(copy, plan_.place(cursor.node).lazy);
     }
   }
@@ -377,7 +377,7 @@ class DynamicWalker {
       read_one(cursor, memory::RecordKind::primitive, *cursor.entry++);
       return;
     }
-    // What the branch listed and no leaf does is classified too; then come the overlap tests.
+    // Primitives that the branch listed and no leaf does are classified too; the overlap tests follow.
     const std::uint32_t overlaps = topology_.work[cursor.node].overlaps;
     const auto sorted = static_cast<std::int64_t>(lists_.of(cursor.node).size());
     spend(cursor, build_ticks_.listed, plan_.listed(cursor.node) - sorted);
@@ -418,7 +418,7 @@ class DynamicWalker {
     read_record(cursor, copy, leaf, tests != 0 ? Todo::list : Todo::step);
   }
 
-  // Any step: its compute cycles, and the first of its references made ready.
+  // Takes any step: spends its compute cycles and prepares the first of its references.
   void take_step(DynamicCursor& cursor, std::uint32_t copy, NodeStatistics& statistics, std::uint32_t word) {
     const std::uint32_t operand = operand_of(word);
     StepCounts& steps = statistics.steps;
@@ -489,7 +489,7 @@ class DynamicWalker {
   BuildTicks build_ticks_;
   LocalMemory local_;
   PrivateSecondLevel second_level_;
-  memory::Address local_base_;  ///< from here on addresses are those of a node's own memory
+  memory::Address local_base_;  ///< addresses from here on are in a node's own memory
 };
 
 }  // namespace marti::processors

@@ -20,7 +20,7 @@ struct Grant {
 };
 
 struct HostStatistics {
-  std::int64_t requests = 0;  ///< dynamic requests, those that found no packet left included
+  std::int64_t requests = 0;  ///< by dynamic assignment, those that found no packet left included
   sim::Ticks busy = 0;
 
   static constexpr auto counters() {
@@ -37,7 +37,7 @@ class Host {
  public:
   Host(const HostConfig& config, std::uint64_t packets, std::uint32_t nodes);
 
-  /// Node `node` is free at `now`. Nothing when no packet is left for it.
+  /// Grants node `node`, free at `now`, its next packet; std::nullopt when none is left for it.
   std::optional<Grant> next(std::uint32_t node, sim::Ticks now);
 
   [[nodiscard]] const HostStatistics& statistics() const { return statistics_; }
@@ -47,7 +47,7 @@ class Host {
   std::uint64_t packets_;
   std::uint64_t nodes_;
   std::uint64_t handed_out_ = 0;      // dynamic
-  std::vector<std::uint32_t> taken_;  // static: packets each node has taken
+  std::vector<std::uint32_t> taken_;  // static: number of packets that each node has taken
   sim::Ticks latency_;
   sim::Ticks occupancy_;
   sim::Ticks free_at_ = 0;

@@ -7,7 +7,7 @@ namespace marti::processors {
 
 namespace {
 
-// Of one parameter, as make_nodes asks for: not every compiler leaves out a defaulted one.
+// Has one parameter, as make_nodes needs: not every compiler ignores a further one that has a default.
 template <class Caches>
 using LoggedNodes = ImageNodes<Caches, LogWalker<Caches>>;
 

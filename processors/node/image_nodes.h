@@ -15,8 +15,8 @@
 
 namespace marti::processors {
 
-/// `Caches` is one of node_caches.h, `Walker` LogWalker or StrippedWalker of them. See node_array.h for what
-/// the members do.
+/// `Caches` is one of node_caches.h, `Walker` is LogWalker or StrippedWalker with them. The members are
+/// described in node_array.h.
 template <class Caches, class Walker = LogWalker<Caches>>
 class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> {
   using Base = PacketNodes<ImageNodes<Caches, Walker>, Cursor>;
@@ -122,8 +122,8 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
     return walker_.words_of(x, y);
   }
 
-  // The node's caches meet what has been left out before its next packet: no time passes, nothing is counted
-  // and nothing is read.
+  // Takes the node's caches through the packets left out before its next one: no time passes, nothing is
+  // counted and memory is not accessed.
   void warm_up(std::uint32_t node, std::uint64_t packet) {
     if constexpr (Walker::steps_singly) {
       const std::uint64_t next = input_.sample->chosen()[packet];

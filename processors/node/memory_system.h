@@ -1,4 +1,4 @@
-// Which memory system stands behind the nodes of a cluster.
+// The memory system of a cluster.
 #pragma once
 
 #include <memory>
@@ -9,13 +9,13 @@
 
 namespace marti::processors {
 
-/// The interconnect and banks of a shared memory, or a distributed memory, as the placement of the database
-/// says. Engine and client of the site must outlive it; the site's ports are those of the cluster's nodes, as
-/// many for each.
+/// The interconnect and banks of a shared memory, or a distributed memory, depending on the placement of the
+/// database. The site's engine and client must outlive it; the site's ports are those of the cluster's nodes,
+/// the same number for each node.
 [[nodiscard]] std::unique_ptr<memory::Interconnect> make_memory_system(const MachineConfig& config,
                                                                        const memory::InterconnectSite& site);
 
-/// What make_memory_system gives to a distributed memory.
+/// The configuration that make_memory_system gives a distributed memory.
 [[nodiscard]] memory::DistributedConfig distributed_config(const MachineConfig& config);
 
 /// Whether the nodes reach their cluster's memory over links that can be busy.

@@ -21,15 +21,15 @@
 
 namespace marti::processors {
 
-/// Event classes. At equal times local progress comes before requests to the host, replies before new
-/// requests (an interconnect's data do not wait for an address of the same instant), reads before writes.
-/// `memory` is last: what the memory system does by itself when all requests of the instant are made.
+/// Event classes. At equal times a node's own progress comes before requests to the host, replies come before
+/// new requests (an interconnect's data do not wait for an address of the same instant), and reads before
+/// writes. `memory` comes last: what the memory system does by itself after all requests of the instant.
 enum class EventClass : std::uint8_t { step, dispatch, reply, read, write, memory };
 
 /// The nodes of all clusters as one event handler; node n is port n % nodes of cluster n / nodes.
 class NodeArray : public sim::EventHandler {
  public:
-  /// Posts each node's first event, in an order drawn from `seed` (0: ascending), which changes nothing.
+  /// Posts each node's first event, in an order drawn from `seed` (0: ascending); the result is the same.
   virtual void start(std::uint64_t seed) = 0;
   /// The interconnect of each cluster; set before start().
   virtual void connect(std::vector<memory::Interconnect*> interconnects) = 0;
@@ -41,24 +41,24 @@ class NodeArray : public sim::EventHandler {
   /// After the run: fills in idle time and the times that follow from counts.
   virtual void finish() = 0;
   [[nodiscard]] virtual std::vector<NodeStatistics> statistics() const = 0;
-  /// After the run: what building the tree took; nothing when it is given.
+  /// After the run: the result of building the tree; empty when the tree is given.
   [[nodiscard]] virtual BuildResult build_result() const { return {}; }
-  /// After the run: what private second-level caches counted; nothing when there are none.
+  /// After the run: the counts of private second-level caches; empty when there are none.
   [[nodiscard]] virtual SecondLevelResult second_level() const { return {}; }
-  /// After the run: what was asked to be counted beside hits and misses.
+  /// After the run: the counts beyond hits and misses that were asked for.
   [[nodiscard]] virtual CacheCountResult cache_counts() const { return {}; }
-  /// After the run: what contexts and prefetches did; nothing where there are none.
+  /// After the run: the counts of contexts and prefetches; empty when there are none.
   [[nodiscard]] virtual ContextResult context_result() const { return {}; }
-  /// After the run: what each packet of a sample took; nothing where there is none.
+  /// After the run: the figures of each packet of a sample; empty without a sample.
   [[nodiscard]] virtual std::vector<PacketFigures> packet_figures() const { return {}; }
-  /// Host bytes per simulated node beside its cache tags.
+  /// Host bytes for each simulated node, without its cache tags.
   [[nodiscard]] virtual std::size_t bytes_per_node() const = 0;
 };
 
 /// The numbers from 0 to count - 1, in an order drawn from `seed` (0: ascending).
 [[nodiscard]] std::vector<std::uint32_t> order_drawn_from(std::uint64_t seed, std::size_t count);
 
-/// Builds the nodes with the look-up code that the cache configuration asks for.
+/// Builds the nodes with the look-up code for the configured caches.
 [[nodiscard]] std::unique_ptr<NodeArray> make_node_array(const ReplayInput& input, sim::Engine& engine,
                                                          Host& host);
 

@@ -1,5 +1,5 @@
-// Inside of make_node_array: chooses the look-up code that a cache configuration asks for. Each kind of node
-// instantiates it in a source file of its own, because that takes long to compile.
+// The implementation of make_node_array: chooses the look-up code for a cache configuration. Each kind of
+// node instantiates it in a source file of its own, because that takes long to compile.
 #pragma once
 
 #include <memory>
@@ -20,13 +20,13 @@ namespace marti::processors {
 [[nodiscard]] std::unique_ptr<NodeArray> make_stripped_nodes(const ReplayInput& input, sim::Engine& engine,
                                                              Host& host);
 
-/// For the counts that a run may be asked for beside hits and misses.
+/// Nodes that can count more than hits and misses.
 [[nodiscard]] std::unique_ptr<NodeArray> make_counted_nodes(const ReplayInput& input, sim::Engine& engine,
                                                             Host& host);
 
-/// make(caches) with the caches of `config`, one of node_caches.h. Each kind of cache that has look-up code
-/// of its own is compiled once for each kind of node, so only the commonest have: unified LRU caches with few
-/// ways.
+/// Returns make(caches) with the caches of `config`, a class of node_caches.h. Each class of caches is
+/// compiled once for each kind of node, so only the commonest caches have a class of their own: unified LRU
+/// caches with few ways.
 template <class Make>
 auto with_caches(const MachineConfig& config, const Make& make) {
   if (config.cache.organisation == CacheOrganisation::none) {

@@ -16,10 +16,10 @@
 
 namespace marti::processors {
 
-/// `Derived` has run(node), which lets a node work until it needs something shared, read_done(node, service),
-/// and for_pixel(cursor), whether what the node does now is for the pixel at its cursor. `Cursor` has time,
+/// `Derived` has run(node), which lets a node work until it needs something shared; read_done(node, service);
+/// and for_pixel(cursor), whether the node's present work is for the pixel at its cursor. `Cursor` has time,
 /// word, word_end, writes, x, y and packet. Where a node has several ports (MachineConfig::ports_of_node),
-/// read_done gets the port, counted through all clusters.
+/// read_done gets the port instead of the node, numbered through all clusters.
 template <class Derived, class Cursor>
 class PacketNodes : public NodeArray {
  public:
@@ -48,16 +48,16 @@ class PacketNodes : public NodeArray {
     }
   }
 
-  // All nodes, in an order drawn from `seed` (0: ascending).
+  // The numbers of all nodes, in an order drawn from `seed` (0: ascending).
   [[nodiscard]] std::vector<std::uint32_t> first_order(std::uint64_t seed) const {
     return order_drawn_from(seed, cursors_.size());
   }
 
-  // One cluster is the common case, and a division at every event shows.
+  // One cluster is the common case, and a division at every event would cost measurable time.
   std::uint32_t cluster_of(std::uint32_t node) const {
     return interconnects_.size() == 1 ? 0 : node / input_.config.nodes;
   }
-  // The first of the node's ports, which posts its writes.
+  // The first of the node's ports, which also posts its writes.
   std::uint32_t port_of(std::uint32_t node) const {
     return (node - cluster_of(node) * input_.config.nodes) * ports_;
   }
@@ -71,21 +71,21 @@ class PacketNodes : public NodeArray {
   void spend(std::uint32_t node, const memory::Service& service) {
     add_service(statistics_[node].time, service);
   }
-  // Tells who watches, if anybody does, that the node was in `state` from `from` to its present time.
+  // Tells the observer, if there is one, that the node was in `state` from `from` to its present time.
   void watch(std::uint32_t node, NodeState state, sim::Ticks from, bool for_pixel = true) {
     if (input_.observer != nullptr && from != cursors_[node].time) {
       input_.observer->spent(node, state, from, cursors_[node].time,
                              for_pixel ? place_of(node) : PixelPlace{});
     }
   }
-  // The same of a read that is done and was asked for at the node's present time.
+  // Tells the observer of a read that is done and was asked for at the node's present time.
   void watch_read(std::uint32_t node, const memory::Service& service, bool for_pixel = true) {
     if (input_.observer != nullptr) {
       spent_reading(*input_.observer, node, service, cursors_[node].time,
                     for_pixel ? place_of(node) : PixelPlace{});
     }
   }
-  // Misses since the last call were for `pixel`.
+  // Tells the observer that the node's misses since the last call were for `pixel`.
   void watch_misses(std::uint32_t node, PixelPlace pixel) {
     if (input_.observer == nullptr) {
       return;
@@ -104,7 +104,7 @@ class PacketNodes : public NodeArray {
       }
     }
   }
-  /// What all nodes take each: the cursor, statistics, an event, and the write buffer.
+  /// Host bytes that every kind of node takes: the cursor, statistics, an event, and the write buffer.
   [[nodiscard]] std::size_t common_bytes() const {
     return sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(sim::Event) +
            input_.config.write_buffer * sizeof(sim::Ticks) + (late_.empty() ? 0 : sizeof(LateWrites));
@@ -112,7 +112,7 @@ class PacketNodes : public NodeArray {
 
   [[nodiscard]] PixelPlace place_of(std::uint32_t node) const { return {cursors_[node].x, cursors_[node].y}; }
 
-  // What the node has to go through for a pixel. Derived may have its own.
+  // The words that the node walks for a pixel. Derived may replace it.
   [[nodiscard]] std::span<const std::uint32_t> words_of(std::uint32_t x, std::uint32_t y) const {
     return input_.log.pixel(x, y);
   }
@@ -123,10 +123,10 @@ class PacketNodes : public NodeArray {
     cursor.word_end = words.data() + words.size();
   }
 
-  // Gives the node its next packet, or ends it.
+  // Gives the node its next packet; when none is left, the node is done.
   void dispatch(std::uint32_t node) {
     Cursor& cursor = cursors_[node];
-    watch_misses(node, {});  // those before the frame are no pixel's
+    watch_misses(node, {});  // misses before the frame belong to no pixel
     if (meter_.on()) {
       meter_.end(node, cursor.time, statistics_[node]);
     }
@@ -156,8 +156,8 @@ class PacketNodes : public NodeArray {
     derived().run(node);
   }
 
-  // The oldest write still in the buffer decides whether there is room; a full buffer stalls the node until
-  // that write is done, and the write is tried again then.
+  // Whether the write buffer has room, which depends on its oldest write. If not, the node stalls until that
+  // write is done, and then tries again.
   bool has_room(std::uint32_t node) {
     Cursor& cursor = cursors_[node];
     const sim::Ticks room_at = writes_[std::size_t{node} * input_.config.write_buffer + cursor.writes];
@@ -180,12 +180,12 @@ class PacketNodes : public NodeArray {
     }
     interconnect_of(node).write({port_of(node), address, bytes});
   }
-  // Whether it is known of every write when it is done.
+  // Whether the end of every write posted so far is known.
   [[nodiscard]] bool all_writes_known() const { return late_writes_ == 0; }
-  // The last of the writes of which it was not known is done. Derived may have its own.
+  // Called when the last end of a write becomes known. Derived may replace it.
   void writes_are_known() {}
 
-  // Posts the finished pixel and goes on to the next.
+  // Posts the finished pixel and continues with the next one.
   void write_pixel(std::uint32_t node) {
     Cursor& cursor = cursors_[node];
     ++statistics_[node].writes;
@@ -250,7 +250,7 @@ class PacketNodes : public NodeArray {
     cursor.writes = cursor.writes + 1 == depth ? 0 : cursor.writes + 1;
   }
 
-  // Said during the write by what serves first come, first served; else later, for the oldest write first.
+  // Called during the write by first-come-first-served memories; by others later, oldest write first.
   void write_done(std::uint32_t node, sim::Ticks done) {
     last_write_done_ = done;
     end_ = std::max(end_, done);
@@ -270,20 +270,20 @@ class PacketNodes : public NodeArray {
     }
   }
 
-  // Of a node whose writes may be done at a time that is not known when they are posted.
+  // The state of a node whose writes may end at a time that is not known when they are posted.
   struct LateWrites {
-    std::uint32_t oldest = 0;  // entry of the write buffer of which it is known next
-    bool stalled = false;      // the node waits for that entry
+    std::uint32_t oldest = 0;  // the entry of the write buffer whose end becomes known next
+    bool stalled = false;      // the node waits for the end of that entry
   };
   static constexpr sim::Ticks not_known = std::numeric_limits<sim::Ticks>::max();
 
   PacketMeter meter_;                    // on with a sample of packets
   sim::LargeVector<sim::Ticks> writes_;  // when each entry of each node's write buffer is free
-  sim::LargeVector<LateWrites> late_;    // empty where writes say at once when they are done
-  std::int64_t late_writes_ = 0;         // of which it is not known
+  sim::LargeVector<LateWrites> late_;    // empty where the end of a write is known at once
+  std::int64_t late_writes_ = 0;         // number of writes whose end is not known
   std::vector<Client> clients_;
   std::vector<memory::Interconnect*> interconnects_;
-  std::vector<std::int64_t> seen_misses_;  // that the observer has been told of; empty without one
+  std::vector<std::int64_t> seen_misses_;  // already reported to the observer; empty without one
 };
 
 }  // namespace marti::processors

@@ -6,14 +6,14 @@
 
 namespace marti::processors {
 
-/// Keeps references. A node must be there (its parent split) when its address is asked for.
+/// Keeps references. A node must exist (its parent be split) when its address is asked for.
 class TreeAddresses {
  public:
   TreeAddresses(const TreePlan& plan, const accel::Topology& topology, const memory::Layout& layout,
                 const TreeCopies& copies)
       : plan_(plan), topology_(topology), layout_(layout), copies_(copies) {}
 
-  /// Whether private trees have a record of their own for this node of the initial tree.
+  /// Whether each private tree has a record of its own for this node of the initial tree.
   [[nodiscard]] bool has_slot(const TreePlan::Place& place) const {
     return place.lazy != TreePlan::none && plan_.lazy()[place.lazy].slot != TreePlan::none;
   }
@@ -21,7 +21,7 @@ class TreeAddresses {
   [[nodiscard]] memory::Address initial_record(std::uint32_t node) const {
     return layout_.address(memory::RecordKind::node, plan_.place(node).record);
   }
-  /// The record that a visit reads first.
+  /// The record that a visit to the node reads first.
   [[nodiscard]] memory::Address record(std::uint32_t copy, std::uint32_t node) const {
     const TreePlan::Place& place = plan_.place(node);
     if (place.home != TreePlan::none) {
@@ -32,7 +32,7 @@ class TreeAddresses {
     }
     return initial_record(node);
   }
-  /// The list of a leaf, or that of a branch before it is split.
+  /// The list of a leaf, or of a branch before it is split.
   [[nodiscard]] memory::Address list(std::uint32_t copy, std::uint32_t node) const {
     const TreePlan::Place& place = plan_.place(node);
     if (place.home != TreePlan::none) {

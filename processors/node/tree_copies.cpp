@@ -76,7 +76,7 @@ void TreeCopies::take(std::uint32_t copy, std::uint32_t lazy, std::uint32_t proc
   }
   builder_[at(copy, lazy)] = processor;
   allocated_[copy] = static_cast<std::uint32_t>(next_[copy] >> line_shift_);
-  // The block as a whole is open until it is published, P nodes' records in it until they are themselves.
+  // The whole block is open until it is published, a P node's record in it until the P node is published.
   count_open(copy, block, branch.block_bytes, 1);
   const accel::TopologyNode& node = topology_.nodes[branch.node];
   for (std::uint32_t child = 0; child < node.count; ++child) {

@@ -1,5 +1,5 @@
 // How far each copy of a tree has been built: the state of its lazy branches, and which lines of memory may
-// still be written. State only ever goes one way: P, being built, built; open line, settled line.
+// still be written. States only advance: P, being built, built for branches; open, settled for lines.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@
 
 namespace marti::processors {
 
-/// Which lines of one copy are settled: all their bytes have the value they will have at the end. Lines are
-/// those of the caches, or interleave units without a cache.
+/// Which lines of one copy are settled, that is, have their final content. Lines are those of the caches, or
+/// interleave units without a cache.
 struct LineStates {
-  const std::uint32_t* open = nullptr;  ///< of each line: records and lists in it that are not final
+  const std::uint32_t* open = nullptr;  ///< for each line: records and lists in it that are not final
   std::uint32_t initial_end = 0;  ///< one past the last line of the node section; 0 when nothing is open
   std::uint32_t lower_begin = 0xffffffffU;   ///< first line of the blocks
-  const std::uint32_t* allocated = nullptr;  ///< one past the last line whose bytes all belong to some block
+  const std::uint32_t* allocated = nullptr;  ///< one past the last line completely in allocated blocks
 
   [[nodiscard]] bool settled(std::uint32_t line) const {
     if (line < initial_end) {
@@ -25,10 +25,10 @@ struct LineStates {
   }
 };
 
-/// All copies: one a cluster when trees are shared, one a processor node when they are private.
+/// All copies: one for each cluster when trees are shared, one for each processor node when private.
 class TreeCopies {
  public:
-  /// Throws UserError when the host's memory that the copies take is beyond `most_bytes`.
+  /// Throws UserError when the copies would take more than `most_bytes` of the host's memory.
   TreeCopies(const TreePlan& plan, const accel::Topology& topology, const memory::Layout& layout,
              const MachineConfig& config, unsigned line_shift);
 
@@ -44,24 +44,24 @@ class TreeCopies {
   [[nodiscard]] bool built(std::uint32_t copy, std::uint32_t lazy) const {
     return built_[at(copy, lazy)] != 0;
   }
-  /// Address of a branch's block; it must have been taken.
+  /// Address of a branch's block; a processor must have taken the branch.
   [[nodiscard]] memory::Address block(std::uint32_t copy, std::uint32_t lazy) const {
     return block_[at(copy, lazy)];
   }
-  /// Who took it; only of shared trees.
+  /// The processor that took the branch; for shared trees only.
   [[nodiscard]] std::uint32_t builder(std::uint32_t copy, std::uint32_t lazy) const {
     return builder_[at(copy, lazy)];
   }
 
-  /// `processor` splits the branch from now on: its block is allocated.
+  /// `processor` begins to split the branch: its block is allocated.
   void take(std::uint32_t copy, std::uint32_t lazy, std::uint32_t processor);
-  /// The branch's children can be seen.
+  /// Makes the branch's children visible.
   void publish(std::uint32_t copy, std::uint32_t lazy);
 
   [[nodiscard]] LineStates lines(std::uint32_t copy) const;
-  /// Some cache of the cluster has got a line that is not settled.
+  /// Notes that some cache of the cluster holds a line that is not settled.
   void note_cached(std::uint32_t copy, std::uint32_t line);
-  /// Whether some cache may have the line.
+  /// Whether some cache of the cluster may hold the line.
   [[nodiscard]] bool maybe_cached(std::uint32_t copy, std::uint32_t line) const;
 
   /// Host bytes a replay may take for the state of all copies.
@@ -72,7 +72,7 @@ class TreeCopies {
     return std::size_t{copy} * lazies_ + lazy;
   }
   [[nodiscard]] std::size_t index_of(std::uint32_t copy, std::uint32_t line) const;
-  // Adds `by` to the count of what is not final in each line that these bytes touch.
+  // Adds `by` to the number of open records and lists in each line that these bytes touch.
   void count_open(std::uint32_t copy, memory::Address begin, std::uint64_t bytes, std::int32_t by);
 
   const TreePlan& plan_;
@@ -83,11 +83,11 @@ class TreeCopies {
   std::size_t lazies_;
   unsigned line_shift_;
   std::uint64_t node_bytes_;
-  std::vector<memory::Address> block_;  // 0: a P node
+  std::vector<memory::Address> block_;  // 0: the branch is a P node
   std::vector<std::uint8_t> built_;
   std::vector<std::uint32_t> builder_;
-  std::vector<memory::Address> next_;  // of each copy: where its next block goes
-  // Shared trees: of each copy the lines of the node section, then those of the blocks.
+  std::vector<memory::Address> next_;  // for each copy: the address of its next block
+  // Shared trees: for each copy the lines of the node section, then those of the blocks.
   std::uint32_t initial_lines_ = 0;
   std::uint32_t lower_begin_ = 0xffffffffU;
   std::size_t lines_ = 0;

@@ -21,7 +21,7 @@ constexpr std::uint32_t most_listed_ways = 64;
 
 bool listed(const memory::CacheShape& shape) { return shape.sets > 1 || shape.ways <= most_listed_ways; }
 
-// The passes of all shapes.
+// The passes for all shapes.
 class Passes {
  public:
   explicit Passes(std::span<const memory::CacheShape> shapes) {
@@ -76,7 +76,7 @@ class Passes {
   std::optional<memory::StackDistances> distances_;
 };
 
-// Caches in which everything is found, so that a walk goes through to the end.
+// Caches that count each line and report a hit, so that a walk never stops.
 struct PassedCaches {
   static constexpr bool present = true;
   static constexpr bool by_kind = false;

@@ -8,7 +8,7 @@ namespace marti::processors {
 
 namespace {
 
-// A cache in which nothing is ever found: the walk stops at every reference.
+// A cache that never holds a line: the walk stops at every reference.
 struct EmptyCaches : NoCaches {
   static constexpr bool present = true;
 };

@@ -10,19 +10,19 @@
 
 namespace marti::processors {
 
-/// One reference: a read of one line of a record (of one interleave unit without a cache), from the first
-/// byte of the record in it on; or the write of a pixel, whole.
+/// One reference: a read of one line of a record (without a cache: of one interleave unit), at the first byte
+/// of the record in that line; or the write of a whole pixel.
 struct Reference {
   memory::RecordKind kind = memory::RecordKind::node;
   memory::Address address = 0;
   bool write = false;
 };
 
-/// Watches a replay to learn which node traces which packets; afterwards it goes through each node's part of
-/// the log again (processors/walk/handed_out.h says for which machines).
+/// Observes a replay to learn which node traces which packets; afterwards it walks each node's part of the
+/// log again (processors/walk/handed_out.h says for which machines).
 class ReferenceTrace final : public HandedOut {
  public:
-  /// Calls `take` for each reference of a node. The log must still be there; the replay is over.
+  /// Calls `take` for each reference of a node. Call it after the replay, while the log still exists.
   void for_each(std::uint32_t node, const std::function<void(const Reference&)>& take) const;
 };
 

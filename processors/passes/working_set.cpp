@@ -18,7 +18,7 @@ namespace marti::processors {
 
 namespace {
 
-// The machine's own caches of a node, as they are configured.
+// The caches of one node, as configured.
 std::vector<memory::CacheShape> shapes_of(const NodeCacheConfig& config) {
   std::vector<memory::CacheShape> shapes;
   if (config.organisation == CacheOrganisation::unified) {
@@ -33,7 +33,7 @@ std::vector<memory::CacheShape> shapes_of(const NodeCacheConfig& config) {
   return shapes;
 }
 
-// The passes over the references of one cache.
+// The passes over the references to one cache.
 class CachePass {
  public:
   explicit CachePass(const memory::CacheShape& shape) : shape_(shape) {
@@ -64,7 +64,7 @@ class CachePass {
   std::optional<memory::AllWays> ways_;
 };
 
-// Caches in which everything is found, so that a walk goes through to the end.
+// Caches that count each line and report a hit, so that a walk never stops.
 template <bool Split>
 struct PassingCaches {
   static constexpr bool present = true;
@@ -106,7 +106,7 @@ std::vector<CacheWorkingSet> walk_nodes(const HandedOut& handed_out, const Repla
   tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
   arena.execute([&] { tbb::parallel_for(std::uint32_t{0}, handed_out.nodes(), walk); });
 
-  // Sums of integers: which thread had which nodes makes no difference.
+  // The sums are of integers, so it does not matter which thread had which nodes.
   std::vector<CacheWorkingSet> sum;
   for (Walker& walker : walkers) {
     const std::vector<CachePass>& passes = walker.caches().passes;

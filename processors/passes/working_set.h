@@ -1,12 +1,12 @@
 // What first-level caches of other sizes and ways would have missed, exactly, from one pass over the
 // references of each node.
 //
-// A cache changes how long a node takes, never what it refers to. So for the packets that a node was handed
-// out, one pass gives the misses of LRU caches of every size (memory/stack_distance.h) and of all ways
-// (memory/all_ways.h). Which packets these are follows from the configuration alone with one node and with
-// interleaved or blocks assignment: the misses are then those of a machine with the other cache. With dynamic
-// assignment a machine with another cache hands its packets out in another way, and what is counted here are
-// the misses of the other cache for the packets as this machine handed them out.
+// A cache changes how long a node takes, never what it refers to. So for the packets that a node was given,
+// one pass yields the misses of LRU caches of every size (memory/stack_distance.h) and of all numbers of ways
+// (memory/all_ways.h). With one node, and with interleaved or blocks assignment, the packets of a node follow
+// from the configuration alone: the misses are then those of a machine with the other cache. With dynamic
+// assignment a machine with another cache would hand its packets out differently; the misses counted here are
+// those of the other cache for the packets as this machine handed them out.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@
 
 namespace marti::processors {
 
-/// Sums over all nodes' caches of one kind. Pixel writes bypass caches and are not in it.
+/// Sums over all nodes' caches of one kind, without pixel writes, which bypass caches.
 struct CacheWorkingSet {
   memory::CacheShape shape;          ///< of the machine's own cache
   memory::StackHistogram distances;  ///< fully associative LRU caches of all sizes
@@ -30,25 +30,25 @@ struct CacheWorkingSet {
 
 struct WorkingSet {
   std::uint32_t line = 0;  ///< bytes
-  bool any_cache = false;  ///< the packets of a node do not depend on its cache
-  /// Of the unified cache, or of the split ones in the order of split_cache_names.
+  bool any_cache = false;  ///< true when the packets of a node do not depend on its cache
+  /// One for the unified cache, or one for each split cache in the order of split_cache_names.
   std::vector<CacheWorkingSet> caches;
 };
 
-/// Ways of a set are counted up to this number, or up to those of the machine when it has more.
+/// The ways of a set are counted up to this number, or up to the machine's if it has more.
 inline constexpr std::uint32_t counted_ways = 16;
-/// Caches of several sets may have so many ways at most.
+/// The most ways that caches of several sets may have.
 inline constexpr std::uint32_t most_counted_ways = 4096;
 
-/// Throws UserError with the reason when the working sets of the machine's nodes cannot be told.
+/// Throws UserError with the reason when the working sets of the machine's nodes cannot be determined.
 void check_working_set(const MachineConfig& config);
 
-/// After the replay of a machine that passes check_working_set(), with the log still there. `threads` host
-/// threads (0: all) share the nodes; the result does not depend on them.
+/// Call it after the replay of a machine that passes check_working_set(), while the log still exists.
+/// `threads` host threads (0: all) share the nodes; the result does not depend on their number.
 [[nodiscard]] WorkingSet working_set(const HandedOut& handed_out, unsigned threads = 0);
 
-/// Throws InternalError unless the machine's own counts are those of the pass: all references, with LRU all
-/// misses, and with another replacement no fewer than first uses.
+/// Throws InternalError unless the machine's own counts agree with the pass: equal numbers of references;
+/// with LRU equal misses, and with another replacement at least as many misses as first uses of lines.
 void check_working_set(const WorkingSet& set, const MachineConfig& config, const MachineResult& result);
 
 }  // namespace marti::processors

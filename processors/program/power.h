@@ -20,7 +20,7 @@ Real power(const Real& base, const Real& exponent) {
   if (!(base > Real(0.0))) {
     return Real(0.0);
   }
-  // Splitting off the binary exponent is integer work on a register.
+  // The binary exponent is split off by integer operations on a register.
   const auto bits = std::bit_cast<std::uint64_t>(static_cast<double>(base));
   auto binary = static_cast<std::int64_t>(bits >> 52U) - 1023;
   auto mantissa =

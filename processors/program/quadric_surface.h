@@ -7,12 +7,12 @@
 namespace marti::processors {
 
 /// The surface at `hit`, the point of a ray at its t, seen along `direction`. The point is moved onto the
-/// surface, along the normal: what is left of its error are the roundings of that, in each coordinate.
+/// surface along the normal; what remains of its error is the rounding of that move, in each coordinate.
 ///
-/// The kernel accepts no hit that is farther than 2^-46 of the shape's reach from the surface, and some 20
+/// The kernel accepts no hit that is farther from the surface than 2^-46 of the shape's reach and some 20
 /// roundings (quadric_kernel.h; in floats 2^-17). A ray that leaves outwards from a margin of 2^-45 (2^-16)
-/// stays outside of that, and one that leaves inwards meets it only at the other side. The outer side is the
-/// one away from the centre or axis.
+/// stays outside of that margin, and one that leaves inwards hits the surface only on the far side. The outer
+/// side is the one away from the centre or axis.
 template <typename Real>
 Surface<Real> quadric_surface(const accel::QuadricShape& shape, const Vec3<Real>& hit,
                               const Vec3<Real>& direction) {
@@ -32,7 +32,7 @@ Surface<Real> quadric_surface(const accel::QuadricShape& shape, const Vec3<Real>
     radial = unit * (Real(shape.radius) + Real(shape.slope) * height);
     surface.geometric = (unit - axis * Real(shape.slope)) * Real(shape.cosine);
   } else {
-    // The very point of a cone: it looks along the axis.
+    // The apex of a cone: its normal is taken along the axis.
     surface.geometric = shape.slope < 0.0 ? axis : -axis;
   }
   const Vec3<Real> offset = on_axis + radial;

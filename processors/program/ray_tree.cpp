@@ -4,7 +4,7 @@ namespace marti::processors {
 
 namespace {
 
-// The ray that made number `child`, or none for a pixel's first ray.
+// The number of the ray that made ray `child`; `none` for a pixel's first ray.
 std::uint32_t parent_of(const std::vector<LoggedRay>& rays, std::uint32_t child) {
   for (std::uint32_t at = child; at-- > 0;) {
     if (rays[at].kind != RayKind::shadow && rays[at].bounce < rays[child].bounce) {
@@ -54,7 +54,7 @@ void rays_of_sample(std::span<const std::uint32_t> words, std::vector<LoggedRay>
   if (!rays.empty()) {
     rays.back().end = end;
   }
-  // From the last on, so that each list of children comes out in the order of the log.
+  // From the last ray to the first, so that each list of children comes out in the order of the log.
   for (auto child = static_cast<std::uint32_t>(rays.size()); child-- > 1;) {
     LoggedRay& ray = rays[child];
     ray.parent = parent_of(rays, child);

@@ -1,5 +1,5 @@
-// The rays of one pixel as a tree, or of one of its samples: which ray made which, and which words of the log
-// are whose.
+// The rays of one pixel, or of one of its samples, as a tree: which ray made which, and which words of the
+// log belong to each.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +18,14 @@ struct LoggedRay {
   const std::uint32_t* begin = nullptr;
   const std::uint32_t* end = nullptr;
   std::uint32_t parent = none;       ///< number in the pixel of the ray at whose hit point it began
-  std::uint32_t first_child = none;  ///< its children, in the order of the log, are made when it is shaded
+  std::uint32_t first_child = none;  ///< the first of its children, which follow in the order of the log
   std::uint32_t next_sibling = none;
   std::uint32_t bounce = 0;
   RayKind kind = RayKind::camera;
 };
 
-/// Of the words of a pixel, or of what is left of them, those of the first camera ray and of all rays that it
-/// led to: all of them in a log with one sample a pixel.
+/// The words of the first camera ray and of all rays that it led to, from `words`, which are a pixel's words
+/// or the rest of them. In a log with one sample a pixel these are all of `words`.
 [[nodiscard]] std::span<const std::uint32_t> first_sample(const WorkLog& log,
                                                           std::span<const std::uint32_t> words);
 

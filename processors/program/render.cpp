@@ -41,7 +41,7 @@ void check_options(const RenderOptions& options) {
   }
 }
 
-/// The voxels of the frame; none when no cell can be small, and then the exact walk does it.
+/// The voxels of the frame; std::nullopt when no cell can be small, because then the exact walk suffices.
 std::optional<VoxelAverages> make_voxels(const scenes::Scene& scene, const accel::Octree& octree,
                                          const RenderOptions& options, unsigned threads) {
   const unsigned level =
@@ -53,7 +53,7 @@ std::optional<VoxelAverages> make_voxels(const scenes::Scene& scene, const accel
   return VoxelAverages::build(scene, octree, level, threads);
 }
 
-/// The log's database side: everything but the rows.
+/// The log without its rows: what it says of the database.
 WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure,
                   const RenderOptions& options) {
   WorkLog log;
@@ -108,7 +108,7 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
       throw sim::KeyError("image.voxel_cut",
                           "the voxel cut needs an octree, not \"" + std::string(structure.kind()) + "\"");
     }
-    // Whatever the threshold, so that a smaller one does not seem to work.
+    // An error at any threshold, so that a small one does not seem to work.
     if (!scene.quadrics.empty()) {
       throw sim::KeyError("image.voxel_cut", "averages triangles only, and scene.source has " +
                                                  std::to_string(scene.quadrics.size()) +

@@ -1,5 +1,5 @@
-// Renders a frame: the functional world's whole answer, on all host cores, the same bytes at any number
-// of them.
+// Renders a frame: all that the ray-tracing program computes, on all host cores. The result has the same
+// bytes at any number of cores.
 #pragma once
 
 #include <array>
@@ -33,19 +33,19 @@ struct RenderOptions {
   /// several through points drawn for them (sample_points.h), whose generator begins with `seed`.
   std::uint32_t samples = 1;
   std::uint64_t seed = 1;
-  bool shadows = true;  ///< without: every light a surface faces reaches it
+  bool shadows = true;  ///< false: every light that a surface faces reaches it
   /// The voxel cut (accel/octree_cut.h), for an octree only: cells that cover less than this many pixels on
   /// the screen are shaded as one. 0: off, the image is exact. At least 0 and finite.
   double voxel_cut = 0.0;
-  /// Also send shadow rays from points that lights add nothing to whatever they meet: the same image. With
-  /// the voxel cut they are always sent.
+  /// Also send shadow rays from points where no light can add anything, such as black ones; the image is the
+  /// same. With the voxel cut they are always sent.
   bool unlit_shadows = false;
   /// All arithmetic of rays, primitives and colours in floats, to see what that does to the image; the walks
   /// through a structure stay in doubles, with margins as wide as the floats' error. Not with the voxel cut.
   bool floats = false;
   bool mailboxes = false;  ///< no ray tests a primitive twice; the same image
-  /// False: with mailboxes nothing is looked up on this computer, though the log says that it is. Only right
-  /// where no ray comes upon a primitive twice; the image and the log are the same then.
+  /// False: with mailboxes, this computer looks none of them up although the log says that it did. Only right
+  /// where no ray meets a primitive twice; image and log are the same then.
   bool keep_mailboxes = true;
   bool record = false;  ///< also make the work log
 };
@@ -63,7 +63,7 @@ struct RayCounts {
 struct Frame {
   Image image;
   RayCounts rays;
-  /// A hash of every ray's outcome (pixel, order within the pixel, primitive id, bits of t; for a shadow
+  /// A hash of the outcome of every ray (pixel, order within the pixel, primitive id, bits of t; for a shadow
   /// ray only whether it was blocked). Equal for every structure, machine and number of threads.
   std::uint64_t hit_hash = 0;
   std::shared_ptr<const WorkLog> log;  ///< null unless RenderOptions::record

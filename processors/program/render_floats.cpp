@@ -1,4 +1,4 @@
-// The tracer in floats: a file of its own, because it is compiled for every structure and recorder once more.
+// The tracer in floats, in a file of its own because it compiles every structure and recorder once more.
 #include "processors/program/render_rows.h"
 
 namespace marti::processors {

@@ -1,5 +1,5 @@
-// The rows of a frame on all host cores, by one kind of tracer; render.cpp and render_floats.cpp instantiate
-// it.
+// Renders the rows of a frame on all host cores, with one kind of tracer; render.cpp and render_floats.cpp
+// instantiate it.
 #pragma once
 
 #include <optional>
@@ -29,7 +29,7 @@ struct Worker {
   std::uint64_t hit_hash = 0;
 };
 
-/// Renders all rows; `rows` is where a RowRecorder's rows go, with mailboxes or without.
+/// Renders all rows. A RowRecorder, with mailboxes or without, writes its rows to `rows`.
 template <typename Real, typename Structure, typename Recorder>
 void render_rows(const scenes::Scene& scene, const Structure& structure, const RenderOptions& options,
                  unsigned threads, std::vector<LogRow>& rows, Frame& frame) {
@@ -58,14 +58,14 @@ void render_rows(const scenes::Scene& scene, const Structure& structure, const R
     worker.hit_hash += tracer.hit_hash();
   };
 
-  // More threads than cores are asked for by tests of determinism; TBB grants them only on request.
+  // Tests of determinism ask for more threads than cores; TBB grants them only through this control.
   std::optional<tbb::global_control> more_threads;
   if (threads > static_cast<unsigned>(tbb::info::default_concurrency())) {
     more_threads.emplace(tbb::global_control::max_allowed_parallelism, threads);
   }
   tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
   arena.execute([&] {
-    // Rows differ in cost by orders of magnitude: the smallest grain, handed out as threads fall idle.
+    // Rows differ in cost by orders of magnitude, so threads take one row at a time as they fall idle.
     tbb::parallel_for(
         tbb::blocked_range<std::uint32_t>(0, options.height, 1),
         [&](const tbb::blocked_range<std::uint32_t>& range) {
@@ -75,7 +75,7 @@ void render_rows(const scenes::Scene& scene, const Structure& structure, const R
         },
         tbb::simple_partitioner());
   });
-  // Integer sums: the order of the threads does not matter.
+  // The sums are of integers, so the order of the threads does not matter.
   for (const Worker<Recorder>& worker : workers) {
     frame.rays += worker.rays;
     frame.hit_hash += worker.hit_hash;
@@ -101,7 +101,7 @@ void render_with(const scenes::Scene& scene, const Structure& structure, const R
   }
 }
 
-/// The same of any structure, in floats.
+/// render_with() for any structure, in floats.
 void render_in_floats(const scenes::Scene& scene, const accel::Structure& structure,
                       const RenderOptions& options, unsigned threads, std::vector<LogRow>& rows,
                       Frame& frame);

@@ -1,7 +1,7 @@
 // Where in a pixel its samples lie: jittered in the cells of a grid (Cook, "Stochastic Sampling in Computer
-// Graphics", ACM TOG 5(1), 1986), from numbers that depend on nothing but pixel, sample, dimension and seed.
-// So no ray that is left out shifts the numbers of another (Salmon et al., "Parallel Random Numbers: As Easy
-// as 1, 2, 3", SC 2011).
+// Graphics", ACM TOG 5(1), 1986). The random numbers depend only on pixel, sample, dimension and seed, so
+// that leaving a ray out does not shift the numbers of another (Salmon et al., "Parallel Random Numbers: As
+// Easy as 1, 2, 3", SC 2011).
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ struct SamplePoint {
 };
 
 /// A number of [0, 1) with 53 bits for each pixel (x, y below 32768), sample, dimension (below 4) and seed:
-/// the finaliser of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014) over the counter, twice so that neighbouring
-/// seeds share no sequence of numbers.
+/// the finaliser of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014) over the counter, applied twice so that
+/// neighbouring seeds share no sequence of numbers.
 [[nodiscard]] constexpr double counted_number(std::uint32_t x, std::uint32_t y, std::uint32_t sample,
                                               std::uint32_t dimension, std::uint64_t seed) {
   const auto mixed = [](std::uint64_t h) {
@@ -34,8 +34,8 @@ struct SamplePoint {
 /// The points of all pixels for a number of samples.
 class SamplePoints {
  public:
-  /// `samples` from 1 to 1024. They are dealt to a grid of as many cells, the nearest to a square that has
-  /// whole sides: for a prime number of samples, rows.
+  /// `samples` from 1 to 1024. They are dealt to a grid with one cell for each, as nearly square as whole
+  /// numbers of rows and columns allow; a prime number of samples gives a single column.
   constexpr SamplePoints(std::uint32_t samples, std::uint64_t seed) : samples_(samples), seed_(seed) {
     for (std::uint32_t side = 1; side * side <= samples; ++side) {
       columns_ = samples % side == 0 ? side : columns_;

@@ -24,7 +24,7 @@ template <typename Real>
 struct Surface {
   Vec3<Real> point;
   Vec3<Real> error;      ///< bound of each coordinate's error
-  Real margin{0.0};      ///< bound of how far beside the surface the kernel still sees it hit
+  Real margin{0.0};      ///< distance from the surface within which the kernel may still report a hit
   Vec3<Real> geometric;  ///< the surface's own unit normal, on the viewer's side
   Vec3<Real> normal;     ///< the unit shading normal, on the viewer's side and facing the viewer
   Vec3<Real> color;      ///< the material's colour times the texture's
@@ -44,13 +44,13 @@ constexpr double gamma_bound(int n) {
   return ne / (1.0 - ne);
 }
 
-/// Whether the program asks for the lights at points of a material.
+/// Whether the program considers the lights at points of a material.
 inline bool asks_lights(const scenes::Material& material) {
   return material.diffuse > 0.0 || material.highlight > 0.0;
 }
 
-/// Whether a light can add anything at a point of the material. Not so on a black one: what it adds, lit(),
-/// is then a product with zeros. A bit of the material's record, as it were.
+/// Whether a light can add anything at a point of the material. On a black material none can, because lit()
+/// is then a product with zero. A machine would keep this as a bit of the material's record.
 inline bool shows_light(const scenes::Material& material) {
   const auto black = [](const glm::dvec3& color) {
     return color.x == 0.0 && color.y == 0.0 && color.z == 0.0;
@@ -95,8 +95,8 @@ Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, con
       return none ? surface.geometric : (dot(own, surface.geometric) < Real(0.0) ? -own : own);
     };
     const Vec3<Real> mixed = corner(0) * b[0] + corner(1) * b[1] + corner(2) * b[2];
-    // Near a silhouette the mixed normal may face away although the triangle does not; then the
-    // triangle's own is used. A mix that cancels out fails the comparison too.
+    // Near a silhouette the mixed normal may face away although the triangle does not; then the triangle's
+    // own is used. A mixed normal of length zero fails the comparison too.
     if (dot(mixed, direction) < Real(0.0)) {
       surface.normal = normalized(mixed);
     }
@@ -116,8 +116,8 @@ glm::dvec2 uv_at(const scenes::Scene& scene, std::uint32_t triangle, const Real 
   return {mix([](const glm::dvec2& uv) { return uv.x; }), mix([](const glm::dvec2& uv) { return uv.y; })};
 }
 
-/// The next number away from zero's side given by `toward`: up when toward > 0, down when toward < 0. Format:
-/// double or float.
+/// The neighbouring number in the direction of the sign of `toward`: the next greater one when toward > 0,
+/// the next smaller one when toward < 0. Format: double or float.
 template <typename Format>
 Format next_toward(Format value, Format toward) {
   using Bits = std::conditional_t<std::is_same_v<Format, float>, std::uint32_t, std::uint64_t>;
@@ -131,13 +131,13 @@ Format next_toward(Format value, Format toward) {
   return std::bit_cast<Format>((value > Format(0)) == (toward > Format(0)) ? bits + 1 : bits - 1);
 }
 
-/// The numbers that a scalar of the templates holds: floats, or doubles.
+/// The number type behind a scalar of the templates: float or double.
 template <typename Real>
 using Held = std::conditional_t<std::is_same_v<Real, float>, float, double>;
 
-/// Where a ray that leaves the surface into `direction` begins: the point moved along the triangle's
-/// normal out of its error box and the kernel's margin, each coordinate rounded outwards (Physically Based
-/// Rendering, 4th ed., section 6.8.6). A fixed epsilon fails at both ends of scale.
+/// Where a ray that leaves the surface into `direction` begins: the point moved along the triangle's normal
+/// out of its error box and the kernel's margin, each coordinate rounded outwards (Physically Based
+/// Rendering, 4th ed., section 6.8.6). A fixed epsilon fails for very small and for very large scenes.
 template <typename Real>
 Vec3<Real> leave(const Surface<Real>& surface, const Vec3<Real>& direction) {
   Real distance = dot(absolute(surface.geometric), surface.error) + surface.margin;
@@ -146,7 +146,7 @@ Vec3<Real> leave(const Surface<Real>& surface, const Vec3<Real>& direction) {
   }
   const Vec3<Real> offset = surface.geometric * distance;
   const Vec3<Real> moved = surface.point + offset;
-  // The last step is integer work on a register.
+  // The rounding outwards is integer work on a register.
   const auto outward = [](const Real& value, const Real& toward) {
     return Real(next_toward(static_cast<Held<Real>>(value), static_cast<Held<Real>>(toward)));
   };
@@ -162,7 +162,7 @@ struct LightSample {
   bool at_infinity = false;  ///< directional
 };
 
-/// glTF's KHR_lights_punctual: spot cone and range window. inverse_square off leaves out the distance law.
+/// glTF's KHR_lights_punctual: spot cone, range window. inverse_square off: no inverse-square fall-off.
 template <typename Real>
 LightSample<Real> light_at(const scenes::Light& light, const Vec3<Real>& point) {
   using std::sqrt;
@@ -177,7 +177,7 @@ LightSample<Real> light_at(const scenes::Light& light, const Vec3<Real>& point) 
   const Vec3<Real> to_light = Vec3<Real>(light.position) - point;
   const Real squared = dot(to_light, to_light);
   if (!(squared > Real(0x1p-600))) {
-    return sample;  // in the light itself, or so near that its radiance might not be finite
+    return sample;  // at the light's own position, or so near that its radiance might not be finite
   }
   sample.direction = to_light * (Real(1.0) / sqrt(squared));
   Real strength(1.0);
@@ -201,8 +201,8 @@ LightSample<Real> light_at(const scenes::Light& light, const Vec3<Real>& point) 
   return sample;
 }
 
-/// True when light from `direction` falls on the viewer's side: both normals must face it, or light would
-/// leak through the horizon that the triangle really has.
+/// True when light from `direction` falls on the viewer's side. Both normals must face it; otherwise light
+/// would reach points that the flat triangle hides from it.
 template <typename Real>
 bool faces(const Surface<Real>& surface, const Vec3<Real>& direction) {
   return dot(surface.normal, direction) > Real(0.0) && dot(surface.geometric, direction) > Real(0.0);

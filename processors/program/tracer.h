@@ -1,10 +1,10 @@
-// The recursive ray tracer (Whitted, CACM 23(6), 1980), one pixel at a time, without recursion: rays wait
-// on a small stack with the weight their colour has in the pixel, and every contribution is added to the
-// pixel when it is found. The order of additions is fixed, so the image has the same bits always.
+// The recursive ray tracer (Whitted, CACM 23(6), 1980), one pixel at a time, without recursion: rays wait on
+// a small stack with the weight their colour has in the pixel, and every contribution is added to the pixel
+// when it is found. The order of additions is fixed, so the image always has the same bits.
 //
-// Order of execution, and of the log: of each sample of the pixel, one after the other, a ray and its visits;
-// then, where it hit, the shading of the point, its texel, and per light the shadow ray with its visits and
-// the light's contribution; then everything the reflected ray leads to, then everything the refracted ray
+// Order of execution, and of the log. The samples of a pixel follow one another. For each: a ray and its
+// visits; if it hit, the shading of the point, its texel, and for each light the shadow ray with its visits
+// and the light's contribution; then all that the reflected ray leads to; then all that the refracted ray
 // leads to.
 //
 // Where it differs from Whitted's program: shadows are opaque (whatever lies before the light blocks it,
@@ -58,7 +58,7 @@ class Tracer {
         share_(1.0 / options.samples),
         points_(options.samples, options.seed) {}
 
-  /// The colour of pixel (x, y): that through its centre, or the mean of its samples.
+  /// The colour of pixel (x, y): of the ray through its centre, or the mean of its samples.
   Vec trace(std::uint32_t x, std::uint32_t y) {
     recorder_.begin_pixel();
     color_ = Vec();
@@ -90,7 +90,7 @@ class Tracer {
     [[no_unique_address]] std::conditional_t<CutsVoxels<Structure>, double, NoPath> path{};  ///< from the eye
   };
 
-  /// One camera ray and everything it leads to, with the share of the pixel that a sample has.
+  /// Traces one camera ray and everything it leads to, with the weight that a sample has in its pixel.
   void trace(const SamplePoint& point) {
     recorder_.phase(Phase::ray, RayKind::camera);
     if constexpr (CutsVoxels<Structure>) {
@@ -118,8 +118,8 @@ class Tracer {
     }
   }
 
-  /// Of pixel (x, y) as the eye sees it: its area over the cube of the distance of its centre, the plane
-  /// being at distance 1.
+  /// The solid angle of pixel (x, y) from the eye: the pixel's area over the cube of the distance of its
+  /// centre, the image plane being at distance 1.
   double solid_angle(std::uint32_t x, std::uint32_t y) const {
     const Vec3<double> across = cross(Vec3<double>(plane_.step_x), Vec3<double>(plane_.step_y));
     const Vec3<double> center = Vec3<double>(plane_.corner) + Vec3<double>(plane_.step_x) * (x + 0.5) +
@@ -128,8 +128,8 @@ class Tracer {
     return std::sqrt(dot(across, across)) / (squared * std::sqrt(squared));
   }
 
-  /// A ray that leaves a surface never sees t = 0 again. It could, where the offset out of the surface is
-  /// nothing: a triangle in a coordinate plane has points without any error.
+  /// A ray that leaves a surface must not hit at t = 0 again. It could where the offset out of the surface is
+  /// zero: a triangle in a coordinate plane has points without any error.
   static accel::Ray leaving_ray(const Vec& origin, const Vec& direction) {
     accel::Ray ray = make_ray(origin, direction);
     ray.t_min = static_cast<double>(std::numeric_limits<Held<Real>>::denorm_min());
@@ -208,11 +208,11 @@ class Tracer {
              structure_.averages().surface(cut.voxel, pending.direction));
   }
 
-  /// All the light that leaves the surface towards the ray's origin, and the rays that bring it.
+  /// Adds the light that leaves the surface towards the ray's origin, and sends the rays that bring more.
   void light_up(const Pending& pending, const scenes::Material& material, const Surface<Real>& surface) {
     const Vec ambient = surface.color * Vec(scene_.ambient) * Real(material.diffuse);
     add(pending.weight, Vec(material.emission) + ambient);
-    // Averaged materials are not told apart by whether they are black.
+    // For averaged materials a black colour makes no difference: their lights are always looked at.
     if (CutsVoxels<Structure> || options_.unlit_shadows ? asks_lights(material) : shows_light(material)) {
       illuminate(pending, material, surface);
     }
@@ -236,7 +236,7 @@ class Tracer {
     }
   }
 
-  /// A shadow ray towards a light in reach is not of unit length: t = 1 is the light itself.
+  /// For a light at a finite distance the ray's direction is not of unit length: t = 1 is the light.
   bool in_shadow(const Surface<Real>& surface, const LightSample<Real>& sample, const scenes::Light& light,
                  std::uint32_t bounce) {
     recorder_.phase(Phase::ray, RayKind::shadow);
@@ -257,7 +257,7 @@ class Tracer {
     return blocked;
   }
 
-  /// Puts the refracted ray and on top of it the reflected ray on the stack.
+  /// Pushes the refracted ray on the stack, and the reflected ray on top of it.
   void spawn(const Pending& pending, const scenes::Material& material, const Surface<Real>& surface) {
     if (pending.bounce + 2 > options_.max_depth) {
       return;  // the new ray would be number bounce + 2, the eye ray being 1
@@ -271,7 +271,7 @@ class Tracer {
       if (refracted(surface, pending.direction, ratio, direction)) {
         send(pending, surface, direction, weight, RayKind::refraction);
       } else {
-        mirror_weight = mirror_weight + weight;  // total internal reflection takes it all
+        mirror_weight = mirror_weight + weight;  // total internal reflection
       }
     }
     recorder_.phase(Phase::ray, RayKind::reflection);
@@ -288,7 +288,7 @@ class Tracer {
       return;
     }
     if constexpr (std::is_same_v<Real, float>) {
-      // The normal of edges whose squares are no floats.
+      // The squares of the triangle's edges do not fit floats, so its normal is not finite.
       if (!std::isfinite(direction.x + direction.y + direction.z)) {
         return;
       }

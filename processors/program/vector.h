@@ -1,5 +1,5 @@
 // Three-component vectors over any scalar, so that the program can be run with a scalar that counts its
-// operations. Each function does exactly the operations one would write by hand.
+// operations. Each function does exactly the operations that one would write by hand.
 #pragma once
 
 #include <cmath>

@@ -109,7 +109,7 @@ glm::dvec3 shading_normal(const scenes::Scene& scene, std::uint32_t id, const gl
   return length > 0.0 ? mixed / length : geometric;
 }
 
-// Adds what of triangle `id` lies in the box.
+// Adds the part of triangle `id` that lies in the box.
 void add_triangle(const scenes::Scene& scene, const accel::TriangleSet& triangles, std::uint32_t id,
                   const Box& box, std::vector<glm::dvec3>& points, VoxelSum& sum) {
   const glm::dvec3 normal = glm::cross(triangles.corner(id, 1) - triangles.corner(id, 0),
@@ -244,7 +244,7 @@ unsigned first_small_level(const scenes::Bounds& root, const scenes::ImagePlane&
     farthest[a] = std::max(std::abs(root.lo[a] - plane.origin[a]), std::abs(root.hi[a] - plane.origin[a]));
   }
   const double reach = 1.01 * (glm::length(farthest) + (max_depth - 1.0) * glm::length(edges));
-  // No ray's pixel has a larger solid angle than the middle one's.
+  // The pixel in the middle of the image has the largest solid angle.
   const double pixel = threshold * glm::length(glm::cross(plane.step_x, plane.step_y));
   const double limit = std::max({edges.x, edges.y, edges.z}) / std::sqrt(pixel);
   unsigned level = 1;
@@ -262,7 +262,7 @@ VoxelAverages VoxelAverages::build(const scenes::Scene& scene, const accel::Octr
   VoxelAverages averages;
   averages.root_ = octree.bounds();
   averages.first_level_ = first_level;
-  // Nodes are in breadth-first order, so those of a level and below are the last ones.
+  // Nodes are in breadth-first order, so those of a level and of all deeper levels are the last ones.
   const auto first = std::partition_point(
       nodes.begin(), nodes.end(), [&](const accel::TopologyNode& node) { return node.level < first_level; });
   const auto first_node = static_cast<std::uint32_t>(first - nodes.begin());
@@ -327,7 +327,7 @@ Surface<double> VoxelAverages::surface(std::uint32_t voxel, const Vec3<double>& 
   Surface<double> surface;
   surface.point = Vec3<double>(0.5 * (box.lo + box.hi));
   surface.error = Vec3<double>(0.5 * (box.hi - box.lo));
-  // Beyond the rounding of the three lines above and of leave(): 2^-40 of the root, as its cells' margin is.
+  // Above the rounding of the three lines above and of leave(): 2^-40 of the root, as its cells' margin.
   surface.margin =
       0x1p-40 * largest(Vec3<double>(root_.hi - root_.lo)) + 0x1p-48 * largest(absolute(surface.point));
   if (!facing(covers_[voxel].form, direction, surface.geometric)) {

@@ -35,35 +35,35 @@ struct AverageVoxel {
   float highlight = 0.0F;
   float shininess = 1.0F;  ///< weighted by the highlight too
 
-  /// The material all the same; it has no texture.
+  /// The averages as a material, without a texture.
   [[nodiscard]] scenes::Material material() const;
 };
 
-/// The first level whose cells can be small in any ray of a frame: an eye ray's cell is at most the way to
-/// the root's farthest corner off, every further ray adds at most the root's diagonal. Levels beyond the
-/// tree's deepest: no cell is ever small.
+/// The first level whose cells can be small for any ray of a frame. The cell that an eye ray meets is at most
+/// as far as the root's farthest corner; every further ray adds at most the root's diagonal. A result beyond
+/// the tree's deepest level means that no cell is ever small.
 [[nodiscard]] unsigned first_small_level(const scenes::Bounds& root, const scenes::ImagePlane& plane,
                                          double threshold, std::uint32_t max_depth);
 
 /// The voxels of a tree. Immutable once built.
 class VoxelAverages {
  public:
-  /// Voxels for all nodes of `first_level` and below that are no empty leaves. On at most `threads`
-  /// host threads (0: all of them); the same bytes with any number.
+  /// Voxels for all nodes of `first_level` and deeper other than empty leaves. On at most `threads` host
+  /// threads (0: all of them); the same bytes with any number.
   [[nodiscard]] static VoxelAverages build(const scenes::Scene& scene, const accel::Octree& octree,
                                            unsigned first_level, unsigned threads);
 
-  /// Records of averaged materials lie behind the scene's materials, in the order of their nodes.
+  /// Records of averaged materials follow the scene's materials, in the order of their nodes.
   [[nodiscard]] const accel::VoxelTable& table() const { return table_; }
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(voxels_.size()); }
   [[nodiscard]] const AverageVoxel& operator[](std::uint32_t voxel) const { return voxels_[voxel]; }
   [[nodiscard]] const accel::VoxelCover& cover(std::uint32_t voxel) const { return covers_[voxel]; }
   [[nodiscard]] unsigned first_level() const { return first_level_; }
 
-  /// The voxel as a surface seen along the unit `direction`: its point is the cell's centre and the error of
-  /// that is half the cell's size, so that rays leave from the plane that touches the cell on their side and
-  /// never enter it. Normals are the mean of those inside turned to the viewer; where they cancel out, the
-  /// one that faces him.
+  /// The voxel as a surface seen along the unit `direction`. Its point is the cell's centre and the error of
+  /// that is half the cell's size, so that rays start on the plane that touches the cell on their side and
+  /// never enter it. The normals are the mean of those inside, turned to the viewer; where they cancel out,
+  /// the normal that points to the viewer.
   [[nodiscard]] Surface<double> surface(std::uint32_t voxel, const Vec3<double>& direction) const;
 
   VoxelAverages(VoxelAverages&&) = default;

@@ -15,7 +15,7 @@ using sim::ensure;
 
 constexpr const char* no_average = "work log: a cut without its averaged material, or the reverse";
 
-/// Walks one row's words; every problem is an InternalError that names what is out of bounds.
+/// Walks one row's words; any fault is an InternalError that names what is out of bounds.
 class RowChecker {
  public:
   RowChecker(const WorkLog& log, const LogRow& row) : log_(log), row_(row) {}
@@ -71,14 +71,14 @@ class RowChecker {
            "work log: a pixel has fewer or more camera rays than samples");
   }
 
-  // Nearly all steps, and in no order that a processor could predict: no decision before the last of them.
+  // Nearly all steps are whole visits, of unpredictable kinds: the loop has no branch on the kind.
   [[nodiscard]] std::size_t check_whole_visits(std::size_t at, std::size_t end) const {
     const std::span<const accel::TopologyNode> nodes(log_.topology.nodes);
     bool right = true;
     for (; at < end && whole_visit(row_.words[at]); ++at) {
       const std::size_t node = operand_of(row_.words[at]);
       if (node >= nodes.size()) [[unlikely]] {
-        break;  // for check_step to say
+        break;  // check_step reports the error
       }
       right &= nodes[node].leaf == (step_of(row_.words[at]) == Step::leaf);
     }
@@ -192,14 +192,14 @@ void check_log_capacity(std::size_t nodes, std::size_t materials, std::size_t li
 
 LogTotals totals_of(const WorkLog& log) {
   LogTotals totals;
-  std::vector<std::uint32_t> tests(log.topology.nodes.size());  // of a visit to each whole leaf
+  std::vector<std::uint32_t> tests(log.topology.nodes.size());  // of each leaf tested whole
   std::transform(log.topology.nodes.begin(), log.topology.nodes.end(), tests.begin(),
                  [](const accel::TopologyNode& node) { return node.leaf ? node.count : 0; });
   for (const LogRow& row : log.rows) {
     totals.bytes += (row.words.size() + row.begin.size()) * sizeof(std::uint32_t);
     const std::size_t size = row.words.size();
     for (std::size_t at = 0; at < size; at += step_words(row.words.data() + at)) {
-      // Visits come in no order that a processor could predict, so they are counted without a decision.
+      // Branches and leaves alternate unpredictably, so they are counted without a conditional branch.
       std::uint64_t visits = 0;
       std::uint64_t leaves = 0;
       std::uint64_t tested = 0;

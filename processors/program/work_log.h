@@ -55,19 +55,19 @@ inline constexpr std::uint32_t max_operand = (1U << operand_bits) - 1U;
 }
 [[nodiscard]] constexpr Step step_of(std::uint32_t word) { return static_cast<Step>(word >> operand_bits); }
 [[nodiscard]] constexpr std::uint32_t operand_of(std::uint32_t word) { return word & max_operand; }
-/// Words of bits for so many entries.
+/// Number of 32-bit words that hold one bit for each of so many entries.
 [[nodiscard]] constexpr std::uint32_t mask_words(std::uint32_t entries) {
   return entries / 32 + (entries % 32 != 0 ? 1 : 0);
 }
 /// The step that sets up a camera ray.
 inline constexpr std::uint32_t camera_ray = make_word(Step::ray, 0);
-/// Whether a step is the visit to a branch or to a whole leaf, as nearly all are: one word, and the two
-/// lowest steps, so that one comparison tells.
+/// Whether a step is the visit to a branch or to a whole leaf, as nearly all steps are. Such a step is one
+/// word, and its kind one of the two lowest, so that one comparison suffices.
 [[nodiscard]] constexpr bool whole_visit(std::uint32_t word) {
   static_assert(static_cast<std::uint32_t>(Step::branch) == 0 && static_cast<std::uint32_t>(Step::leaf) == 1);
   return word < make_word(Step::partial_leaf, 0);
 }
-/// How many words the step that begins at `word` has, with those that follow it raw.
+/// Number of words of the step that begins at `word`, its raw operands included.
 [[nodiscard]] constexpr std::size_t step_words(const std::uint32_t* word) {
   if (whole_visit(*word)) {
     return 1;
@@ -87,7 +87,7 @@ inline constexpr std::uint32_t camera_ray = make_word(Step::ray, 0);
   return step == Step::branch || step == Step::leaf || step == Step::partial_leaf ||
          step == Step::mailed_leaf || step == Step::cut;
 }
-/// Whether the entry of that number was tested, by a mailed_leaf's mask.
+/// Whether entry number `entry` was tested, according to a mailed_leaf's mask.
 [[nodiscard]] constexpr bool tested_in_mask(const std::uint32_t* mask, std::uint32_t entry) {
   return ((mask[entry / 32] >> (entry % 32)) & 1U) != 0;
 }
@@ -112,7 +112,7 @@ struct LogTotals {
   std::uint64_t branches = 0;
   std::uint64_t leaves = 0;
   std::uint64_t tests = 0;
-  std::uint64_t lookups = 0;  ///< of mailboxes; 0 without
+  std::uint64_t lookups = 0;  ///< of mailboxes; 0 without mailboxes
   std::uint64_t shades = 0;
   std::uint64_t lights = 0;
   std::uint64_t texels = 0;
@@ -121,7 +121,7 @@ struct LogTotals {
   std::uint64_t bytes = 0;  ///< words and pixel offsets
 
   [[nodiscard]] std::uint64_t all_rays() const { return rays[0] + rays[1] + rays[2] + rays[3]; }
-  /// Steps the log stands for: every visit, test, ray, shade, light, texel, cut and pass.
+  /// Number of steps that the log records: visits, tests, rays, shades, lights, texels, cuts and passes.
   [[nodiscard]] std::uint64_t all_steps() const {
     return all_rays() + branches + leaves + tests + shades + lights + texels + cuts + passes;
   }
@@ -130,10 +130,10 @@ struct LogTotals {
 /// A whole frame's log with the tree it refers to. Immutable once recorded; shared read-only by replays.
 struct WorkLog {
   accel::Traversal traversal = accel::Traversal::octree;  ///< the walk that made it
-  bool mailboxes = false;  ///< every entry of a leaf's list was looked up before it was tested or not
+  bool mailboxes = false;  ///< for each entry of a leaf's list, its mailbox was looked up
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  std::uint32_t samples = 1;  ///< camera rays of a pixel: with several, each that is logged has them all
+  std::uint32_t samples = 1;  ///< camera rays of a pixel; each pixel that is logged has all of them
   accel::Topology topology;
   std::uint32_t primitives = 0;  ///< number of primitive records in the database
   /// Kinds of the primitives behind the triangles: those with the ids from primitives - quadrics.size() on.

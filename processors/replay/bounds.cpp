@@ -25,7 +25,7 @@ sim::Ticks own_work(const NodeStatistics& node) {
                      Activity::bank_access});
 }
 
-// The bus stays with a read while the bank works, so banks are no queues of their own.
+// The bus is held by a read while the bank works, so banks are not queues of their own.
 bool bus_holds_banks(const MachineConfig& config) {
   return config.interconnect.kind == memory::InterconnectKind::bus &&
          config.interconnect.mode == memory::BusMode::held;
@@ -46,7 +46,7 @@ std::vector<double> demands_of(const MachineConfig& config, const ClusterResult&
     demands.push_back(static_cast<double>(bank.busy) / reads);
   }
   if (config.interconnect.kind == memory::InterconnectKind::crossbar) {
-    // Only the sum over the links is counted; each bank's link carries its share of the accesses.
+    // Only the sum over the links is counted; each bank's link gets its share by the bank's accesses.
     for (const memory::BankStatistics& bank : cluster.banks) {
       demands.push_back(busy * static_cast<double>(bank.accesses) / accesses / reads);
     }
@@ -114,8 +114,8 @@ FrameBounds frame_bounds(const MachineConfig& config, const MachineResult& resul
     workers += had_work(result.nodes[node]) ? 1 : 0;
   }
   bounds.mean_work = workers > 0 ? all / workers : 0;
-  // A bank is not free before its busy time is over, but the last access ends with its data.
-  // A distributed memory is busy for as long as its accesses take.
+  // Between two accesses a bank is busy for its busy time; the last access ends with its data instead. A
+  // distributed memory is busy for exactly as long as its accesses take.
   const sim::Ticks last = config.placement == Placement::distributed
                               ? 0
                               : config.banks.clock.cycles(config.banks.access_cycles) -

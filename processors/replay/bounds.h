@@ -1,5 +1,5 @@
-// What a timed frame could not have beaten, and what queueing theory would have predicted for it, from the
-// work that was counted.
+// Lower bounds of a timed frame, and what queueing theory predicts for it, both from the work that was
+// counted.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace marti::processors {
 
-/// No frame with this work can end earlier, whatever waits for what: every resource does one thing at a time.
+/// No frame with this work can end earlier, in whatever order: each resource does one thing at a time.
 struct FrameBounds {
-  sim::Ticks node_work = 0;        ///< the most that one node does itself: its time without waits and idling
-  std::uint32_t busiest_node = 0;  ///< which
-  sim::Ticks mean_work = 0;        ///< the same over all nodes that had work, rounded down
-  sim::Ticks interconnect = 0;     ///< busy time a link, of the busiest cluster; 0 for an ideal one
-  sim::Ticks bank = 0;             ///< from the first start of the busiest bank to its last data, at least
+  sim::Ticks node_work = 0;        ///< largest work of one node: its time without waits and idling
+  std::uint32_t busiest_node = 0;  ///< the node with that work
+  sim::Ticks mean_work = 0;        ///< mean work of all nodes that had any, rounded down
+  sim::Ticks interconnect = 0;     ///< busy time per link, of the busiest cluster; 0 for an ideal one
+  sim::Ticks bank = 0;             ///< least time from the busiest bank's first start to its last data
 
   [[nodiscard]] sim::Ticks least() const;
 };
@@ -31,25 +31,25 @@ struct FrameBounds {
 void check_bounds(const MachineConfig& config, const MachineResult& result);
 
 /// One cluster as a closed network: its nodes that had work are the customers, a cycle is one read of the
-/// interconnect. Times are picoseconds. Queues are the bus, unless it is held with a bank inside, the banks
-/// and the crossbar's links; what posted writes take of them counts to the cycle that they belong to, and as
-/// much less is thought. Think time is all the rest of the nodes' time that is not waiting for the
-/// interconnect, a bank or room in a buffer, and not idle.
+/// interconnect. Times are picoseconds. Queues are the banks, the crossbar's links, and the bus; a bus that
+/// is held while a bank works stands for the banks too. The time of posted writes at a queue counts as demand
+/// of the cycle that they belong to and is subtracted from the think time. Think time is the rest of the
+/// nodes' time other than idling and waits for the interconnect, a bank or room in a buffer.
 struct Prediction {
   std::uint32_t cluster = 0;
   std::int64_t reads = 0;
   ClosedNetwork network;
-  // Frame times, reads by throughput.
+  // Frame times: number of reads divided by throughput.
   double asymptotic_low = 0.0;
   double balanced_low = 0.0;
   double balanced_high = 0.0;
   double mean_value = 0.0;
-  bool exact = true;  ///< the mean values are not approximated
+  bool exact = true;  ///< the mean values are exact, not approximated
 };
 
-/// Of the cluster for which the mean values predict the longest frame; nothing when no node reads over an
-/// interconnect, the frame takes no time, nodes have several reads outstanding (contexts, prefetching), or
-/// the database is distributed.
+/// The prediction for the cluster with the longest predicted frame (by mean values). std::nullopt when no
+/// node reads over an interconnect, the frame takes no time, nodes have several reads outstanding (contexts,
+/// prefetching), or the database is distributed.
 [[nodiscard]] std::optional<Prediction> predict(const MachineConfig& config, const MachineResult& result);
 
 }  // namespace marti::processors

@@ -43,7 +43,7 @@ void check_second_level_laws(const MachineConfig& config, const MachineResult& r
   require(!shared || result.l2.caches.size() == result.clusters.size(),
           "every cluster has a shared second level");
   for (std::size_t cluster = 0; cluster < result.clusters.size(); ++cluster) {
-    // A distributed memory's banks serve their own nodes beside the network: it has laws of its own.
+    // A distributed memory's banks also serve their own nodes, without the network: it has laws of its own.
     if (!result.clusters[cluster].banks.empty() && !result.clusters[cluster].distributed) {
       check_cluster(result.clusters[cluster], shared ? &result.l2.caches[cluster] : nullptr);
     }

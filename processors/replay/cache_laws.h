@@ -7,11 +7,11 @@
 
 namespace marti::processors {
 
-/// First-level misses that the second level did not serve.
+/// Number of first-level misses that the second level did not serve.
 [[nodiscard]] std::int64_t misses_beyond_caches(const MachineConfig& config, const MachineResult& result);
 
-/// Throws InternalError when a law is broken: what misses in the first level is what the second is asked for;
-/// what misses in a shared second level, and every write, is an access of a bank.
+/// Throws InternalError when a law is broken: the misses of the first level are the references of the second;
+/// the misses of a shared second level, and all writes, are the accesses of the banks.
 void check_second_level_laws(const MachineConfig& config, const MachineResult& result);
 
 }  // namespace marti::processors

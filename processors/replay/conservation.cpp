@@ -80,7 +80,7 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
     const memory::InterconnectStatistics& traffic = cluster.interconnect;
     reads += traffic.reads;
     writes += traffic.writes;
-    // Many may wait at a time: their waits together may not fit although the frame does.
+    // Several may wait at the same time, so the sum of waits may overflow although the frame time does not.
     interconnect_waits = sim::add_ticks(interconnect_waits, traffic.waits.sum);
     require(!has_links(config) || traffic.busy <= sim::multiply_ticks(result.end, traffic.links),
             "links are not busy for longer than the frame");
@@ -98,7 +98,7 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
   check_counts(result.counts, result.references(), result.time());
   require(writes == steps.pixels + built.writes,
           "every pixel and every part of the tree is one write of the interconnect");
-  // Posted writes wait too, but no node waits with them.
+  // Posted writes wait too, but the nodes do not.
   const TimeDivision time = result.time();
   for (const memory::WaitStatistics& waits : result.l2.waits) {
     bank_waits = sim::add_ticks(bank_waits, waits.sum);

@@ -53,8 +53,8 @@ void check_flow_conservation(const WorkLog& log, const MachineConfig& config, co
   FlowCounts sum;
   sim::Ticks queued = 0;
   for (const FlowCounts& node : flow.nodes) {
-    // Many rays may wait at a time: their waits together are longer than the frame, and may not fit although
-    // it does. That is the input's doing, not ours.
+    // Many rays may wait at the same time, so the sum of their waits may be longer than the frame, and may
+    // overflow although the frame time does not. That error is the input's, hence UserError.
     queued = sim::add_ticks(queued, node.queued);
     require_equal(node.taken + node.made, node.passed_on + node.ended, "what comes to a node leaves it");
     sim::merge(sum, node);

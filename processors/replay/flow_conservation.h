@@ -1,12 +1,12 @@
-// The laws that the schemes in which rays move obey beside those of every scheme.
+// The laws of the schemes in which rays move, in addition to those of every scheme.
 #pragma once
 
 #include "processors/replay/replay.h"
 
 namespace marti::processors {
 
-/// Throws InternalError unless every camera ray was sent once, rays made have ended, the nodes together took
-/// exactly the steps of the log, every contribution was collected, and every message sent went through a
+/// Throws InternalError unless every camera ray was sent once, all rays made have ended, the nodes together
+/// took exactly the steps of the log, every contribution was collected, and every message sent went through a
 /// network.
 void check_flow_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result);
 

@@ -42,7 +42,7 @@ MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
   }
   nodes->start(options.start_seed);
-  // Every event moves a ray on, or is the only one of a node or a cluster that finds nothing to do.
+  // No limit: an event moves a ray on, or is the only one at a node or cluster that finds nothing to do.
   engine.run(std::numeric_limits<std::uint64_t>::max());
   nodes->finish();
 

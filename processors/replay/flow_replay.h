@@ -1,4 +1,4 @@
-// What the replays of the schemes in which rays move have in common.
+// The common part of the replays of all schemes in which rays move.
 #pragma once
 
 #include <functional>
@@ -11,8 +11,8 @@ namespace marti::processors {
 
 using MakeFlowNodes = std::function<std::unique_ptr<FlowNodes>(const FlowParts&)>;
 
-/// Times a frame on such nodes, with at most `limit` rays in flight in each cluster, and checks the laws of
-/// the result. Throws as replay() does.
+/// Times a frame on nodes made by `make`, with at most `limit` rays in flight in each cluster, and checks the
+/// laws of the result. Throws as replay() does.
 [[nodiscard]] MachineResult replay_flow(const WorkLog& log, const MachineConfig& config,
                                         const ReplayOptions& options, std::uint32_t limit,
                                         const MakeFlowNodes& make);

@@ -20,7 +20,7 @@ std::uint64_t tag_bytes(const memory::CacheConfig& cache) {
 }  // namespace
 
 std::uint64_t host_bytes(const MachineConfig& config) {
-  // What a node counts, while it runs and in the result, and its cursor, event and place in the order.
+  // A node's counts, while it runs and in the result, and its cursor, event and place in the posting order.
   constexpr std::uint64_t bytes_a_node = 2 * sizeof(NodeStatistics) + 160;
   std::uint64_t tags = 0;
   if (config.cache.organisation == CacheOrganisation::unified) {
@@ -43,7 +43,7 @@ std::uint64_t host_bytes(const MachineConfig& config) {
              config.clusters * memory::network_bytes(config.network, config.nodes);
   }
   if (config.scheme != Scheme::image) {
-    constexpr std::uint64_t bytes_a_ray = 96;  // with its part of its pixel's tree
+    constexpr std::uint64_t bytes_a_ray = 96;  // including its part of its sample's tree
     const std::uint32_t queue = config.scheme == Scheme::space ? config.space.queue : config.pipeline.queue;
     homes += config.clusters * memory::network_bytes(config.network, config.nodes) +
              config.all_nodes() * bytes_a_ray * (1 + std::uint64_t{queue});

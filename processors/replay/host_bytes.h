@@ -1,4 +1,4 @@
-// What simulating a machine takes of the host's memory.
+// The host memory that simulating a machine takes.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace marti::processors {
 
-/// Host bytes that a replay of the machine takes for its nodes and their tags, roughly.
+/// Host bytes that a replay of the machine takes for its nodes and their tags, approximately.
 [[nodiscard]] std::uint64_t host_bytes(const MachineConfig& config);
 
 }  // namespace marti::processors

@@ -21,7 +21,7 @@ namespace marti::processors {
 
 namespace {
 
-// How the tree is built; nothing when it is given.
+// The plan by which the tree is built; std::nullopt when the tree is given.
 std::optional<TreePlan> plan_of(const WorkLog& log, const MachineConfig& config,
                                 const ReplayOptions& options) {
   if (config.build.sharing == Sharing::given) {
@@ -40,7 +40,7 @@ std::optional<TreePlan> plan_of(const WorkLog& log, const MachineConfig& config,
   return plan;
 }
 
-// Decides what is left out, and enters it.
+// Decides what the replay leaves out, and sets `input` accordingly.
 LeftOut leave_out(const ReplayOptions& options, ReplayInput& input) {
   LeftOut left;
   if (options.step_by_step || options.with_contexts || options.stripped != nullptr) {
@@ -54,7 +54,7 @@ LeftOut leave_out(const ReplayOptions& options, ReplayInput& input) {
         memory::shape_of(config.cache.cache).lines() * sizeof(std::uint32_t) * config.all_nodes();
     left.line_set_bytes = (input.line_set + 7) / 8 * config.all_nodes();
   }
-  // Who watches is told of each read; what is not exact has its own way with events.
+  // Observers need every read. Replays with a sample or a quantum need the events.
   const bool plain = options.observer == nullptr && options.sample == nullptr && options.quantum <= 1;
   if (!options.keep_read_events && plain && why_read_events(config) == nullptr) {
     input.own_reads = memory::ideal_read(config.interconnect);

@@ -25,13 +25,13 @@ namespace marti::processors {
 class Observer;
 class StrippedLog;
 
-/// What a cluster's distributed memory counted beside what every interconnect does.
+/// What a cluster's distributed memory counted in addition to the counts of every interconnect.
 struct DistributedResult {
   memory::DistributedStatistics accesses;
   memory::NetworkStatistics network;
 };
 
-/// What one cluster's interconnect and banks counted. Of a distributed memory: its network and each node's
+/// What one cluster's interconnect and banks counted. For a distributed memory: its network and each node's
 /// memory.
 struct ClusterResult {
   memory::InterconnectStatistics interconnect;
@@ -39,7 +39,7 @@ struct ClusterResult {
   std::optional<DistributedResult> distributed{};
 };
 
-/// A timed frame. All figures are integers; ratios are left to whoever prints them.
+/// A timed frame. All figures are integers; ratios are computed where they are printed.
 struct MachineResult {
   sim::Ticks end = 0;  ///< when the last node and the last posted write are done: the frame time
   std::vector<NodeStatistics> nodes;
@@ -49,16 +49,16 @@ struct MachineResult {
   FlowResult flow;                            ///< empty with the image scheme
   ContextResult contexts;                     ///< empty with one context and no prefetch
   SecondLevelResult l2;                       ///< empty without a second level
-  CacheCountResult counts;                    ///< what MachineConfig::count asks for
-  std::uint64_t packets = 0;                  ///< that were handed out
-  std::uint64_t pixels = 0;                   ///< image scheme: of these packets
-  std::vector<PacketFigures> packet_figures;  ///< of a sample's packets, in its order; else empty
-  std::uint64_t database_bytes = 0;           ///< of one copy, as the frame begins
+  CacheCountResult counts;                    ///< the counts that MachineConfig::count asks for
+  std::uint64_t packets = 0;                  ///< number handed out
+  std::uint64_t pixels = 0;                   ///< image scheme: number of pixels in these packets
+  std::vector<PacketFigures> packet_figures;  ///< with a sample: of its packets, in order; else empty
+  std::uint64_t database_bytes = 0;           ///< of one copy, when the frame begins
   std::uint64_t copies = 0;                   ///< one for each cluster, or for each node when replicated
   std::uint64_t events = 0;
   LeftOut left_out;
   std::size_t host_bytes_per_node = 0;
-  sim::Ticks unloaded_miss = 0;  ///< a miss that meets no other transaction
+  sim::Ticks unloaded_miss = 0;  ///< time of a miss that meets no other transaction
 
   [[nodiscard]] StepCounts steps() const;
   [[nodiscard]] ReferenceCounts references() const;
@@ -68,23 +68,24 @@ struct MachineResult {
 struct ReplayOptions {
   bool step_by_step = false;     ///< an event for every reference instead of running ahead; same result
   std::uint64_t start_seed = 0;  ///< order in which the nodes' first events are posted; same result
-  /// What of the tree is there when the frame begins, one entry a node, instead of what MachineConfig::build
-  /// says; its `sharing` must not be `given`, and with `none` no branch may be lazy. Empty: what it says.
+  /// The state of each branch when the frame begins, one entry a tree node, instead of what
+  /// MachineConfig::build says; its `sharing` must not be `given`, and with `none` no branch may be lazy.
+  /// Empty: as it says.
   std::vector<BranchStart> starts{};
-  bool report_built = false;     ///< fill BuildResult::built; empty all the same when the tree is given
-  Observer* observer = nullptr;  ///< watches (processors/walk/observer.h); same result
-  /// Walked in the log's place: made of `log` for a machine of the same StrippedLog::key_of; same result.
+  bool report_built = false;     ///< fill BuildResult::built, unless the tree is given
+  Observer* observer = nullptr;  ///< see processors/walk/observer.h; same result
+  /// Walked in place of `log`, from which it was made for a machine of the same key_of; same result.
   const StrippedLog* stripped = nullptr;
-  /// Look tags up, and make an event of each read, even where left_out.h says that the outcome is known;
-  /// same result but for `events` and `left_out`.
+  /// Look up tags, and post an event for each read, even where left_out.h says that the outcome is known;
+  /// same result except for `events` and `left_out`.
   bool keep_lookups = false;
   bool keep_read_events = false;
   /// Only these packets are handed out; the result is that of a frame which has no others. For the image
   /// scheme with a given tree, dynamic assignment, one context, and no second level of caches, `stripped` or
   /// counting of more than hits and misses (check_sampled).
   const PacketSample* sample = nullptr;
-  /// Not exact (sim::Engine::relax): what is first come, first served, serves whoever's turn it is. For a
-  /// machine that check_relaxed() lets pass. 0 or 1: exact.
+  /// Not exact (sim::Engine::relax): where first come is first served, requests of one quantum may be served
+  /// in another order. For machines that pass check_relaxed(). 0 or 1: exact.
   sim::Ticks quantum = 0;
   bool with_contexts = false;  ///< with a given tree: nodes that can hold several contexts, even for one;
                                ///< same result
@@ -102,10 +103,10 @@ void check_sampled(const MachineConfig& config);
 /// Throws UserError with the reason when the machine's components need events in their exact order.
 void check_relaxed(const MachineConfig& config);
 
-/// The conservation laws that every result must obey: each node's time adds up to the end; every pixel is
-/// written once, or where rays move, every ray of the log is made, traced and ended once, and every message
-/// arrives; what the nodes waited is what the interconnect and the banks made them wait; what was built
-/// is what is there.
+/// The conservation laws that every result must obey. Each node's time adds up to the end. Every pixel is
+/// written once; where rays move, every ray of the log is made, traced and ended once and every message
+/// arrives. The nodes' waits are those that the interconnect and the banks caused. The counts of what was
+/// built agree with the trees that exist.
 void check_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result);
 
 }  // namespace marti::processors

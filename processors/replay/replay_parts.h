@@ -1,4 +1,4 @@
-// What the replays of all schemes set up in the same way.
+// The common set-up of the replays of all schemes.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,12 @@ namespace marti::processors {
 /// Each cluster's shared memory.
 using Interconnects = std::vector<std::unique_ptr<memory::Interconnect>>;
 
-/// Builds the memory systems of all clusters, whose own events are of `memory_class`, and connects the nodes
-/// to them.
+/// Builds the memory systems of all clusters and connects the nodes to them. `memory_class` is the class of
+/// the memory systems' own events.
 [[nodiscard]] Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine,
                                            std::uint8_t memory_class, NodeArray& nodes);
 
-/// What every scheme's result has: the nodes after NodeArray::finish(), the memory, the database.
+/// The part of the result that all schemes have: nodes after NodeArray::finish(), memory, database.
 [[nodiscard]] MachineResult common_result(const MachineConfig& config, const sim::Engine& engine,
                                           const NodeArray& nodes, const Interconnects& interconnects,
                                           const memory::Layout& layout);

@@ -19,10 +19,10 @@ std::uint32_t admission_limit(const MachineConfig& config) {
 }
 
 MachineResult replay_space(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
-  // Each node reads its own memory, as it does where the database is replicated.
+  // Each node reads its own memory, as with a replicated database.
   MachineConfig own_memories = config;
   own_memories.placement = Placement::replicated;
-  own_memories.interconnect.kind = memory::InterconnectKind::ideal;  // there is nothing behind it
+  own_memories.interconnect.kind = memory::InterconnectKind::ideal;  // no interconnect is used
   SpacePlan plan;
   const auto make = [&](const FlowParts& parts) {
     plan = plan_space(log, own_memories, parts.input.layout);

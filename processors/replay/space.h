@@ -3,13 +3,13 @@
 // image synthesis (SIGGRAPH 1984), and Cleary, Wyvill, Birtwistle, Vatti, Multiprocessor ray tracing (CGF
 // 5(1), 1986).
 //
-// A ray is a message. Its steps are taken at a node until the next one reads a tree node that another has;
-// the ray goes there then. Branches above the regions are read wherever the ray is. A node takes the rays
-// made at its hit points first, the last made point's first, then those of its queue in the order of their
-// arrival. What rays add to a pixel goes to the host, so nothing waits for anything to come back.
+// A ray is a message. A node takes the ray's steps until the next one reads a tree node that another node
+// holds; the ray is then sent there. Branches above the regions are read wherever the ray is. A node first
+// takes the rays made at its hit points, those of the last point first, then those of its queue in the order
+// of arrival. What rays add to a pixel is sent to the host, so no node waits for a reply.
 //
-// Nothing can deadlock: a ray for which the next node has no room is set aside in the memory of the node
-// where it is, so no node ever waits with a ray in hand (docs/space.md).
+// Deadlock is impossible: a ray for which the next node has no room is set aside in the memory of the node
+// where it is, so no node waits while it holds a ray (docs/space.md).
 #pragma once
 
 #include "processors/replay/replay.h"
@@ -22,7 +22,7 @@ namespace marti::processors {
 [[nodiscard]] MachineResult replay_space(const WorkLog& log, const MachineConfig& config,
                                          const ReplayOptions& options = {});
 
-/// The most rays that the host lets be in flight in each cluster when it sends one more.
+/// The host sends a camera ray into a cluster only while fewer than this many rays are in flight there.
 [[nodiscard]] std::uint32_t admission_limit(const MachineConfig& config);
 
 }  // namespace marti::processors

@@ -1,5 +1,5 @@
-// Closed queueing networks: what is known of a fixed number of customers that go round between a delay and
-// some queues, without simulating them.
+// Closed queueing networks: mean values and bounds, without simulation, for a fixed number of customers that
+// circulate between a delay and some queues.
 //
 // Sources: M. Reiser, S. S. Lavenberg, Mean-value analysis of closed multichain queueing networks, JACM
 // 27(2), 1980 (exact mean values); P. Schweitzer, Approximate analysis of multiclass closed networks of
@@ -21,8 +21,8 @@ struct ClosedNetwork {
 
   [[nodiscard]] double demand() const;   ///< D, their sum
   [[nodiscard]] double largest() const;  ///< D_max; 0 without queues
-  /// N* = (D + Z) / D_max, the number of customers from which on the busiest queue limits; nothing when
-  /// there is no queue with a demand.
+  /// N* = (D + Z) / D_max, the number of customers from which on the busiest queue limits throughput;
+  /// std::nullopt when no queue has a demand.
   [[nodiscard]] std::optional<double> saturation() const;
 };
 
@@ -31,13 +31,13 @@ struct ThroughputRange {
   double high = 0.0;
 };
 
-// All of these need D + Z > 0.
+// All of the following need D + Z > 0.
 
-/// N / (N D + Z) and min(1 / D_max, N / (D + Z)). Service first come, first served lets nothing outside it
-/// happen, whatever the distributions are.
+/// N / (N D + Z) and min(1 / D_max, N / (D + Z)). The throughput of queues that serve first come, first
+/// served lies between them, whatever the distributions are.
 [[nodiscard]] ThroughputRange asymptotic_bounds(const ClosedNetwork& network);
 
-/// Narrower; they hold for networks with a product form, of which exponential service is one.
+/// Narrower than asymptotic bounds; for networks with a product form, such as exponential service.
 [[nodiscard]] ThroughputRange balanced_job_bounds(const ClosedNetwork& network);
 
 struct MeanValues {

@@ -61,7 +61,7 @@ struct AttributionCounts {
 };
 static_assert(sim::declares_every_member<AttributionCounts>());
 
-/// One cell that is not empty.
+/// The counts of one combination of record kind, level, ray kind and bounce that occurred.
 struct AttributionRow {
   memory::RecordKind record = memory::RecordKind::node;
   std::uint32_t level = 0;

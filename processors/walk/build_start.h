@@ -1,5 +1,5 @@
-// What of a tree is there when the frame begins: for each branch whether it is kept from before, split
-// beforehand, or left to whoever needs it first.
+// Which parts of a tree exist when the frame begins: each branch is kept from before, split before the frame,
+// or left to the node that needs it first.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +10,21 @@
 
 namespace marti::processors {
 
-/// kept: its children are there and cost nothing. eager: it is split before the frame, and paid. lazy: it is
-/// a P node, a list of primitives, until somebody needs its children.
+/// kept: its children exist and cost nothing. eager: it is split before the frame, and the time counts. lazy:
+/// it is a P node, a list of primitives, until some node needs its children.
 enum class BranchStart : std::uint8_t { kept, eager, lazy };
 
-/// One entry for each node of the tree; those of leaves say nothing. All branches are kept when the tree is
-/// given. Throws UserError, naming build.sharing, for a structure that is not built by splitting nodes.
+/// One entry for each node of the tree, without meaning for leaves. With a given tree all branches are kept.
+/// Throws UserError, naming build.sharing, for a structure that is not built by splitting nodes.
 [[nodiscard]] std::vector<BranchStart> branch_starts(const accel::Topology& topology,
                                                      const BuildConfig& config);
 
-/// The deepest level whose nodes the initial tree holds: its branches of that level are P nodes. One level
-/// more than the tree has when the whole tree is initial.
+/// The deepest level whose nodes the initial tree holds; branches on that level are P nodes. When the whole
+/// tree is initial: one more than the number of levels.
 [[nodiscard]] std::uint32_t initial_level(const accel::Topology& topology, const BuildConfig& config);
 
-/// Throws UserError unless `starts` fits the tree: one entry a node, and below a lazy branch only lazy ones.
-/// Throws it too when something is to be built and the topology does not say what splitting takes.
+/// Throws UserError unless `starts` fits the tree: one entry a node, and only lazy branches below a lazy one.
+/// Also throws when something is to be built and the topology lacks the work that splitting takes.
 void check_starts(const accel::Topology& topology, const std::vector<BranchStart>& starts);
 
 }  // namespace marti::processors

@@ -11,7 +11,7 @@ namespace marti::processors {
 
 namespace {
 
-// The private first-level caches of a node: how many lines each has.
+// The number of lines of each private first-level cache of a node.
 std::vector<std::uint64_t> lines_of_caches(const MachineConfig& config) {
   std::vector<std::uint64_t> lines;
   if (config.cache.organisation == CacheOrganisation::unified) {
@@ -28,7 +28,7 @@ std::vector<std::uint64_t> lines_of_caches(const MachineConfig& config) {
 
 CacheCounting::CacheCounting(const MachineConfig& config, std::uint64_t lines) {
   const std::vector<std::uint64_t> caches = lines_of_caches(config);
-  // A bit for each line and node and what it is kept for, and a hashed line of a fully associative cache.
+  // A bit for each line and node for each count that is kept, and a hashed line of a fully associative cache.
   std::uint64_t bytes = config.count.sharing ? lines / 8 : 0;
   if (config.count.miss_classes) {
     for (const std::uint64_t cache_lines : caches) {

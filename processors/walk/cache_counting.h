@@ -1,4 +1,4 @@
-// Counts what a run is asked to count about caches beside hits and misses.
+// Counts of the caches beyond hits and misses, as far as the configuration asks for them.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace marti::processors {
 
-/// What was asked for and found; the rest has no value.
+/// The counts that were asked for; the others have no value.
 struct CacheCountResult {
   using ByClass = std::array<std::int64_t, memory::miss_classes>;
   std::optional<std::array<ByClass, memory::record_kinds>> miss_classes{};
@@ -24,15 +24,15 @@ struct CacheCountResult {
 
 class CacheCounting {
  public:
-  /// `lines` is one past the last line of memory. Throws UserError when the host's memory that the counting
-  /// may take is beyond `most_bytes`.
+  /// `lines` is one past the last line of memory. Throws UserError when the counting may take more than
+  /// `most_bytes` of the host's memory.
   CacheCounting(const MachineConfig& config, std::uint64_t lines);
 
-  /// A reference of a node to a line of one of its caches (0 unless they are split).
+  /// Counts a reference of a node to a line of its cache number `cache` (0 unless the caches are split).
   void refer(std::uint32_t node, std::size_t cache, memory::RecordKind record, std::uint32_t line,
              Origin origin, bool hit);
   void second_level_hit(memory::RecordKind record, Origin origin);
-  /// The node waited for a miss.
+  /// Counts the time that a node waited for a miss.
   void wait(memory::RecordKind record, Origin origin, const memory::Service& service);
 
   [[nodiscard]] CacheCountResult result() const;

@@ -1,4 +1,4 @@
-// What the nodes' contexts and prefetches did.
+// What is counted of the nodes' contexts and prefetches.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ struct ContextCounts {
 static_assert(sim::declares_every_member<ContextCounts>());
 
 struct ContextResult {
-  std::vector<ContextCounts> nodes;  ///< one a processor node; empty with one context and no prefetch
+  std::vector<ContextCounts> nodes;  ///< one for each processor node; empty with one context and no prefetch
 
   [[nodiscard]] ContextCounts counts() const {
     ContextCounts sum;

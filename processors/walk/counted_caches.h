@@ -1,5 +1,5 @@
-// The caches of nodes that count more than hits and misses, for every kind of cache: slower and general. Hits
-// and misses are those of node_caches.h.
+// The caches of nodes that count more than hits and misses. One class for every kind of cache, slower than
+// those of node_caches.h; hits and misses are the same.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// The private caches of nodes with contexts or prefetches: the same tags, and beside them the lines that are
-// still under way.
+// The private caches of nodes with contexts or prefetches: tags as without them, and in addition the lines
+// that are still on their way from memory.
 #pragma once
 
 #include <utility>
@@ -30,7 +30,7 @@ class GuardedCaches {
    public:
     View(GuardedCaches& all, std::uint32_t node) : all_(all), node_(node), tags_(all.caches_.view(node)) {}
 
-    /// As UnifiedCaches::View::access.
+    /// Returns what UnifiedCaches::View::access does.
     bool access(memory::RecordKind kind, std::uint32_t line) const {
       const bool hit = tags_.access(kind, line);
       if constexpr (present) {
@@ -40,8 +40,8 @@ class GuardedCaches {
       }
       return hit;
     }
-    /// The transaction of the node that brings the line when it is in the cache but its data have not come by
-    /// `time`; else LinesUnderWay::none.
+    /// The node's transaction that brings the line, when the line's tag is in the cache but its data have not
+    /// arrived by `time`; else LinesUnderWay::none.
     [[nodiscard]] std::uint32_t awaits(memory::RecordKind kind, std::uint32_t line, sim::Ticks time) const {
       if constexpr (present) {
         const std::uint32_t slot = all_.lines_[node_].find(key(kind, line), time);
@@ -51,7 +51,7 @@ class GuardedCaches {
       }
       return LinesUnderWay::none;
     }
-    /// Whether reading this branch would prefetch something.
+    /// Whether a child's record of this branch is missing, so that reading the branch prefetches something.
     [[nodiscard]] bool wants_children(std::uint32_t branch) const {
       return present && all_.prefetch_.children &&
              !all_.targets_.each_child_line(
@@ -60,8 +60,8 @@ class GuardedCaches {
     [[nodiscard]] bool holds(memory::RecordKind kind, std::uint32_t line) const {
       return tags_.holds(kind, line);
     }
-    /// A line that is not there takes its way now; transaction `slot` brings it, for a prefetch or a miss
-    /// that has brought the tag in already.
+    /// Starts to fetch a line by transaction `slot`. prefetch() is for a line that the cache does not hold
+    /// and brings its tag in; begin() is for a line whose tag is in already, as after a miss.
     void prefetch(memory::RecordKind kind, std::uint32_t line, std::uint32_t slot, sim::Ticks time) const {
       (void)tags_.access(kind, line);
       ++counts().issued;
@@ -86,7 +86,7 @@ class GuardedCaches {
   [[nodiscard]] View view(std::uint32_t node) { return {*this, node}; }
 
   [[nodiscard]] const PrefetchLines& targets() const { return targets_; }
-  /// After the run: what each node counted. Prefetched lines nobody asked for are useless.
+  /// What each node counted, after the run. Prefetched lines that were never referenced count as useless.
   [[nodiscard]] std::vector<ContextCounts> counts() const {
     std::vector<ContextCounts> counts = counts_;
     for (std::size_t node = 0; node < lines_.size(); ++node) {

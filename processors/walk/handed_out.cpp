@@ -5,8 +5,8 @@ namespace marti::processors {
 void HandedOut::begin(const ReplayInput& input) {
   log_ = &input.log;
   config_ = input.config;
-  config_.placement = Placement::shared;  // every miss is to stop a walk,
-  config_.l2 = {};                        // and none is to be served by a second level
+  config_.placement = Placement::shared;  // so that every miss stops a walk,
+  config_.l2 = {};                        // and no second level serves it
   layout_ = input.layout;
   packets_ = input.packets;
   node_rank_.assign(input.node_rank.begin(), input.node_rank.end());

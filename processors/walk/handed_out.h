@@ -1,5 +1,5 @@
-// Which node traced which packets: learnt by watching a replay, so that each node's part of the log can be
-// gone through again when the replay is over.
+// Which node traced which packets, recorded while a machine is replayed. Each node's part of the log can then
+// be walked again when the replay is over.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace marti::processors {
 
-/// With dynamic assignment the packets of a node depend on the whole machine. Only for the image scheme with
-/// a given tree: where the tree is built, other nodes decide what a node reads.
+/// Only for the image scheme with a given tree: where the tree is built, other nodes decide what a node
+/// reads. With dynamic assignment a node's packets depend on the whole machine, hence the recording.
 class HandedOut : public Observer {
  public:
   void begin(const ReplayInput& input) override;
@@ -24,13 +24,13 @@ class HandedOut : public Observer {
   void began_packet(std::uint32_t node, std::uint64_t packet, sim::Ticks start) override;
 
   [[nodiscard]] std::uint32_t nodes() const { return static_cast<std::uint32_t>(packets_of_.size()); }
-  /// The numbers of a node's packets, in its order.
+  /// The numbers of a node's packets, in the order in which it traced them.
   [[nodiscard]] std::span<const std::uint64_t> packets_of(std::uint32_t node) const {
     return packets_of_[node];
   }
 
-  /// What a walk over the log needs, of a machine whose references all go to its first-level caches. The log
-  /// must still be there; it refers to this object.
+  /// The input of a walk over the log, for a machine whose references all go to its first-level caches. It
+  /// refers to this object and to the log, which must still exist.
   [[nodiscard]] ReplayInput input(bool step_by_step) const;
 
  private:
@@ -42,7 +42,7 @@ class HandedOut : public Observer {
   std::vector<std::vector<std::uint64_t>> packets_of_;
 };
 
-/// use(cursor, x, y) for each pixel of some packets, in order, with a cursor at the start of its words.
+/// Calls use(cursor, x, y) for each pixel of the packets, in order; the cursor is at the start of its words.
 template <class Use>
 void for_each_pixel(const ReplayInput& input, std::span<const std::uint64_t> packets, const Use& use) {
   for (const std::uint64_t number : packets) {

@@ -1,4 +1,4 @@
-// How the laws that every result must obey are checked.
+// How the laws that every result must obey (conservation laws) are checked.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ inline void require(bool holds, std::string_view law) {
   }
 }
 
-/// The same of two figures that are to be equal; the message has both.
+/// Throws InternalError with both figures, naming the law, unless they are equal.
 inline void require_equal(std::int64_t left, std::int64_t right, std::string_view law) {
   if (left != right) {
     throw sim::InternalError("a conservation law is broken: " + std::string(law) + " (" +

@@ -8,7 +8,7 @@ namespace marti::processors {
 
 namespace {
 
-// Nodes that other code walks, which has no such way.
+// Why the nodes of this machine are walked by code that cannot leave anything out; null when they are not.
 const char* why_other_nodes(const MachineConfig& config) {
   if (config.scheme != Scheme::image) {
     return "rays move between nodes";
@@ -31,7 +31,7 @@ std::uint64_t lines_of(const memory::Layout& layout, std::uint32_t line_bytes) {
   memory::Address end = 0;
   for (std::size_t i = 0; i < memory::record_kinds; ++i) {
     const auto kind = static_cast<memory::RecordKind>(i);
-    if (kind != memory::RecordKind::pixel) {  // pixels pass by the caches
+    if (kind != memory::RecordKind::pixel) {  // pixels do not go through the caches
       end = std::max(end, layout.base(kind) + layout.section_bytes(kind));
     }
   }

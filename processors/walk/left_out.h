@@ -1,9 +1,9 @@
-// What a replay need not simulate because its outcome is known before.
+// What a replay need not simulate because its outcome is known beforehand.
 //
-// A cache with room for every line of the database in the line's own set never replaces one: a reference
-// misses when it is the node's first to that line, whatever the ways and the replacement are, and a bit a
-// line takes the place of the tags. Over an ideal interconnect a read takes the same time always and nobody
-// waits: a node goes on through its misses by itself, without an event.
+// A cache that has room for every line of the database in the line's own set never replaces one: a reference
+// misses when it is the node's first to that line, whatever the ways and the replacement are. A bit for each
+// line takes the place of the tags. Over an ideal interconnect a read always takes the same time and nobody
+// waits: a node continues through its misses by itself, without an event.
 #pragma once
 
 #include <cstdint>
@@ -19,20 +19,20 @@ namespace marti::processors {
 struct LeftOut {
   bool lookups = false;              ///< tags and their replacement
   bool read_events = false;          ///< an event for each read
-  std::int64_t references = 0;       ///< that were not looked up in tags
-  std::int64_t reads = 0;            ///< that took no event
-  std::uint64_t tag_bytes = 0;       ///< of the host's memory that the tags would have taken
-  std::uint64_t line_set_bytes = 0;  ///< that was taken instead
+  std::int64_t references = 0;       ///< references that were not looked up in tags
+  std::int64_t reads = 0;            ///< reads that took no event
+  std::uint64_t tag_bytes = 0;       ///< host memory that the tags would have taken
+  std::uint64_t line_set_bytes = 0;  ///< host memory that was taken instead
 };
 
-/// Lines of the database that caches of the machine may be asked for, from line 0 on.
+/// Number of lines of the database, from line 0 on, that the machine's caches may be asked for.
 [[nodiscard]] std::uint64_t lines_of(const memory::Layout& layout, std::uint32_t line_bytes);
 
 /// Why tags must be looked up on this machine; null when they need not. Only nodes of the image scheme with
 /// one context, a given tree and a unified cache, which nobody counts in detail, can do without.
 [[nodiscard]] const char* why_lookups(const MachineConfig& config, const memory::Layout& layout);
 
-/// Why reads must be events on this machine; null when they need not. Likewise.
+/// Why reads must be events on this machine; null when they need not. The same nodes can do without.
 [[nodiscard]] const char* why_read_events(const MachineConfig& config);
 
 }  // namespace marti::processors

@@ -1,5 +1,5 @@
-// What a node with contexts or prefetches knows of its cache's lines beside their tags: which of them are
-// still on their way from memory, and which were prefetched and not asked for yet.
+// What a node with contexts or prefetches keeps of its cache's lines beside their tags: which of them are
+// still on their way from memory, and which were prefetched and have not been referenced yet.
 #pragma once
 
 #include <algorithm>
@@ -12,17 +12,17 @@
 
 namespace marti::processors {
 
-/// A time that has not come and is not known.
+/// The arrival time of data that have not arrived and whose time is not known.
 inline constexpr sim::Ticks never = INT64_MAX;
 
-/// Of one node. Times given must not decrease.
+/// The lines of one node. Times passed to it must not decrease.
 class LinesUnderWay {
  public:
   /// A line of one of the node's caches.
   using Key = std::uint64_t;
   static constexpr std::uint32_t none = 0xffffffffU;
 
-  /// The transaction that brings the line, when its data have not come by `time`; else `none`.
+  /// The transaction that brings the line, when its data have not arrived by `time`; else `none`.
   [[nodiscard]] std::uint32_t find(Key key, sim::Ticks time) {
     std::size_t at = 0;
     while (at < flights_.size()) {
@@ -37,13 +37,13 @@ class LinesUnderWay {
     }
     return none;
   }
-  /// Transaction `slot`, which has no other line under way, asks for the line at `time`. Should the line have
-  /// been on its way already and pushed out since, the new transaction is the one that brings it.
+  /// Transaction `slot`, which has no other line under way, asks for the line at `time`. It replaces an
+  /// earlier transaction for the line, if one is under way whose line has been pushed out since.
   void begin(Key key, std::uint32_t slot, sim::Ticks time) {
     std::erase_if(flights_, [&](const Flight& flight) { return flight.done <= time || flight.key == key; });
     flights_.push_back({key, never, slot});
   }
-  /// The data of transaction `slot` come at `done`.
+  /// The data of transaction `slot` arrive at `done`.
   void arrives(std::uint32_t slot, sim::Ticks done) {
     for (Flight& flight : flights_) {
       if (flight.slot == slot && flight.done == never) {
@@ -52,11 +52,11 @@ class LinesUnderWay {
     }
   }
 
-  /// A line is prefetched. True when it had been before, and was pushed out without a reference.
+  /// Notes that a line is prefetched. True when it was prefetched before and pushed out without a reference.
   bool mark(Key key) { return !unasked_.insert(key).second; }
-  /// A line is asked for. True when it was prefetched and not asked for since.
+  /// Notes that a line is referenced. True when it was prefetched and not referenced since.
   bool unmark(Key key) { return !unasked_.empty() && unasked_.erase(key) != 0; }
-  /// Prefetched lines that nobody has asked for.
+  /// Number of prefetched lines that have not been referenced.
   [[nodiscard]] std::size_t unasked() const { return unasked_.size(); }
 
  private:
@@ -65,7 +65,7 @@ class LinesUnderWay {
     sim::Ticks done = never;
     std::uint32_t slot = 0;
   };
-  std::vector<Flight> flights_;  // few, and those that have arrived go at the next look
+  std::vector<Flight> flights_;  // few; arrived ones are removed at the next look-up
   std::unordered_set<Key> unasked_;
 };
 

@@ -19,7 +19,7 @@ class LocalMemory {
     return {sim::add_ticks(now, sim::add_ticks(transfer, access_)), 0, transfer, 0, access_};
   }
 
-  /// The time that reading or writing `bytes` takes; adds it to `time`. Nobody else is in the way.
+  /// The time of reading or writing `bytes` without contention; also adds it to the activities of `time`.
   [[nodiscard]] sim::Ticks use(std::uint32_t bytes, TimeDivision& time) const {
     const sim::Ticks transfer = sim::multiply_ticks(beat_, (std::int64_t{bytes} + width_ - 1) / width_);
     time[static_cast<std::size_t>(Activity::transfer)] += transfer;

@@ -13,7 +13,7 @@
 namespace marti::processors {
 
 /// Where a node is in its packet: the pixel, the word of the pixel's log, and within a step either a line of
-/// a planned visit or a byte of a record with, for a leaf, the objects still to come.
+/// a planned visit, or a byte of a record and, for a leaf, the objects still to be tested.
 struct Cursor {
   sim::Ticks time = 0;
   const std::uint32_t* word = nullptr;
@@ -26,7 +26,7 @@ struct Cursor {
   const std::uint32_t* entry_end = nullptr;
   const std::uint32_t* tested = nullptr;  ///< of a mailed leaf: a bit for each entry; null: all are tested
   std::uint32_t entry_number = 0;         ///< of `entry` in the mailed leaf's list
-  std::uint32_t list_count = 0;   ///< entries of the current leaf's list, while its read is still to come
+  std::uint32_t list_count = 0;   ///< entries of the current leaf's list, as long as it is still to be read
   std::uint32_t tests_begun = 0;  ///< of the planned visit, by kind as in tests_of_kind
   std::uint32_t writes = 0;       ///< where the next pixel write goes in the write buffer
   std::uint32_t x = 0;
@@ -40,19 +40,19 @@ struct Cursor {
   static constexpr std::uint32_t no_branch = 0xffffffffU;
 };
 
-/// Why a walk stopped: after a hit (only without running ahead), at a miss, or at the end of its words. due,
-/// with guarded caches only: the reference that comes next is of a line that may be under way, or a branch
-/// was read whose children are to be prefetched.
+/// Why a walk stopped: after a hit (only without running ahead), at a miss, or at the end of its words. due
+/// occurs with guarded caches only: the next reference is to a line that may be under way, or a branch was
+/// read whose children are to be prefetched.
 enum class Stop : std::uint8_t { hit, miss, end, due };
 
 inline void spend(Cursor& cursor, sim::Ticks each, std::int64_t count) {
   cursor.time = sim::add_ticks(cursor.time, sim::multiply_ticks(each, count));
 }
 
-/// Brings the time of a planned visit up to `line`, before which `tests` tests have begun.
+/// Adds to the cursor's time that of a planned visit up to `line`, before which `tests` tests have begun.
 inline void settle_visit(const StepTicks& ticks, Cursor& cursor, const std::uint32_t* line,
                          std::uint32_t tests) {
-  // No kind has fewer than before, so the kinds' counts do not borrow from each other.
+  // The count of no kind decreases, so the subtraction of packed counts has no borrow between kinds.
   const std::uint32_t begun = tests - cursor.tests_begun;
   const std::uint32_t triangles = tests_of_kind(begun, accel::PrimitiveKind::triangle);
   const std::uint32_t spheres = tests_of_kind(begun, accel::PrimitiveKind::sphere);

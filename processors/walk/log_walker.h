@@ -1,5 +1,5 @@
-// Walks a node through its log: spends the compute cycles of each step, looks its references up in the
-// node's cache, and stops where the node needs something shared. It knows no event and no queue.
+// Walks a node through its log: spends the compute cycles of each step, looks its references up in the node's
+// cache, and stops where the node needs something shared. It does not depend on events or queues.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 
 namespace marti::processors {
 
-/// `Caches` is one of node_caches.h, those guarded (guarded_caches.h), or those that count
+/// `Caches` is a class of node_caches.h, one of these guarded (guarded_caches.h), or one that counts
 /// (counted_caches.h).
 template <class Caches>
 class LogWalker {
@@ -61,7 +61,7 @@ class LogWalker {
     return input_.log.pixel(x, y);
   }
 
-  /// Takes `node` on from its cursor. Without RunAhead it stops after every reference.
+  /// Continues `node` from its cursor. Without RunAhead it stops after every reference.
   template <bool RunAhead>
   Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
     VisitTally tally;
@@ -80,16 +80,16 @@ class LogWalker {
     return stop;
   }
 
-  /// Of the reads that a cluster's nodes have made by themselves.
+  /// Bytes of the reads that the nodes of a cluster have made without the interconnect.
   [[nodiscard]] std::int64_t own_read_bytes(std::uint32_t cluster) const { return own_read_bytes_[cluster]; }
-  /// The steps of a pixel are done; what is left is to convert and store it.
+  /// Ends a pixel whose steps are done: what is left is to convert and store it.
   void finish_pixel(Cursor& cursor, NodeStatistics& statistics) const {
     ++statistics.steps.pixels;
     spend(cursor, ticks_.pixel, 1);
   }
 
-  /// Address and bytes of the reference that missed: a whole line with a cache, else its own part of the
-  /// interleave unit.
+  /// Address and bytes of the reference that missed: a whole line with a cache, else the referenced bytes
+  /// within the interleave unit.
   [[nodiscard]] memory::Address missed_address(const Cursor& cursor) const {
     if (in_visit(cursor)) {
       return memory::Address{*cursor.line} << unit_shift_;
@@ -106,13 +106,13 @@ class LogWalker {
   [[nodiscard]] memory::RecordKind missed_kind(const Cursor& cursor) const {
     return in_visit(cursor) ? kind_of_label(label_of(cursor.line)) : cursor.kind;
   }
-  /// What the wait for the reference that missed was for, where that is counted.
+  /// Counts what the wait for the reference that missed was for, where that is counted.
   void note_wait(const Cursor& cursor, const memory::Service& service) const {
     if constexpr (counted) {
       caches_.counting().wait(cursor.kind, cursor.origin, service);
     }
   }
-  /// The reference that missed has been served.
+  /// Moves the cursor past the reference that missed, which has been served.
   void pass(Cursor& cursor) const {
     if (in_visit(cursor)) {
       ++cursor.line;
@@ -161,7 +161,7 @@ class LogWalker {
     return Stop::end;
   }
 
-  // A branch's record has been read: true when the node has to stop to prefetch its children.
+  // True when a branch's record was read and the node has to stop to prefetch the branch's children.
   static bool branch_read(View cache, Cursor& cursor, Stop& stop) {
     if constexpr (guarded) {
       if (cursor.branch != Cursor::no_branch && cache.wants_children(cursor.branch)) {
@@ -173,8 +173,8 @@ class LogWalker {
     return false;
   }
 
-  // Takes all planned visits up to the next step that has to be taken record by record, with what it needs
-  // in registers. False when the node has to stop.
+  // Takes all planned visits up to the next step that has to be taken record by record; its working values
+  // are in registers. False when the node has to stop.
   bool visit_planned(View cache, Cursor& cursor, NodeStatistics& statistics, VisitTally& tally, Stop& stop) {
     const std::uint32_t* word = cursor.word;
     const std::uint32_t* const word_end = cursor.word_end;
@@ -192,7 +192,7 @@ class LogWalker {
       while (line != end && look_up(cache, line)) {
         ++line;
       }
-      // Lines count as hits until they miss.
+      // All lines of a visit are counted as hits; miss() corrects the count.
       sum.counts += visit.counts;
       if (++sum.visits == most_summed_visits) [[unlikely]] {
         flush(sum, statistics);
@@ -221,15 +221,15 @@ class LogWalker {
 
   [[gnu::always_inline]] bool look_up(View cache, const std::uint32_t* line) const {
     if constexpr (counted) {
-      return cache.access(kind_of_label(label_of(line)), *line, Origin{});  // never: nothing is planned then
+      return cache.access(kind_of_label(label_of(line)), *line, Origin{});  // not reached: nothing is planned
     } else if constexpr (Caches::by_kind) {
       return cache.access(kind_of_label(label_of(line)), *line);
     } else {
-      return cache.access(memory::RecordKind::node, *line);  // such caches do not look at the kind
+      return cache.access(memory::RecordKind::node, *line);  // such caches ignore the kind
     }
   }
 
-  // What is left of a planned visit after a miss.
+  // Takes the rest of a planned visit after a miss. False when the node has to stop.
   bool finish_visit(View cache, Cursor& cursor, NodeStatistics& statistics, Stop& stop) {
     const std::uint32_t* const end = cursor.line_end;
     while (cursor.line != end) {
@@ -285,7 +285,7 @@ class LogWalker {
     }
   }
 
-  // Reads what is left of the current record, unit by unit. False when the node has to stop.
+  // Reads the rest of the current record, unit by unit. False when the node has to stop.
   template <bool RunAhead>
   bool touch(View cache, Cursor& cursor, NodeStatistics& statistics, memory::RecordKind kind, Stop& stop) {
     while (cursor.at < cursor.end) {
@@ -317,8 +317,8 @@ class LogWalker {
     return true;
   }
 
-  // What is left of a leaf that is not planned: reading its list, then looking its objects' mailboxes up, if
-  // there are any, and testing them one by one.
+  // Takes the rest of a leaf that is not planned: reads its list, then tests its objects one by one, each
+  // after the look-up of its mailbox where there are mailboxes.
   template <bool RunAhead>
   bool finish_leaf(View cache, Cursor& cursor, NodeStatistics& statistics, Stop& stop) {
     if (cursor.list_count != 0) {
@@ -347,7 +347,7 @@ class LogWalker {
     return true;
   }
 
-  // Whether mailboxes left the entry at hand out; goes on to the next.
+  // Whether the mailboxes left the current entry's test out; moves on to the next entry.
   static bool left_out(Cursor& cursor) {
     if (cursor.tested == nullptr) {
       return false;
@@ -355,7 +355,7 @@ class LogWalker {
     return !tested_in_mask(cursor.tested, cursor.entry_number++);
   }
 
-  // A test's computing, at its price.
+  // Counts a test and spends its compute time.
   void begin_test(Cursor& cursor, StepCounts& steps, std::uint32_t primitive) const {
     cursor.time = sim::add_ticks(cursor.time, count_test(ticks_, input_.log.kind_of(primitive), steps));
   }
@@ -385,7 +385,7 @@ class LogWalker {
            finish_leaf<RunAhead>(cache, cursor, statistics, stop);
   }
 
-  // Any step, record by record: its compute cycles first, then its references.
+  // Takes any step record by record: its compute cycles first, then its references.
   template <bool RunAhead>
   bool take_step(View cache, Cursor& cursor, NodeStatistics& statistics, std::uint32_t word, Stop& stop) {
     const std::uint32_t operand = operand_of(word);
@@ -446,7 +446,7 @@ class LogWalker {
     return true;
   }
 
-  // Serves a miss behind which there is a second level. False when it needs the interconnect.
+  // Serves a miss of a machine with a second level. False when it needs the interconnect.
   bool serve(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
     const auto line = static_cast<std::uint32_t>(missed_address(cursor) >> unit_shift_);
     if (!second_level_.access(node, line, cursor.time, statistics.time)) {
@@ -461,7 +461,7 @@ class LogWalker {
     return true;
   }
 
-  // A read that asks nobody: of the node's own memory, or one that always takes the same time.
+  // A read without the interconnect: of the node's own memory, or one that always takes the same time.
   void read_alone(Cursor& cursor, NodeStatistics& statistics, std::uint32_t bytes) {
     const memory::Service service =
         own_read_bytes_.empty()
@@ -476,7 +476,7 @@ class LogWalker {
 
   ReplayInput input_;
   Caches caches_;
-  // Branches and leaves are the two lowest steps, so one comparison tells a planned step; nothing is planned
+  // Branches and leaves are the two lowest steps, so one comparison tells a planned step. plan_limit_ is 0
   // without a plan.
   static_assert(static_cast<std::uint32_t>(Step::branch) == 0 && static_cast<std::uint32_t>(Step::leaf) == 1);
   VisitPlan plan_;

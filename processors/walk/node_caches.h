@@ -1,4 +1,4 @@
-// The private caches of all nodes, as the node's inner loop sees them: one call that says hit or miss.
+// The private caches of all nodes, as the node's inner loop uses them: one call that returns hit or miss.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace marti::processors {
 /// Which of the split caches a record kind uses.
 inline constexpr std::array<std::uint8_t, memory::record_kinds> split_cache_of = {0, 1, 2, 3, 3, 3};
 
-/// One tag store, known when compiling, for a unified cache.
+/// Unified caches, with a tag store whose class is known at compile time.
 template <class Tags>
 class UnifiedCaches {
  public:
@@ -30,7 +30,7 @@ class UnifiedCaches {
     [[gnu::always_inline]] bool access(memory::RecordKind /*kind*/, std::uint32_t line) const {
       return tags_.access(line);
     }
-    /// The same, but a line that is not there is not brought in.
+    /// As access(), but a line that is missing is not brought in.
     [[gnu::always_inline]] bool touch(memory::RecordKind /*kind*/, std::uint32_t line) const {
       return tags_.touch(line);
     }
@@ -38,7 +38,7 @@ class UnifiedCaches {
     [[nodiscard]] bool holds(memory::RecordKind /*kind*/, std::uint32_t line) const {
       return tags_.holds(line);
     }
-    /// Takes a line out, whatever kinds of record it holds; how many copies there were.
+    /// Removes a line, whatever kinds of record it holds; returns how many copies there were.
     [[nodiscard]] std::int64_t remove(std::uint32_t line) const { return tags_.remove(line) ? 1 : 0; }
     static std::size_t cache_of(memory::RecordKind /*kind*/) { return 0; }
 
@@ -73,7 +73,7 @@ class AnyCaches {
       return std::count_if(tags_.begin(), tags_.end(),
                            [&](memory::TagArray& tags) { return tags.remove(node_, line); });
     }
-    /// Which of the node's caches a record kind uses: 0 of one, split_cache_of[kind] of four.
+    /// The number of the cache that a record kind uses: 0 with one cache, split_cache_of[kind] with four.
     [[nodiscard]] std::size_t cache_of(memory::RecordKind kind) const {
       return tags_.size() > 1 ? split_cache_of[static_cast<std::size_t>(kind)] : 0;
     }
@@ -102,7 +102,7 @@ class AnyCaches {
   std::vector<memory::TagArray> tags_;
 };
 
-/// Unified caches that never replace a line, as ReplayInput::line_set says.
+/// Unified caches that never replace a line: see ReplayInput::line_set.
 class RoomyCaches {
  public:
   static constexpr bool present = true;

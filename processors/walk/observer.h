@@ -1,6 +1,6 @@
-// Who watches a replay: time lines of the nodes, figures by pixel, which node traced which packet.
+// Observers of a replay: time lines of the nodes, figures by pixel, which node traced which packet.
 //
-// How a scheme's nodes call it, all with ReplayInput::observer, which is null when nobody watches:
+// How a scheme's nodes call ReplayInput::observer, which is null when there is no observer:
 //   - `spent` for every piece of a node's time, whenever the node's own time moves on: after it has worked
 //     until the next thing that is shared, after a read (`spent_reading`), and for every wait and the idle
 //     time at the end. Pieces of one node come in the order of time and without gaps from 0 to the end of the
@@ -8,7 +8,7 @@
 //   - `missed` for the cache misses of a pixel, at the latest when the pixel or ray is done with.
 //   - `began_packet` when a node begins a packet that the host gave it, by schemes that have packets.
 //   - `resumed_packet` when a node with several contexts goes back to a packet it has begun before.
-// Replay itself calls `begin` and `end`. Watching changes nothing that is simulated.
+// Replay itself calls `begin` and `end`. Observing changes nothing that is simulated.
 #pragma once
 
 #include <array>
@@ -42,8 +42,8 @@ inline constexpr std::array<std::string_view, node_states> node_state_names = {
     "working",   "interconnect_wait", "transfer",        "bank_wait",     "bank_access",
     "lock_wait", "message_wait",      "queue_full_wait", "dispatch_wait", "idle"};
 
-/// The pixel that a piece of time or a miss was for; `none` for work that is nobody's (building before the
-/// frame, waiting for a packet or a ray, idle).
+/// The pixel that a piece of time or a miss was for; `none` for work that belongs to no pixel (building
+/// before the frame, waiting for a packet or a ray, idle).
 struct PixelPlace {
   static constexpr std::uint32_t nowhere = 0xffffffffU;
   std::uint32_t x = nowhere;
@@ -53,12 +53,12 @@ struct PixelPlace {
   friend bool operator==(const PixelPlace&, const PixelPlace&) = default;
 };
 
-/// Calls of one replay come from one thread. An exception thrown here ends the replay.
+/// Called from one thread during a replay. An exception thrown here ends the replay.
 class Observer {
  public:
   virtual ~Observer() = default;
 
-  /// Before anything else; what `input` refers to lives until `end` has returned.
+  /// Called before anything else; what `input` refers to exists until `end` has returned.
   virtual void begin(const ReplayInput& /*input*/) {}
   /// Node `node` was in `state` from `from` to `to`, at least `from`.
   virtual void spent(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to,
@@ -69,12 +69,12 @@ class Observer {
   virtual void began_packet(std::uint32_t /*node*/, std::uint64_t /*packet*/, sim::Ticks /*start*/) {}
   /// What the node does from now on is for this packet, which it has begun before.
   virtual void resumed_packet(std::uint32_t /*node*/, std::uint64_t /*packet*/) {}
-  /// The frame took until `time`; nothing comes after it.
+  /// The frame took until `time`; called last.
   virtual void end(sim::Ticks /*time*/) {}
 };
 
-/// The pieces of a read that was asked for at `from`. Of a read's four parts only the lengths are known: they
-/// are told in the order waiting for the interconnect, waiting for the bank, bank, transfer.
+/// Reports the pieces of a read that was asked for at `from`. Only the lengths of a read's four parts are
+/// known: they are reported in the order waiting for the interconnect, waiting for the bank, bank, transfer.
 inline void spent_reading(Observer& observer, std::uint32_t node, const memory::Service& service,
                           sim::Ticks from, PixelPlace pixel) {
   sim::Ticks at = from;

@@ -1,4 +1,4 @@
-// Replaying some of a frame's packets only: which, with what warming of the caches, and what each took.
+// Replaying only some of a frame's packets: which ones, how caches are warmed, and what each packet took.
 //
 // What a node's caches hold when it begins a packet comes from the packets before it. Where those are left
 // out the caches are colder than in the whole frame, and misses are overestimated; so a node may first walk
@@ -23,16 +23,16 @@ class PacketSample {
  public:
   static constexpr std::uint64_t all_before = std::numeric_limits<std::uint64_t>::max();
 
-  /// `chosen` must be below `packets`, ascending, each once, and at least one; throws InternalError else. Of
-  /// the packets left out since its last one, a node warms its caches with at most `warm_up`, the last.
+  /// `chosen` must be below `packets`, ascending, each once, and at least one; throws InternalError else. A
+  /// node warms its caches with at most the last `warm_up` packets left out since its previous one.
   PacketSample(std::vector<std::uint64_t> chosen, std::uint64_t packets, std::uint64_t warm_up);
 
   [[nodiscard]] std::span<const std::uint64_t> chosen() const { return chosen_; }
   [[nodiscard]] bool has(std::uint64_t packet) const { return is_chosen_[packet]; }
 
-  /// use(packet), in ascending order, for what a node warms its caches with before packet `next`. Had every
-  /// packet been handed out, the node would have had every `nodes`-th or so. `last` is one past the node's
-  /// packet before, 0 when there is none.
+  /// Calls use(packet), in ascending order, for each packet that a node warms its caches with before packet
+  /// `next`: had every packet been handed out, about every `nodes`-th would have been the node's. `last` is
+  /// one past the node's previous packet, 0 when there is none.
   template <class Use>
   void for_each_warmed(std::uint64_t last, std::uint64_t next, std::uint64_t nodes, const Use& use) const {
     for (std::uint64_t back = std::min((next - last) / nodes, warm_up_); back > 0; --back) {
@@ -48,7 +48,7 @@ class PacketSample {
   std::uint64_t warm_up_;
 };
 
-/// What a packet took its node, from its start to the node's next request to the host.
+/// What a packet took at its node, from its start to the node's next request to the host.
 struct PacketFigures {
   sim::Ticks time = 0;
   std::int64_t references = 0;
@@ -56,10 +56,10 @@ struct PacketFigures {
   friend bool operator==(const PacketFigures&, const PacketFigures&) = default;
 };
 
-/// Takes the figures of each packet.
+/// Measures the figures of each packet.
 class PacketMeter {
  public:
-  /// With no packets it measures nothing.
+  /// With `packets` 0 it measures nothing.
   PacketMeter(std::uint64_t packets, std::size_t nodes)
       : figures_(packets), open_(packets == 0 ? 0 : nodes) {}
 
@@ -68,7 +68,7 @@ class PacketMeter {
     open_[node] = {
         true, packet, {start, statistics.references.references(), statistics.references.all_misses()}};
   }
-  /// The node asks for its next packet; nothing happens when it has had none.
+  /// The node asks for its next packet, which ends the one it has, if any.
   void end(std::uint32_t node, sim::Ticks now, const NodeStatistics& statistics) {
     const Open& open = open_[node];
     if (open.any) {

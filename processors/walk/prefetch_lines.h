@@ -1,4 +1,4 @@
-// Which lines a prefetch is after.
+// Which lines are prefetched.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,17 @@
 
 namespace marti::processors {
 
-/// Keeps references to what the input refers to.
+/// Keeps the references that the input holds.
 class PrefetchLines {
  public:
   /// `line_bytes` is a power of two.
   PrefetchLines(const ReplayInput& input, std::uint32_t line_bytes);
 
-  /// The line behind `line` when it holds bytes of the section of `kind`.
+  /// The line after `line`, when it holds bytes of the section of `kind`; else std::nullopt.
   [[nodiscard]] std::optional<std::uint32_t> next(memory::RecordKind kind, std::uint32_t line) const;
 
   /// Calls visit(line) for the lines of the records of a branch's children, in ascending order, until one
-  /// call gives false; gives what the last call gave, and true when there are no children.
+  /// call returns false; returns the last call's result, or true when there are no children.
   template <class Visit>
   bool each_child_line(std::uint32_t branch, Visit&& visit) const {
     const accel::TopologyNode& node = input_.log.topology.nodes[branch];

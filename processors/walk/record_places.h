@@ -1,4 +1,4 @@
-// Where the records of the database lie.
+// Where the records of the database lie in memory.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace marti::processors {
 
-/// Where the database's records lie; places what is built during the frame behind them. Throws UserError for
-/// a database too large for line numbers.
+/// The layout of the database's records; sets `plan` to the places of what is built during the frame, behind
+/// them. Throws UserError for a database too large for line numbers.
 [[nodiscard]] memory::Layout layout_of(const WorkLog& log, const MachineConfig& config,
                                        std::optional<TreePlan>& plan);
 
-/// The record number of each tree node; empty when that is its own number.
+/// The record number of each tree node; empty when the record number is the node number.
 [[nodiscard]] std::vector<std::uint32_t> node_ranks(const WorkLog& log, const MachineConfig& config);
 
 }  // namespace marti::processors

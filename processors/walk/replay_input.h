@@ -1,4 +1,4 @@
-// What all nodes of a replay share and none changes.
+// What all nodes of a replay share and no node changes.
 #pragma once
 
 #include <cstdint>
@@ -24,18 +24,18 @@ struct ReplayInput {
   const MachineConfig& config;
   const memory::Layout& layout;
   const PacketList& packets;
-  std::span<const std::uint32_t> node_rank;  ///< record number of each tree node; empty: its own number
+  std::span<const std::uint32_t> node_rank;  ///< record number of each tree node; empty: the node number
   bool step_by_step = false;                 ///< an event for every reference
   const TreePlan* tree = nullptr;            ///< how the tree is built; null when it is given
-  bool report_built = false;                 ///< say which branches are built at the end
-  Observer* observer = nullptr;              ///< who watches; null: nobody
+  bool report_built = false;                 ///< report at the end which branches are built
+  Observer* observer = nullptr;              ///< null: no observer
   const StrippedLog* stripped = nullptr;     ///< walked in the log's place; null: the log itself
   bool with_contexts = false;                ///< nodes that can hold several contexts, even for one
-  const PacketSample* sample = nullptr;      ///< `packets` are these of all; null: they are all
-  const PacketList* all_packets = nullptr;   ///< with a sample
-  /// Caches never replace one of so many lines, and are asked for no other; 0: their tags are looked up.
+  const PacketSample* sample = nullptr;      ///< null: `packets` are all packets; else these of them
+  const PacketList* all_packets = nullptr;   ///< all packets of the frame, when `sample` is set
+  /// Number of lines that caches may be asked for and never replace; 0: their tags are looked up.
   std::uint64_t line_set = 0;
-  /// What every read takes, so that nodes make theirs by themselves; nothing: they ask the interconnect.
+  /// The time of every read, so that nodes read without events; std::nullopt: they ask the interconnect.
   std::optional<sim::Ticks> own_reads{};
 };
 

@@ -15,7 +15,7 @@
 
 namespace marti::processors {
 
-/// The banks of a cluster, with the shared cache before them if the machine has one.
+/// The configuration of a cluster's banks, with the shared cache before them if the machine has one.
 [[nodiscard]] memory::BankConfig banks_of(const MachineConfig& config);
 
 /// What the second level counted: an entry for each node (private) or each cluster (shared).
@@ -26,9 +26,9 @@ struct SecondLevelResult {
   [[nodiscard]] memory::CacheCounters counters() const;
 };
 
-/// The private second-level caches of all nodes. It is looked up only where the first level missed, and
-/// brings the line in if it misses too; the first level brings it in as well. Neither level cares what the
-/// other holds: the second is neither inclusive nor exclusive.
+/// The private second-level caches of all nodes. A cache is looked up only where the first level missed; if
+/// it misses too, the line is brought into both levels. Neither level depends on what the other holds: the
+/// second is neither inclusive nor exclusive.
 class PrivateSecondLevel {
  public:
   /// Not present unless the machine has private second-level caches.
@@ -36,9 +36,9 @@ class PrivateSecondLevel {
 
   [[nodiscard]] bool present() const { return tags_.has_value(); }
 
-  /// A line that `node`'s first level has not got; true when it is here, false also where there is no second
-  /// level. Then the time of a hit is added to
-  /// `time` and to the division.
+  /// Looks up a line that `node`'s first level does not hold. True when the second level holds it: the
+  /// time of a hit is then added to `time` and to the division. False also where there is no second
+  /// level.
   bool access(std::uint32_t node, std::uint32_t line, sim::Ticks& time, TimeDivision& division) {
     if (!tags_) {
       return false;
@@ -52,7 +52,7 @@ class PrivateSecondLevel {
     time = sim::add_ticks(time, hit_ticks_);
     return true;
   }
-  /// Takes a line out; how many copies there were.
+  /// Removes a line; returns how many copies there were.
   std::int64_t remove(std::uint32_t node, std::uint32_t line) {
     return tags_ && tags_->remove(node, line) ? 1 : 0;
   }

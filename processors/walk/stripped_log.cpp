@@ -20,7 +20,7 @@ namespace marti::processors {
 
 namespace {
 
-// Which line each set of each cache was asked for last, since the packet began. One node's.
+// The line that each set of each cache of one node was last asked for since the packet began.
 class Filter {
  public:
   static constexpr bool present = true;
@@ -53,7 +53,7 @@ class Filter {
   bool access(memory::RecordKind kind, std::uint32_t line) {
     const std::size_t cache = split_ ? split_cache_of[static_cast<std::size_t>(kind)] : 0;
     std::uint64_t& last = last_[cache][sets_[cache](line)];
-    // Lines of earlier packets are told by their packet's number.
+    // The packet's number distinguishes lines of earlier packets.
     const std::uint64_t now = packet_ << 32U | line;
     return std::exchange(last, now) == now;
   }
@@ -100,7 +100,7 @@ std::string StrippedLog::key_of(const MachineConfig& config) {
   return key;
 }
 
-// Walks packets with the filter in the caches' place. One host thread's.
+// Walks packets with the filter in place of the caches. Each host thread has one.
 class StrippedLog::Stripper {
  public:
   /// `left`: bytes that all threads together may still write.
@@ -161,14 +161,14 @@ class StrippedLog::Stripper {
                 band.words.size() + 2 <= most;
     band.words.push_back(static_cast<std::uint32_t>(cycles));
     band.words.push_back(what);
-    // Once too much is written it stays so, in whatever order the bands are done.
+    // Once `left_` is negative it stays negative, so the order of the bands does not matter.
     if (band.words.size() % counted_words == 0) {
       left_ -= counted_words * sizeof(std::uint32_t);
       band.fits = band.fits && left_ >= 0;
     }
   }
 
-  // Words of a band are counted so many at a time.
+  // The words of a band are subtracted from `left_` in portions of this size.
   static constexpr std::size_t counted_words = 1U << 14U;
 
   const WorkLog& log_;
@@ -184,7 +184,7 @@ std::unique_ptr<const StrippedLog> StrippedLog::make(const WorkLog& log, const M
   if (key.empty()) {
     return nullptr;
   }
-  // Times in cycles, and nothing behind the caches.
+  // Times are in cycles, and there is nothing behind the caches.
   MachineConfig plain = config;
   plain.clock = sim::Clock::from_period(1);
   plain.placement = Placement::shared;
@@ -212,7 +212,7 @@ std::unique_ptr<const StrippedLog> StrippedLog::make(const WorkLog& log, const M
                                   [](const Band& band) { return band.fits; });
     return fits && stripped->bytes_of_words() <= most_bytes ? std::move(stripped) : nullptr;
   } catch (const sim::UserError&) {
-    return nullptr;  // a time that does not fit: the replay itself says so, with the machine's clock
+    return nullptr;  // a time overflows; the replay itself reports that, with the machine's clock
   }
 }
 

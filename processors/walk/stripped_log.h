@@ -5,9 +5,9 @@
 // it is already the newest. Such references are found with a direct-mapped filter of as many sets as the
 // cache has (Puzak, "Analysis of cache replacement algorithms", thesis, University of Massachusetts, 1985;
 // Wang and Baer, "Efficient trace-driven simulation methods for cache performance analysis", SIGMETRICS
-// 1990). Here the filter is emptied before each packet, so that what is taken out hits at whichever node and
-// whenever the packet is traced. What is left are references with the cycles between them; machines that
-// differ in nodes, ways, replacement, clocks, memory or interconnect share them.
+// 1990). Here the filter is emptied before each packet, so that every reference taken out is a hit at
+// whichever node and at whatever time the packet is traced. What is left are references with the cycles
+// between them; machines that differ in nodes, ways, replacement, clocks, memory or interconnect share them.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@
 
 namespace marti::processors {
 
-/// What a packet comes to when all its references hit; pixels finished are not among the steps.
+/// Steps and references of a whole packet; the pixels finished are not among the steps.
 struct PacketTotals {
   StepCounts steps;
   std::array<std::int64_t, memory::record_kinds> references{};
@@ -33,25 +33,25 @@ struct PacketTotals {
 
 class StrippedLog {
  public:
-  /// What of a machine decides what is taken out: machines of equal keys share a stripped log. Empty for a
-  /// machine that cannot use one: with another scheme than image, without caches, with a tree that is built,
-  /// with contexts, prefetching, or counting of more than hits and misses.
+  /// The properties of a machine that decide what is taken out: machines of equal keys share a stripped log.
+  /// Empty for a machine that cannot use one: with another scheme than image, without caches, with a tree
+  /// that is built, with contexts, prefetching, or counting of more than hits and misses.
   [[nodiscard]] static std::string key_of(const MachineConfig& config);
 
   /// Strips `log` on all host threads; the same at any number of them. Null when a line number or a number of
-  /// cycles does not fit, when it would have more than `most_bytes` of words, or for a machine without key.
+  /// cycles does not fit, when the words would take more than `most_bytes`, or for a machine without key.
   [[nodiscard]] static std::unique_ptr<const StrippedLog> make(
       const WorkLog& log, const MachineConfig& config,
       std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
-  // Two words for each reference: the cycles from the end of the one before, or the beginning of the pixel,
-  // to this one; then its line and its record kind. A pixel ends with the cycles to the end of its steps and
+  // Two words for each reference: the cycles since the end of the reference before, or since the beginning of
+  // the pixel; then its line and its record kind. A pixel ends with the cycles to the end of its steps and
   // end_of_pixel.
   static constexpr unsigned kind_bits = 3;
   static constexpr std::uint32_t most_lines = 1U << (32U - kind_bits);
   static constexpr std::uint32_t end_of_pixel = (1U << kind_bits) - 1U;
 
-  /// The words of a pixel, and more behind its end.
+  /// The words of a pixel, followed by words of later pixels.
   [[nodiscard]] std::span<const std::uint32_t> pixel(std::uint32_t x, std::uint32_t y) const {
     const Band& band = bands_[y / packet_height_];
     return std::span(band.words).subspan(band.begin[std::size_t{y % packet_height_} * width_ + x]);
@@ -61,13 +61,13 @@ class StrippedLog {
     return bands_[y / packet_height_].totals[x / packet_width_];
   }
   [[nodiscard]] const std::string& key() const { return key_; }
-  /// Whether it may have been made of `log`: the image and the tree are of the same size.
+  /// Whether this may be the stripped form of `log`: image and tree have the same size.
   [[nodiscard]] bool fits(const WorkLog& log) const {
     return width_ == log.width && height_ == log.height && nodes_ == log.topology.nodes.size();
   }
-  /// References that are left.
+  /// Number of references that are left.
   [[nodiscard]] std::uint64_t references() const;
-  /// Host bytes of what it walks.
+  /// Bytes of host memory that its words take.
   [[nodiscard]] std::uint64_t bytes_of_words() const;
 
  private:

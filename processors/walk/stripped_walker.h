@@ -14,7 +14,7 @@
 
 namespace marti::processors {
 
-/// `Caches` is one of node_caches.h. Members are those of LogWalker that ImageNodes asks for.
+/// `Caches` is one of node_caches.h. It has the members of LogWalker that ImageNodes calls.
 template <class Caches>
 class StrippedWalker {
  public:
@@ -38,8 +38,8 @@ class StrippedWalker {
     return stripped_.pixel(x, y);
   }
 
-  /// Takes `node` on from its cursor to its next miss or the end of its pixel. Hits are counted with the
-  /// packet's totals, when it is finished.
+  /// Continues `node` from its cursor to its next miss or the end of its pixel. Hits are counted with the
+  /// packet's totals, when the packet is finished.
   template <bool RunAhead>
   Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
     static_assert(RunAhead);

@@ -103,7 +103,7 @@ void TreePlan::place_behind(const memory::Layout& layout, std::uint32_t line_byt
 
 VisitPlan plan_initial_visits(const TreePlan& plan, const WorkLog& log, const memory::Layout& layout,
                               unsigned line_shift, const StepTicks& ticks) {
-  // The same tree with its lists where the plan puts them.
+  // The log's topology, with its lists where the plan puts them.
   const accel::Topology& topology = log.topology;
   WorkLog placed_log;
   placed_log.primitives = log.primitives;

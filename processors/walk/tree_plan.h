@@ -1,5 +1,5 @@
-// Where the records of a tree lie that is built in part before the frame and in part during it. What the
-// frame begins with lies in the database's sections; everything made later lies behind the frame buffer.
+// Where the records lie of a tree that is built partly before the frame and partly during it. What exists
+// when the frame begins lies in the database's sections; everything made later lies behind the frame buffer.
 //
 // The dynamic region begins at the first multiple of section alignment and cache line behind the frame
 // buffer:
@@ -26,14 +26,14 @@ class TreePlan {
  public:
   static constexpr std::uint32_t none = 0xffffffffU;
 
-  /// Where one tree node lies. `home` is the lazy number of its parent; `none` when the parent is split
-  /// before the frame (or it is the root): then the node is one of the initial tree.
+  /// Where one tree node lies. `home` is the lazy number of its parent; `none` for the root and when the
+  /// parent is split before the frame: then the node is one of the initial tree.
   struct Place {
     std::uint32_t home = none;
-    std::uint32_t record = 0;   ///< initial: its record in the node section; else which child it is
+    std::uint32_t record = 0;   ///< initial: its record in the node section; else its number as a child
     std::uint32_t lazy = none;  ///< its own number among the lazy branches
-    /// Of its list. Initial: the first entry in the list section, or for a branch split beforehand the offset
-    /// in the dynamic region. Else the offset in its parent's block.
+    /// Where its list is. Initial: the first entry in the list section, or for a branch split before the
+    /// frame the offset in the dynamic region. Else the offset in its parent's block.
     std::uint64_t list = 0;
   };
   struct LazyBranch {
@@ -45,10 +45,10 @@ class TreePlan {
   /// `starts` must have passed check_starts.
   TreePlan(const accel::Topology& topology, std::vector<BranchStart> starts, const MachineConfig& config);
 
-  /// Records and entries of the initial tree: what the layout's sections must hold.
+  /// Number of records and entries of the initial tree, for the layout's sections.
   [[nodiscard]] std::uint64_t initial_nodes() const { return initial_nodes_; }
   [[nodiscard]] std::uint64_t initial_entries() const { return initial_entries_; }
-  /// Fixes the dynamic region behind the sections. Call it once, before what follows.
+  /// Fixes the dynamic region behind the sections. Call it once, before the functions below.
   void place_behind(const memory::Layout& layout, std::uint32_t line_bytes);
 
   [[nodiscard]] const Place& place(std::uint32_t node) const { return places_[node]; }
@@ -56,21 +56,21 @@ class TreePlan {
   /// Branches split before the frame, in the order of their numbers: breadth first.
   [[nodiscard]] std::span<const std::uint32_t> eager() const { return eager_; }
   [[nodiscard]] BranchStart start(std::uint32_t node) const { return starts_[node]; }
-  /// Primitives that a node lists.
+  /// Number of primitives that a node lists.
   [[nodiscard]] std::uint32_t listed(std::uint32_t node) const;
-  /// Whether somebody had to write the node's list: its parent was split. The root's list and those below
-  /// kept branches come with the database.
+  /// Whether the node's list is written by a processor, because its parent is split. The root's list and
+  /// those below kept branches come with the database.
   [[nodiscard]] bool list_is_written(std::uint32_t node) const { return written_[node]; }
   [[nodiscard]] std::uint32_t slots() const { return slots_; }
 
-  /// First byte of part 1, of part 2, and one past the last byte that part 3 can ever take.
+  /// First byte of part 1, first byte of part 2, and one past the last byte that part 3 can ever take.
   [[nodiscard]] memory::Address dynamic_base() const { return dynamic_base_; }
   [[nodiscard]] memory::Address lower_base() const { return lower_base_; }
   [[nodiscard]] memory::Address end() const { return end_; }
   [[nodiscard]] memory::Address slot_address(std::uint32_t slot) const {
     return lower_base_ + slot * stride_;
   }
-  /// Where the first block goes.
+  /// Address of the first block.
   [[nodiscard]] memory::Address first_block() const { return slot_address(slots_); }
   [[nodiscard]] std::uint64_t stride() const { return stride_; }  ///< of node records
 
@@ -96,7 +96,7 @@ class TreePlan {
   memory::Address end_ = 0;
 };
 
-/// The visits to nodes of the initial tree that are no P nodes; those to others have no lines.
+/// The visits to nodes of the initial tree other than P nodes; the visits to all others have no lines.
 [[nodiscard]] VisitPlan plan_initial_visits(const TreePlan& plan, const WorkLog& log,
                                             const memory::Layout& layout, unsigned line_shift,
                                             const StepTicks& ticks);

@@ -20,7 +20,7 @@ VisitCount test_count(accel::PrimitiveKind kind) {
   throw sim::InternalError("a visit tests a primitive of an unknown kind");
 }
 
-// Collects the lines of one visit after the other.
+// Collects the lines of visits, one visit after the other.
 class Planner {
  public:
   Planner(const memory::Layout& layout, unsigned line_shift, const StepTicks& ticks, VisitPlan& plan)
@@ -39,7 +39,7 @@ class Planner {
     }
   }
 
-  // Records `first` to `first + records - 1` of a section, read in one go.
+  // Reads records `first` to `first + records - 1` of a section in one go.
   void read(RecordKind kind, std::uint64_t first, std::uint64_t records, VisitCount lines) {
     const memory::Address begin = layout_.address(kind, first);
     const memory::Address last = begin + records * layout_.record_bytes(kind, first) - 1;
@@ -65,7 +65,7 @@ class Planner {
     visit.begin = static_cast<std::uint32_t>(begin_);
     visit.lines = static_cast<std::uint32_t>(plan_.lines.size() - begin_);
     visit.counts = counts_;
-    // A visit too long for the clock may never be made: then it must not stop the run.
+    // A visit whose time overflows may never be made, so it must not stop the run.
     const auto fits = [&](sim::Ticks each, std::int64_t count) {
       sim::Ticks time = 0;
       return !__builtin_mul_overflow(each, count, &time) &&

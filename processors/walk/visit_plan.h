@@ -1,5 +1,5 @@
 // What a visit to each tree node touches, worked out once for a layout and a line size: the lines in order,
-// and how many steps and lines of each kind they are. A replay then walks a list of line numbers instead of
+// and the number of steps and lines of each kind. A replay then walks a list of line numbers instead of
 // computing addresses record by record.
 #pragma once
 
@@ -15,9 +15,9 @@
 
 namespace marti::processors {
 
-/// The counts of one visit (that it is a branch follows from its not being a leaf; `test` counts triangles,
-/// cone_test cylinders too). They are summed in 16-bit lanes, four to a word, which most_summed_visits visits
-/// cannot overflow.
+/// The counts of one visit. A visit without `leaf` is one to a branch; `test` counts triangles, cone_test
+/// cylinders too. Counts are summed in 16-bit lanes, four to a word, which most_summed_visits visits cannot
+/// overflow.
 enum class VisitCount : std::uint8_t {
   leaf,
   list,
@@ -55,8 +55,8 @@ struct VisitTally {
   std::uint32_t visits = 0;
 };
 
-/// A planned leaf tests all its entries, each after a look-up where there are mailboxes.
-/// A visit that does not fit (more than 255 of anything) has no lines and is taken record by record.
+/// A planned visit; a leaf's tests all its entries, each after a look-up where there are mailboxes. A visit
+/// that does not fit (more than 255 of anything) has no lines and is taken record by record.
 struct alignas(32) Visit {
   std::uint32_t begin = 0;  ///< first of its lines in VisitPlan::lines
   std::uint32_t lines = 0;
@@ -64,12 +64,12 @@ struct alignas(32) Visit {
   VisitCounts counts;
 };
 
-/// How many tests of each kind have begun, eight bits each: triangles lowest, then spheres, then cones.
+/// The tests of one kind in `tests`, eight bits for each: triangles lowest, then spheres, then cones.
 [[nodiscard]] constexpr std::uint32_t tests_of_kind(std::uint32_t tests, accel::PrimitiveKind kind) {
   return (tests >> (8U * static_cast<unsigned>(kind))) & 0xffU;
 }
 
-/// A line's label: its record kind above, which of the visit's tests have begun below.
+/// A line's label: its record kind in the upper bits, the tests of the visit begun before it in the lower.
 inline constexpr unsigned label_bits = 29;
 [[nodiscard]] constexpr memory::RecordKind kind_of_label(std::uint32_t label) {
   return static_cast<memory::RecordKind>(label >> label_bits);
@@ -95,7 +95,7 @@ inline constexpr std::uint64_t most_planned_lines = std::uint64_t{1} << 28U;
                                     std::span<const std::uint32_t> rank, unsigned line_shift,
                                     const StepTicks& ticks);
 
-/// Adds to a node's statistics so many visits of which all lines have hit, with the sum of their counts.
+/// Adds `visits` visits, all of whose lines hit, with the sum of their counts to a node's statistics.
 void add_visits(const VisitCounts& counts, std::uint32_t visits, bool mailboxes, NodeStatistics& statistics);
 
 }  // namespace marti::processors

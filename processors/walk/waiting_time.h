@@ -7,9 +7,9 @@
 
 namespace marti::processors {
 
-/// The last `waited` ticks of a read's course: its wait for the interconnect, its transfer, its wait for the
-/// bank and the bank's access count as if they came in this order, whole ones last. `waited` is at most their
-/// sum.
+/// The last `waited` ticks of a read. Its parts count as if they came in this order: wait for the
+/// interconnect, transfer, wait for the bank, access of the bank; whole parts are counted from the end.
+/// `waited` is at most their sum.
 [[nodiscard]] inline memory::Service last_part(const memory::Service& service, sim::Ticks waited) {
   memory::Service part;
   part.done = service.done;

@@ -87,7 +87,7 @@ void PipelineCore::worked(std::uint32_t node, FlowRay& ray, sim::Ticks time) {
   post(FlowEvent::done, time, node);
 }
 
-// From `now` on the node composes the message that takes its ray to stage `next`.
+// Composes, from `now` on, the message that takes the node's ray to stage `next`.
 void PipelineCore::compose(std::uint32_t node, Stage next, sim::Ticks now) {
   Node& at = nodes_[node];
   at.phase = Phase::sending;
@@ -136,7 +136,7 @@ void PipelineCore::done(std::uint32_t node, sim::Ticks now) {
   throw sim::InternalError("a node of the pipeline finishes what it has not begun");
 }
 
-// Sends the node's ray to its target, where it has a slot.
+// Sends the node's ray to its target, where a slot is reserved for it.
 void PipelineCore::dispatch(std::uint32_t node, sim::Ticks now) {
   Node& at = nodes_[node];
   put(at.ray, at.target, send_ray(node, at.target, now));
@@ -244,7 +244,7 @@ void PipelineCore::take(std::uint32_t node, sim::Ticks now) {
   work(node);
 }
 
-// The ray that was set aside last enters in the place that the node was granted.
+// The ray set aside last enters, with the credit that the node was granted.
 void PipelineCore::send_set_aside(std::uint32_t node, sim::Ticks now) {
   Node& at = nodes_[node];
   spend(node, Activity::message_wait, now - at.since);
@@ -267,7 +267,7 @@ void PipelineCore::post_wake(std::uint32_t node, sim::Ticks time) {
 
 // ---- Credits: how many rays may be in flight.
 
-// Rays set aside go before new camera rays.
+// Rays set aside get credits before new camera rays.
 void PipelineCore::give_credits(std::uint32_t cluster, sim::Ticks now) {
   Cluster& at = clusters_[cluster];
   while (!at.requests.empty() && host_.has_credit(cluster)) {
@@ -320,7 +320,7 @@ void PipelineCore::send_from_host(std::uint32_t cluster, std::uint32_t target, s
 
 // ---- Slots of the queues.
 
-// The node of a stage that takes the next ray; LoadOrder::none when all queues are full.
+// The node of a stage that gets the next ray; LoadOrder::none when all queues are full.
 std::uint32_t PipelineCore::slot_of(std::uint32_t cluster, Stage stage) {
   StageState& state = stage_state(cluster, stage);
   const std::uint32_t least = state.order.least();
@@ -334,14 +334,14 @@ void PipelineCore::reserve(std::uint32_t node) {
   refresh(node);
 }
 
-// The node's load is what is in its queue and in service; without a free slot it takes no more.
+// The node's load is the number of rays in its queue and in service; a node without a free slot gets no rays.
 void PipelineCore::refresh(std::uint32_t node) {
   const Node& at = nodes_[node];
   const std::uint32_t load = at.queue.count + (at.phase != Phase::idle ? 1 : 0);
   stages_[at.state].order.set(at.place, at.queue.count < queue_slots_ ? load : LoadOrder::none);
 }
 
-// A ray that has a slot is sent and arrives at `arrival`.
+// Puts a ray that was just sent into the slot reserved for it; it arrives at `arrival`.
 void PipelineCore::put(std::uint32_t ray, std::uint32_t node, sim::Ticks arrival) {
   Node& at = nodes_[node];
   rays_[ray].arrival = arrival;
@@ -367,7 +367,7 @@ void PipelineCore::wait_for_slot(std::uint32_t cluster, Stage stage, std::uint32
   state.last_waiter = waiter;
 }
 
-// A slot of the node has become free: whoever has waited longest gets it.
+// A slot of the node has become free; the node or host that has waited longest gets it.
 void PipelineCore::give_slot(std::uint32_t node, sim::Ticks now) {
   StageState& state = stages_[nodes_[node].state];
   const std::uint32_t waiter = state.first_waiter;

@@ -1,4 +1,4 @@
-// The nodes of the pipeline but for what happens inside a node: queues, slots, credits and messages.
+// The nodes of the pipeline, except for the work inside a node: queues, slots, credits and messages.
 #pragma once
 
 #include <array>
@@ -23,22 +23,22 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
   virtual void read_done(std::uint32_t node, const memory::Service& service) = 0;
 
  protected:
-  /// What a node does. After `working` it composes what it has to send; `blocked` waits for a slot; `granted`
-  /// has one and sends in this instant.
+  /// What a node does. After `working` it composes its message; in `blocked` it waits for a slot; in
+  /// `granted` it has a slot and sends at the same instant.
   enum class Phase : std::uint8_t { idle, working, contributing, ending, sending, blocked, granted };
 
   struct Node {
     RayQueue queue;
     std::uint32_t ray = RayPool::none;  ///< in service
     std::uint32_t target = 0;           ///< granted: the node whose slot it has
-    std::uint32_t next_waiter = 0;      ///< blocked: who waits behind it
-    std::uint32_t granted = 0;          ///< rays set aside that may enter now
+    std::uint32_t next_waiter = 0;      ///< blocked: the next node in the list of waiting ones
+    std::uint32_t granted = 0;          ///< number of credits for rays set aside
     sim::Ticks since = 0;               ///< idle or blocked since then
     sim::Ticks wake_at = no_wake;       ///< the earliest wake event that is posted
-    std::uint32_t state = 0;            ///< its stage's, in stages_
-    std::uint32_t place = 0;            ///< in its stage
+    std::uint32_t state = 0;            ///< index of its stage in stages_
+    std::uint32_t place = 0;            ///< its number in the stage
     Stage stage = Stage::search;
-    Stage next = Stage::search;  ///< sending: where to
+    Stage next = Stage::search;  ///< sending: the stage that the ray goes to
     Phase phase = Phase::idle;
   };
 
@@ -48,7 +48,7 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
   virtual void work(std::uint32_t node) = 0;
   /// Puts the node at the first of its ray's steps.
   virtual void begin(std::uint32_t node, FlowRay& ray) = 0;
-  /// A read that the node's walk needs.
+  /// Starts a read that the node's walk needs.
   virtual void read(std::uint32_t node) = 0;
 
   /// The node has taken all of the ray's steps that belong to its stage, the last one at `time`.
@@ -64,7 +64,7 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
   static constexpr sim::Ticks no_wake = std::numeric_limits<sim::Ticks>::max();
   static constexpr std::uint32_t none = RayPool::none;
 
-  // The nodes of one stage of a cluster, and who waits for a slot in it.
+  // The nodes of one stage of a cluster, and the list of nodes that wait for a slot in it.
   struct StageState {
     std::uint32_t first = 0;
     LoadOrder order;
@@ -75,7 +75,7 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
     std::uint32_t tree;
     std::uint32_t number;
   };
-  // Of a cluster: who has set rays aside, in the order in which they did, and the host's way.
+  // The nodes of a cluster that have set rays aside, in the order in which they did, and the host's state.
   struct Cluster {
     std::deque<std::uint32_t> requests;
     Phase host = Phase::idle;  // idle: waits for a credit, or has nothing to send
@@ -112,7 +112,7 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
   RayPool rays_;
   std::vector<StageState> stages_;
   std::vector<Cluster> clusters_;
-  std::vector<std::vector<SetAside>> set_aside_;  // of each shade node, cluster by cluster
+  std::vector<std::vector<SetAside>> set_aside_;  // for each shade node, cluster by cluster
   std::uint32_t queue_slots_;
   sim::Ticks send_;
   sim::Ticks receive_;

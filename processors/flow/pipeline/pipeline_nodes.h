@@ -1,4 +1,4 @@
-// The inside of a pipeline node: it takes its stage's steps of the ray in service.
+// The work inside a pipeline node: it takes those steps of the ray in service that belong to its stage.
 #pragma once
 
 #include <utility>
@@ -100,7 +100,7 @@ class PipelineNodes final : public PipelineCore {
     interconnect_of(node).read({port_of(node), walker_.missed_address(cursor), walker_.missed_bytes(cursor)});
   }
 
-  // After the steps of `search`: the record of the leaf at which they end, if there is one.
+  // Begins to read the record of the leaf at which the steps of `search` end; false if they end elsewhere.
   bool begin_record(Cursor& cursor, std::uint32_t node, FlowRay& ray) {
     if (cursor.word == ray.end || !visits_leaf(cursor.word)) {
       return false;
@@ -110,7 +110,7 @@ class PipelineNodes final : public PipelineCore {
     return true;
   }
 
-  // The next step that is not search's, or a leaf with entries, of which search reads the record.
+  // The first step that `search` leaves to others, or a leaf with entries, whose record alone it reads.
   const std::uint32_t* end_of_search(const FlowRay& ray) const {
     const std::uint32_t* word = ray.word;
     const accel::Topology& topology = input_.log.topology;

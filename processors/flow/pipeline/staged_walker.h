@@ -1,4 +1,4 @@
-// A walk through the log that takes the visit to a leaf in two parts: its record, and its list with the
+// A walk through the log that visits a leaf in two parts: first its record, then its list and the
 // tests.
 #pragma once
 
@@ -23,8 +23,8 @@ class StagedWalker : public LogWalker<Caches> {
  public:
   using Base::Base;
 
-  /// Begins a visit to the leaf at cursor.word as far as its own record; `advance` over no words (word equal
-  /// to word_end) reads it. cursor.word stays at the leaf, for begin_objects.
+  /// Begins the first part of a visit to the leaf at cursor.word, its record; `advance` over no words (word
+  /// equal to word_end) then reads it. cursor.word stays at the leaf, for begin_objects.
   void begin_record(Cursor& cursor, NodeStatistics& statistics) const {
     const std::uint32_t leaf = operand_of(*cursor.word);
     ++statistics.steps.leaves;
@@ -40,13 +40,13 @@ class StagedWalker : public LogWalker<Caches> {
     cursor.end = cursor.at + node_bytes_;
   }
 
-  /// Begins the rest of that visit, perhaps at another node: the leaf's list and its tests. cursor.word goes
-  /// behind the leaf; `advance` over no words reads and tests.
+  /// Begins the second part of the visit, perhaps at another node: the leaf's list and tests. cursor.word
+  /// moves past the leaf; `advance` over no words then reads and tests.
   void begin_objects(Cursor& cursor, NodeStatistics& statistics) const {
     const std::uint32_t* const word = cursor.word;
     cursor.word += step_words(word);
     if (const Visit* const visit = planned(*word)) {
-      // The whole visit but what begin_record counted.
+      // All of the visit except what begin_record counted.
       const std::uint32_t lines = visit->counts.of(VisitCount::node_line);
       add_visits(visit->counts, 1, input_.log.mailboxes, statistics);
       --statistics.steps.leaves;

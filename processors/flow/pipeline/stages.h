@@ -1,4 +1,4 @@
-// The stages of the pipeline, after LINKS-1, and which of them takes a step.
+// The stages of the pipeline, after LINKS-1, and the stage that takes each step.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ inline constexpr std::array<std::string_view, pipeline_stages> stage_names = {"s
   return step_of(*word) == Step::leaf ? topology.nodes[operand_of(*word)].count : word[1];
 }
 
-/// The stage that takes the step at `word`, of a leaf's visit the first part: its record. The objects of a
-/// leaf with entries belong to `nearest`.
+/// The stage that takes the step at `word`; for a leaf the stage that reads its record. The objects of a leaf
+/// with entries belong to `nearest`.
 [[nodiscard]] constexpr Stage stage_of(const std::uint32_t* word) {
   switch (step_of(*word)) {
     case Step::shade:

@@ -6,7 +6,7 @@ namespace marti::processors {
 
 namespace {
 
-// Tree nodes of each part, part by part: those of part p are nodes[begin[p]] to nodes[begin[p + 1] - 1].
+// The leaves of each part, part by part: those of part p are nodes[begin[p]] to nodes[begin[p + 1] - 1].
 struct PartLeaves {
   std::vector<std::uint64_t> begin;
   std::vector<std::uint32_t> nodes;

@@ -46,7 +46,7 @@ std::vector<std::uint32_t> deal_balanced(std::span<const std::uint64_t> weights,
   while (next < regions && weights[order[next]] > 0) {
     deal(weights[order[next]]);
   }
-  // The rest weigh nothing, and would all go to one part.
+  // The remaining regions have no weight; dealt by weight, all would go to the same part.
   std::priority_queue<Load, std::vector<Load>, std::greater<>> fewest;
   for (; !least.empty(); least.pop()) {
     const auto [load, count, part] = least.top();

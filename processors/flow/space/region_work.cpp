@@ -8,7 +8,7 @@ namespace marti::processors {
 
 namespace {
 
-// Computes the time of one leaf's tests.
+// The time to compute one leaf's tests.
 sim::Ticks tests_time(const WorkLog& log, const StepTicks& ticks, const std::uint32_t* word) {
   const accel::TopologyNode& leaf = log.topology.nodes[operand_of(*word)];
   const std::uint32_t entries = step_of(*word) == Step::leaf ? leaf.count : word[1];
@@ -48,7 +48,7 @@ sim::Ticks compute_time(const WorkLog& log, const StepTicks& ticks, const std::u
   return 0;
 }
 
-// The region that a step is in, or RegionMap::top.
+// The region whose tree node the step reads, or RegionMap::top.
 std::uint32_t region_of_step(const RegionMap& regions, std::uint32_t word) {
   return visits_node(step_of(word)) ? regions.region_of[operand_of(word)] : RegionMap::top;
 }

@@ -1,4 +1,4 @@
-// What the regions of the space scheme cost to compute, from a pre-pass over few pixels.
+// The compute time in each region of the space scheme, from a pre-pass over few pixels.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@ namespace marti::processors {
 
 struct RegionWork {
   std::vector<std::uint64_t> of;  ///< ticks in each region
-  sim::Ticks total = 0;           ///< of the whole pre-pass, rays that enter no region included
+  sim::Ticks total = 0;           ///< ticks of the whole pre-pass, including rays that enter no region
 };
 
-/// The computing of every `step`-th pixel, from 0 on, of every `step`-th row. Memory and messages are not
-/// part of it. A step is done in the region where its ray is: a ray is where it last visited a node, or where
-/// it was made, or, coming from the host, in the first region on its way.
+/// The compute time of every `step`-th pixel of every `step`-th row, both from 0 on, without memory and
+/// messages. A step counts for the region that its ray visited last; before its first visit, for the region
+/// where the ray was made or, for a camera ray, the first region on its way.
 [[nodiscard]] RegionWork sample_work(const WorkLog& log, const RegionMap& regions, const StepTicks& ticks,
                                      std::uint32_t step);
 

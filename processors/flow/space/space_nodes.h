@@ -1,7 +1,7 @@
-// Nodes of the space scheme: see space.h for what they do.
+// Nodes of the space scheme; processors/replay/space.h describes what they do.
 //
-// Everything a node does with a ray touches only its own memory, so it is worked out at once, and one event
-// stands for it: the moment at which the node is done with the ray and sends it on.
+// A node's work on a ray touches only its own memory, so it is computed at once, and a single event stands
+// for it: the time at which the node has finished with the ray and sends it on.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 
 namespace marti::processors {
 
-/// `Caches` is one of node_caches.h. See node_array.h for what the members do.
+/// `Caches` is one of node_caches.h. The members are described in node_array.h.
 template <class Caches>
 class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   using Base = FlowNodesBase<SpaceNodes<Caches>>;
@@ -114,15 +114,15 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   static constexpr std::uint32_t from_host = RayPool::none;
 
   struct Node {
-    RayQueue queue;                         // before the node and under way to it
-    RayQueue waiting;                       // set aside somewhere for want of a slot before this node
-    std::uint32_t made = RayPool::none;     // rays made here, next first
+    RayQueue queue;                         // rays waiting at the node and on their way to it
+    RayQueue waiting;                       // rays set aside elsewhere for lack of a slot at this node
+    std::uint32_t made = RayPool::none;     // list of the rays made here, the next one first
     std::uint32_t current = RayPool::none;  // the ray in service
-    std::uint32_t set_aside = 0;            // rays in its memory that wait for slots elsewhere
-    sim::Ticks wake_at = never;             // the wake event that counts
+    std::uint32_t set_aside = 0;            // number of rays in its memory that wait for slots elsewhere
+    sim::Ticks wake_at = never;             // time of the valid wake event
   };
 
-  // Whether the host looks for camera rays of a cluster.
+  // Whether an event for camera rays of a cluster is posted, and whether all of them are sent.
   struct Admission {
     bool posted = false;
     bool all_sent = false;
@@ -132,8 +132,8 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     throw sim::InternalError("the nodes of the space scheme share no memory");
   }
 
-  // The node of its cluster that has the tree node which a step reads; RegionMap::top when all have it or
-  // none is read.
+  // The number in its cluster of the node that holds the tree node which a step reads; RegionMap::top when
+  // every node holds it or the step reads none.
   [[nodiscard]] std::uint32_t owner_of(std::uint32_t word) const {
     return visits_node(step_of(word)) ? owner_[operand_of(word)] : RegionMap::top;
   }
@@ -148,7 +148,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     }
   }
 
-  // The host sends camera rays as long as it may.
+  // The host sends camera rays until none is left, the limit is reached, or the next is not due.
   void admit(std::uint32_t cluster, sim::Ticks now) {
     admissions_[cluster].posted = false;
     while (host_.has_credit(cluster)) {
@@ -167,7 +167,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     }
   }
 
-  // Rays that see only the top go round the nodes.
+  // The node that a camera ray is sent to. Rays that visit only the top are dealt to the nodes in turn.
   [[nodiscard]] std::uint32_t first_owner(const FlowRay& ray) const {
     for (const std::uint32_t* word = ray.word; word != ray.end; word += step_words(word)) {
       if (const std::uint32_t owner = owner_of(*word); owner != RegionMap::top) {
@@ -198,7 +198,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
       return;
     }
     rays_[ray].from = from;
-    rays_[ray].arrival = now;  // rays wait in the order in which they were set aside
+    rays_[ray].arrival = now;  // so rays wait in the order in which they were set aside
     ++nodes_[to].waiting.count;
     nodes_[to].waiting.insert(rays_, ray);
     if (from != from_host) {
@@ -207,7 +207,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     }
   }
 
-  // Takes a slot before `to` and sends the ray there.
+  // Takes a slot at `to` and sends the ray there.
   void send(std::uint32_t from, std::uint32_t to, std::uint32_t ray, sim::Ticks now) {
     RayQueue& queue = nodes_[to].queue;
     counts_[to].longest_queue = std::max<std::int64_t>(counts_[to].longest_queue, ++queue.count);
@@ -229,7 +229,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   void wake(std::uint32_t number, sim::Ticks now) {
     Node& node = nodes_[number];
     if (node.wake_at != now) {
-      return;  // a message sent later has come earlier, and was woken for
+      return;  // outdated: another message arrived earlier and has its own event
     }
     node.wake_at = never;
     spend(number, Activity::message_wait, now - cursors_[number].time);
@@ -239,7 +239,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
 
   // --- the nodes ---
 
-  // A node without a ray looks for one.
+  // A node without a ray takes the next one, if there is one.
   void next(std::uint32_t number, sim::Ticks now) {
     Node& node = nodes_[number];
     if (node.made != RayPool::none) {
@@ -264,7 +264,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     Cursor& cursor = cursors_[number];
     cursor.time = sim::add_ticks(now, receive_);
     spend(number, Activity::messaging, receive_);
-    nodes_[number].current = ray;  // it needs no wake event for what is sent now
+    nodes_[number].current = ray;  // marks the node as busy, so that send() posts no wake event
     if (nodes_[number].waiting.head != RayPool::none) {
       const std::uint32_t waited = nodes_[number].waiting.pop(rays_);
       const std::uint32_t from = rays_[waited].from;
@@ -276,7 +276,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     serve(number, ray);
   }
 
-  // Begins with a ray at the cursor's time.
+  // Begins to work on a ray at the cursor's time.
   void serve(std::uint32_t number, std::uint32_t index) {
     nodes_[number].current = index;
     FlowRay& ray = rays_[index];
@@ -286,7 +286,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     run(number);
   }
 
-  // Up to where the ray's steps are taken at a node; also finds the light that a shadow ray reaches.
+  // The end of the ray's steps at this node; also notes whether a shadow ray reaches its light.
   const std::uint32_t* last_word_here(std::uint32_t port, FlowRay& ray) const {
     const std::uint32_t* word = ray.word;
     const std::uint32_t* const end = ray.end;
@@ -326,8 +326,8 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     fetch_what_comes_next(number, ray);
   }
 
-  // Until the node is done others are at work, and what it needs then comes into the host's caches meanwhile:
-  // of a ray that ends its children, of the queue's first ray its steps.
+  // Prefetches into the host's caches what the node needs when it is done, while others are simulated: the
+  // children of a ray that ends, the steps of the queue's first ray.
   void fetch_what_comes_next(std::uint32_t number, const FlowRay& ray) const {
     if (cursors_[number].word == ray.end) {
       sim::prefetch(trees_.ray(ray.tree, ray.number));
@@ -337,7 +337,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     }
   }
 
-  // Whether a ray, when it has ended, adds to its pixel: a shadow ray only if it has reached its light.
+  // Whether a ray adds to its pixel when it ends; a shadow ray only does if it has reached its light.
   static bool contributes(const FlowRay& ray) { return ray.kind != RayKind::shadow || ray.lit; }
 
   void done(std::uint32_t number, sim::Ticks now) {
@@ -371,7 +371,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     }
   }
 
-  // Puts the rays that begin where `parent` ended before those that wait in the node's own memory.
+  // Makes the children of `parent`, which has ended, and puts them at the head of the node's list.
   void make_rays(std::uint32_t number, const FlowRay& parent) {
     std::uint32_t last = RayPool::none;
     const std::uint32_t older = nodes_[number].made;

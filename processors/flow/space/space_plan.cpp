@@ -32,13 +32,13 @@ std::vector<std::uint32_t> deal(const WorkLog& log, const MachineConfig& config,
   throw sim::InternalError("space: an unknown policy");
 }
 
-// Bytes from a primitive's record to the next one's.
+// Bytes from a primitive's record to the next record.
 std::uint64_t stride_of(const memory::Layout& layout, std::uint64_t primitive) {
   return layout.address(RecordKind::primitive, primitive + 1) -
          layout.address(RecordKind::primitive, primitive);
 }
 
-// Adds the records of each node's regions to its memory, and finds how often primitives are there.
+// Adds the records of each node's regions to its memory, and counts primitives that are held twice or more.
 void add_regions(const WorkLog& log, const memory::Layout& layout, SpacePlan& plan) {
   const accel::Topology& topology = log.topology;
   for (std::size_t number = 0; number < topology.nodes.size(); ++number) {
@@ -49,7 +49,7 @@ void add_regions(const WorkLog& log, const memory::Layout& layout, SpacePlan& pl
           layout.stride(RecordKind::node) + entries * layout.stride(RecordKind::list);
     }
   }
-  std::vector<bool> is_held(log.primitives);  // by anybody so far
+  std::vector<bool> is_held(log.primitives);  // by any node so far
   each_distinct_primitive(topology, plan.owner, static_cast<std::uint32_t>(plan.memory_bytes.size()),
                           log.primitives, [&](std::uint32_t node, std::uint32_t primitive) {
                             plan.memory_bytes[node] += stride_of(layout, primitive);

@@ -1,4 +1,4 @@
-// The space scheme's division of a scene: what each node of a cluster holds.
+// The space scheme's division of a scene among the nodes of a cluster.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace marti::processors {
 
-/// Every cluster holds the whole scene and is divided in the same way.
+/// Every cluster holds the whole scene, and all are divided in the same way.
 struct SpacePlan {
   RegionMap regions;
-  std::vector<std::uint32_t> node_of_region;  ///< number in the cluster
-  std::vector<std::uint32_t> owner;           ///< of each tree node; RegionMap::top: every node has it
-  std::vector<std::uint64_t> memory_bytes;    ///< of the database, for each node of a cluster
-  std::uint64_t duplicated_primitives = 0;    ///< of a cluster: records beyond one of each primitive it holds
-  sim::Ticks sampling_work = 0;               ///< sampled: computing of the pre-pass, not part of the frame
+  std::vector<std::uint32_t> node_of_region;  ///< number of the node in the cluster
+  std::vector<std::uint32_t> owner;           ///< for each tree node its node; RegionMap::top: every node
+  std::vector<std::uint64_t> memory_bytes;    ///< size of the database part that each node of a cluster holds
+  std::uint64_t duplicated_primitives = 0;    ///< primitive records in a cluster beyond one of each
+  sim::Ticks sampling_work = 0;               ///< sampled: compute time of the pre-pass, before the frame
 };
 
 /// A node's memory holds the top, the records and lists of its regions, one record of each primitive that
