@@ -145,7 +145,7 @@ class Account {
     return offered;
   }
 
-  // Being traced, or there with machines that nobody has.
+  // Frames being traced, or traced with machines that no worker has taken.
   [[nodiscard]] std::size_t logs_ahead() const {
     std::set<std::size_t> frames = tracing_;
     for (const auto& [key, batch] : batches_) {
