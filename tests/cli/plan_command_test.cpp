@@ -72,7 +72,7 @@ TEST_F(PlanCommand, ProvesItself) {
   EXPECT_NE(outcome.output.find("all kept: same image, same hits, same work log"), std::string::npos)
       << outcome.output;
   EXPECT_EQ(outcome.output.find("DIFFERS"), std::string::npos);
-  // Of an animated file too.
+  // The plan of an animated file proves itself too.
   const Outcome swing =
       run("--verify-plan --set scene.source=" + quoted(fs::path(MARTI_SOURCE) / "configs/scenes/swing.glb"));
   EXPECT_EQ(swing.status, 0) << swing.output;

@@ -34,7 +34,7 @@ node = 1
 cache_kib = 0.25
 )";
 
-// What the page gives to its scripts.
+// The data that the page gives to its scripts.
 json data_of(const fs::path& file) {
   const std::string page = read(file);
   const std::string begin = "id=\"data\">";

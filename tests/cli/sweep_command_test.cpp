@@ -156,7 +156,7 @@ TEST_F(SweepCommand, AChangedConfigurationAddsPointsAndKeepsResults) {
       EXPECT_NE(all.find(line), std::string::npos) << line;
     }
   }
-  // And back: nothing is left to do.
+  // Back to the first configuration: nothing is left to do.
   write(config, small_sweep);
   EXPECT_TRUE(says(sweep(config, out), "all of it was there already")) << outcome.output;
 }

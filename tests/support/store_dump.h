@@ -1,4 +1,4 @@
-// What the store of a sweep holds, as text.
+// The contents of the store of a sweep, as text.
 #pragma once
 
 #include <sqlite3.h>

@@ -36,7 +36,7 @@ MachineConfig random_modelled_machine(test::Random& random) {
   }
 }
 
-// What random_machine() leaves at its defaults.
+// Draws the settings that random_machine() leaves at their defaults.
 void vary_the_rest(test::Random& random, MachineConfig& config) {
   const auto bytes = [&random](std::int64_t most) {
     return static_cast<std::uint32_t>(test::pick(random, 1, most));

@@ -30,7 +30,7 @@ struct Expected {
   std::vector<std::int64_t> second_misses;
 };
 
-// As many lines as `lines`, the newest first.
+// `cache` holds at most `lines` lines, the newest first.
 bool find_in_full(std::vector<std::uint32_t>& cache, std::uint64_t lines, std::uint32_t line) {
   const auto at = std::find(cache.begin(), cache.end(), line);
   const bool hit = at != cache.end();

@@ -157,7 +157,7 @@ RC_GTEST_PROP(Pipeline, OneRayAtATimeTakesTheSumOfItsParts, (std::uint64_t seed)
   RC_ASSERT(last_contribution >= 0);
   RC_ASSERT(last_contribution <= way);
 
-  // And these steps are those of one node.
+  // The nodes together compute as long as one node of the image scheme.
   MachineConfig one = machine;
   one.scheme = Scheme::image;
   one.nodes = 1;

@@ -122,7 +122,7 @@ TEST(GltfCompressed, ViewsOfBytesThatAreNotThereAreRefused) {
   EXPECT_TRUE(says(message, "compressed by the extension EXT_meshopt_compression")) << message;
 }
 
-// The same two triangles, by indices that are all zeros and by some that are wrong, put right.
+// A sparse accessor puts right indices that are all zeros, or some that are wrong.
 TEST(GltfSparse, IndicesAreReplaced) {
   const test::TemporaryDirectory directory;
   const Scene plain = load_gltf(GltfFile::square().write_glb(directory.path(), "plain.glb"), {}, {});
@@ -152,7 +152,7 @@ TEST(GltfSparse, IndicesAreReplaced) {
   }
 }
 
-// As many materials, textures and images, all of one picture; the last one's is another.
+// `count` materials, textures and images, all with equal bytes except the last.
 GltfFile pictures(int count) {
   GltfFile file = GltfFile::square();
   const int shared = file.add_view<std::uint8_t>({'P', 'I', 'C'});

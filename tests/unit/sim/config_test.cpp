@@ -301,7 +301,7 @@ TEST(Schema, DeclarationsAreChecked) {
   EXPECT_EQ(schema.keys().size(), example().keys().size());
 }
 
-// What is printed as default is accepted as input and means the same.
+// A printed default is accepted as input and gives the same value.
 TEST(Schema, PrintedDefaultsReadBack) {
   const Schema schema = example();
   std::string text;

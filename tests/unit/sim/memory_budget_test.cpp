@@ -65,7 +65,7 @@ TEST(UsableMemory, IsThatOfTheTightestControlGroupOfVersion2) {
   EXPECT_EQ(host.usable(), 300 * mebibyte);
   host.write("sys/fs/cgroup/jobs/one/memory.max", "209715200\n");
   EXPECT_EQ(host.usable(), 200 * mebibyte);
-  // As a container sees it, whose own group is the root of what is mounted.
+  // As seen in a container, where the container's own group is mounted as the root.
   host.write("sys/fs/cgroup/memory.max", "104857600\n");
   EXPECT_EQ(host.usable(), 100 * mebibyte);
 }

@@ -1,4 +1,4 @@
-// What a functional run says of its structure.
+// What a functional run reports about its structure.
 #include "studies/run/functional_run.h"
 
 #include <gtest/gtest.h>

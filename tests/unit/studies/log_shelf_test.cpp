@@ -143,7 +143,7 @@ TEST(LogShelf, WaitsForRoom) {
   const std::vector<FrameLog> frames = some_frames(2);
   LogShelf shelf(largest(frames));
   shelf.put(0, copy_of(frames[0]));
-  shelf.put(1, copy_of(frames[1]));  // takes the place of the first, which nobody uses
+  shelf.put(1, copy_of(frames[1]));  // replaces the first, which is not in use
   std::shared_ptr<const FrameLog> held = shelf.take(0, tracing(frames[0]));
   std::atomic<bool> let_go{false};
   bool waited = false;

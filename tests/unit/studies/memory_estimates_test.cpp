@@ -70,7 +70,7 @@ sim::Config sweep_of(const std::string& nodes, const std::string& latencies) {
       "sweep.toml");
 }
 
-// Of 20,000 points with a machine each.
+// Plans of 20,000 points with a machine each.
 TEST(MemoryEstimates, OfPlansAreNotTooLow) {
   if (!test::memory_can_be_measured) {
     GTEST_SKIP() << "a sanitizer takes memory of its own";
@@ -80,7 +80,7 @@ TEST(MemoryEstimates, OfPlansAreNotTooLow) {
     sim::Config config = sweep_of("100", "200");
     static const SweepPlan plan = plan_sweep(config);
   }));
-  // What does not grow with the points: the configuration, and those that are read at a time.
+  // Memory that does not grow with the points: the configuration, and the points that are read at a time.
   const auto fixed = static_cast<double>(test::peak_bytes([] {
     sim::Config config = sweep_of("10", "60");
     static const SweepPlan plan = plan_sweep(config);

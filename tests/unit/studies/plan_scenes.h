@@ -159,7 +159,7 @@ inline scenes::Light random_light(Random& random) {
   return light;
 }
 
-/// None, all zero, all the triangles' own, or any.
+/// Normals: none, all zero, all the triangles' own, or random ones.
 inline void add_random_normals(Random& random, scenes::Scene& scene) {
   const std::uint32_t which = random.below(4);
   if (which == 0) {

@@ -125,13 +125,13 @@ TEST(AnswerOfSweep, ComparesTheSameWorkOnly) {
 }
 
 TEST(AnswerOfSweep, AdvisesGainsUpAndDown) {
-  // The price is the same: the best is the shortest, in the middle or at an end.
+  // All prices are equal, so the best machine is the fastest, in the middle or at an end.
   EXPECT_NE(all_of(line_of({{1, 50}, {1, 40}, {1, 60}})).find("no single step of an axis makes it faster"),
             std::string::npos);
   // The knee is the second of three on the front.
   const std::string up = all_of(line_of({{1, 1600}, {2, 400}, {1600, 390}}));
   EXPECT_NE(up.find("machine.nodes from 2 to 3 makes the frame 2.5 % shorter"), std::string::npos) << up;
-  // And so it is here, but its better neighbour lies below.
+  // The knee is the second here too, but its better neighbour has fewer nodes.
   const std::string down = all_of(line_of({{1600, 390}, {2, 400}, {1, 1600}}));
   EXPECT_NE(down.find("machine.nodes from 2 to 1 makes the frame 2.5 % shorter"), std::string::npos) << down;
   EXPECT_EQ(down.find("longer"), std::string::npos) << down;

@@ -145,7 +145,7 @@ class Account {
     return offered;
   }
 
-  // Being traced, or there with machines that nobody has.
+  // Frames being traced, or traced with machines that no worker has taken.
   [[nodiscard]] std::size_t logs_ahead() const {
     std::set<std::size_t> frames = tracing_;
     for (const auto& [key, batch] : batches_) {
@@ -187,7 +187,7 @@ class Account {
       RC_ASSERT(&batch_of(machine) == &batch);
       RC_ASSERT(batch.waiting.erase(machine) == 1);
     }
-    // As many as fit, one at least, and one where nothing is known of them.
+    // As many machines as fit in the time, at least one, and one while no time of the batch is known.
     const auto given = static_cast<std::int64_t>(task.machines.size());
     RC_ASSERT(given == 1 || (batch.timed != 0 && given * each <= nanoseconds));
     RC_ASSERT(batch.waiting.empty() || batch.timed == 0 || (given + 1) * each > nanoseconds);

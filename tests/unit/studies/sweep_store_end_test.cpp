@@ -106,7 +106,7 @@ TEST_P(SweepStoreKilled, LosesNothingThatWasCommitted) {
       EXPECT_GE(first_missing, committed) << "round " << round;
       EXPECT_EQ(std::find(done.begin() + static_cast<std::ptrdiff_t>(first_missing), done.end(), true),
                 done.end());
-      // What is there is as it was given: another result for it would be an InternalError.
+      // Stored results are those that were given: a different result would be an InternalError.
       for (std::size_t machine = 0; machine < first_missing; ++machine) {
         EXPECT_NO_THROW(store.add_result(machine, made_row(machine), 1));
       }

@@ -30,7 +30,7 @@ class Node : public sc_core::sc_module, public TurnTaker, public PacketUser {
   tlm_utils::simple_initiator_socket<Node> socket;
   sc_core::sc_port<HostInterface> host;
 
-  /// All but the idle time, which is known when all nodes are done.
+  /// All statistics except the idle time, which is known when all nodes are done.
   [[nodiscard]] const processors::NodeStatistics& statistics() const { return statistics_; }
   [[nodiscard]] bool finished() const { return finished_; }
   /// When its last write was done; 0 if it made none.
