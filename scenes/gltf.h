@@ -55,7 +55,7 @@ struct GltfOptions {
   ImageSizer size_first;
   /// Also reads and checks parts that the scene does not use: all images, and all accessors of numbers.
   bool read_unused = false;
-  std::uint64_t max_triangles = std::uint64_t{1} << 25;  ///< more triangles or vertices are refused
+  std::uint64_t max_triangles = std::uint64_t{1} << 25;  ///< more than this is refused; also for vertices
   std::uint64_t max_file_bytes = (std::uint64_t{1} << 32) - 1;  ///< of each file read
   /// The memory that the files, the scene made of them and its textures may take together. Instances are
   /// counted before they are expanded, texels before they are decoded.
