@@ -5,9 +5,9 @@
 // planes into child numbers, whatever the signs of the direction. Nothing is mirrored, so nothing is
 // rounded for it.
 //
-// This file holds the walk for any scalar; octree_walk_avx2.h the same steps on vectors for doubles, and
-// octree_far.h the slow walk for rays from far away. All three give the same hits, and the first two the
-// same visits.
+// This file holds the walk for any scalar; octree_walk_avx2.h has the same steps on vectors for doubles, and
+// octree_far.h the slow walk for rays from far away. All three give the same hits, and the first two the same
+// visits.
 #pragma once
 
 #include <array>
