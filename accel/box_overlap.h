@@ -1,4 +1,4 @@
-// Does a triangle meet an axis-aligned box? Both closed: touching counts.
+// Whether a triangle meets an axis-aligned box. Both are closed: touching counts.
 //
 // Separating axes (Akenine-Moller, "Fast 3D Triangle-Box Overlap Testing", JGT 6(1), 2001) in double, with an
 // error bound on each axis, so that the answer is never "no" when the exact answer is "yes". The three box
@@ -21,7 +21,7 @@ namespace marti::accel {
 
 namespace detail {
 
-/// Edge i cross axis a, against the box: false when it separates by more than the error bound.
+/// Tests edge i cross axis a; false when it separates triangle and box by more than the error bound.
 template <class Real>
 inline bool edge_axis_meets(Real e_b, Real e_c, Real h_b, Real h_c, Real v_b, Real v_c, Real w_b, Real w_c,
                             Real bound) {

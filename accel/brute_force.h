@@ -1,4 +1,4 @@
-// No structure at all: every ray tests every primitive. The oracle all structures are compared with.
+// No structure: every ray tests every primitive. All structures are compared with it.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace marti::accel {
 
-/// One leaf, node 0, that lists every primitive.
+/// A single leaf, node 0, that lists every primitive.
 class BruteForce {
  public:
   static constexpr std::string_view kind_name = "none";
@@ -25,8 +25,8 @@ class BruteForce {
   [[nodiscard]] const TriangleSet& triangles() const { return *triangles_; }
   [[nodiscard]] const scenes::Bounds& bounds() const { return triangles_->bounds(); }
 
-  /// The nearest hit. Real is the scalar the arithmetic is done in (double, Counted to count it, or
-  /// float to compare with).
+  /// The nearest hit. Real is the scalar of the arithmetic (double, Counted to count operations, or float for
+  /// comparison).
   template <class Real = double, class Visitor>
   [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
     const RaySetup<Real> setup(ray);

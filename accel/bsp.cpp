@@ -19,10 +19,10 @@ constexpr std::size_t most_nodes = (std::size_t{1} << 28) - 8;
 
 using Cell = std::array<std::uint32_t, 3>;
 
-/// How often the box of a node of `level` was halved across an axis.
+/// How many splits across an axis lead to the box of a node of `level`.
 int halvings(unsigned axis, unsigned level) { return static_cast<int>((level - 1 + 2 - axis) / 3); }
 
-/// A cell plane from its integer coordinate, so that neighbours share the same number.
+/// A cell plane computed from its integer coordinate, so that neighbours get the same number.
 double plane_at(const RootFrame& frame, unsigned axis, std::uint32_t i, int halved) {
   const int a = static_cast<int>(axis);
   return frame.box.lo[a] + (frame.box.hi[a] - frame.box.lo[a]) * std::ldexp(i, -halved);
@@ -48,14 +48,14 @@ std::vector<double> splitting_planes(const RootFrame& frame, const Topology& top
   return planes;
 }
 
-/// A box and its planes from whole numbers, enlarged by delta for the overlap test.
+/// The centre and half size of a box between such planes, enlarged by delta for the overlap test.
 struct Box {
   glm::dvec3 center;
   glm::dvec3 half;
 };
 
-/// Builds level by level. Nodes of a level are numbered in the order of their parents; `lists` holds what
-/// each of them lists.
+/// Builds level by level. Nodes of a level are numbered in the order of their parents; `lists` holds the
+/// triangles that each node lists.
 class Builder {
  public:
   Builder(const TriangleSet& triangles, const BspOptions& options, const RootFrame& frame, Topology& topology,
@@ -81,7 +81,7 @@ class Builder {
     std::uint8_t number = 1;
     std::uint32_t first_node = 0;
     std::vector<Cell> cells;
-    std::vector<std::size_t> begin;  ///< into lists, one more than cells
+    std::vector<std::size_t> begin;  ///< first entry of each cell in lists, and the end
     std::vector<std::uint32_t> lists;
   };
 
@@ -97,8 +97,8 @@ class Builder {
     return box;
   }
 
-  /// Whether the cells of the octree's level that `level` belongs to are thick enough to be told apart. Asked
-  /// for all three axes at once, so that the tree ends where the octree does.
+  /// Whether the cells of the octree level that `level` belongs to are at least 8 delta thick. All three axes
+  /// are tested together, so that the tree ends at the same cells as the octree.
   [[nodiscard]] bool resolvable(unsigned level) const {
     const int halved = halvings(0, level);
     for (int a = 0; a < 3; ++a) {
@@ -110,7 +110,7 @@ class Builder {
     return true;
   }
 
-  /// Whether all triangles of a node on an x level lie in the same two or more of its octants.
+  /// Whether all triangles of a node on an x level meet the same octants of it, two or more.
   [[nodiscard]] bool separates_nothing(const Level& level, std::size_t index) const {
     const Cell& cell = level.cells[index];
     std::array<Box, 8> octants;
@@ -134,7 +134,7 @@ class Builder {
     return std::popcount(same) >= 2;
   }
 
-  /// The lists of the two halves of a node, into `lists_of_children_`.
+  /// Sorts a node's list into the lists of its two halves, in `lists_of_children_`.
   void sort_into_children(const Level& level, std::size_t index) {
     const unsigned axis = bsp_axis(level.number);
     for (std::uint32_t side = 0; side < 2; ++side) {
@@ -156,7 +156,7 @@ class Builder {
     topology_.work.emplace_back();
   }
 
-  /// For the level's nodes from `index` to the next question.
+  /// Checks the memory for the level's nodes from `index` up to the next check.
   void require_memory(const Level& level, const Level& next, std::size_t index) const {
     const std::size_t end = std::min(index + nodes_between_checks, level.cells.size());
     const std::size_t children = 2 * (end - index);

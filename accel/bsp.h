@@ -3,9 +3,9 @@
 // leaf to leaf by a point pushed through their faces (bsp_push.h).
 //
 // Three levels of it make one level of the octree, and its cells are the octree's: the root box, the margin
-// delta, the planes and the rule by which cells list triangles are the same. So the argument of octree.h
-// holds for the walk from the root down word for word: it carries the ray's parameters at a node's six
-// planes, takes the average of two for the centre plane, and cuts the node's piece of the ray there without a
+// delta, the planes and the rule by which cells list triangles are the same. The argument of octree.h
+// therefore holds for the walk from the root down without change: the walk carries the ray's parameters at a
+// node's six planes, averages two for the centre plane, and cuts the node's piece of the ray there without a
 // gap.
 #pragma once
 
@@ -32,20 +32,20 @@
 
 namespace marti::accel {
 
-/// The two walks. They give the same hits; see above.
+/// The two walks. They give the same hits.
 enum class BspWalk : std::uint8_t { recursive, push_point };
 inline constexpr std::array<std::string_view, 2> bsp_walk_names = {"recursive", "push_point"};
 
 struct BspOptions {
   /// A node that lists more than this many triangles is split, unless it is at the deepest level. At least 1.
   std::uint32_t max_objects = 8;
-  /// In levels of the octree, so that the smallest cells of both are the same: the tree's deepest level is
-  /// 3 (max_level - 1) + 1, the root being level 1. From 1 to 21.
+  /// In levels of the octree, so that both have the same smallest cells: the tree's deepest level is 3
+  /// (max_level - 1) + 1, the root being level 1. From 1 to 21.
   std::uint32_t max_level = 12;
-  /// As the octree's.
+  /// As OctreeOptions::max_entries.
   std::uint64_t max_entries = std::uint64_t{1} << 25;
   BspWalk walk = BspWalk::recursive;
-  /// As the octree's.
+  /// As OctreeOptions::memory.
   sim::MemoryBudget memory{};
 };
 
@@ -54,10 +54,10 @@ class Bsp {
   static constexpr std::string_view kind_name = "bsp";
 
   /// Builds the whole tree, level by level. Throws UserError when an option is out of range. The first child
-  /// of a branch is the lower half. A node with more than max_objects triangles stays a leaf for the octree's
-  /// reasons: the deepest level; children thinner than 8 delta; max_entries or 2^28 nodes reached; or, before
-  /// a split across x, that the next three splits would separate nothing: every triangle lies in the same two
-  /// or more of the node's octants.
+  /// of a branch is the lower half. A node with more than max_objects triangles remains a leaf for the
+  /// octree's reasons: it is on the deepest level; its children would be thinner than 8 delta; max_entries or
+  /// 2^28 nodes are reached; or, before a split across x, the next three splits would separate nothing: every
+  /// triangle meets the same octants of the node, two or more.
   [[nodiscard]] static Bsp build(std::shared_ptr<const TriangleSet> triangles,
                                  const BspOptions& options = {});
 
@@ -69,11 +69,11 @@ class Bsp {
   [[nodiscard]] Traversal traversal() const {
     return options_.walk == BspWalk::push_point ? Traversal::bsp_push_point : Traversal::bsp_recursive;
   }
-  /// levels()[i] is level i + 1 of this tree; as many as it has.
+  /// levels()[i] is level i + 1 of this tree.
   [[nodiscard]] const std::vector<LevelStatistics>& levels() const { return levels_; }
 
-  /// The nearest hit. Real is the scalar the arithmetic is done in (double, Counted to count it, or
-  /// float to compare with).
+  /// The nearest hit. Real is the scalar of the arithmetic (double, Counted to count operations, or float for
+  /// comparison).
   template <class Real = double, class Visitor>
   [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
     const RaySetup<Real> setup(ray);
@@ -91,7 +91,7 @@ class Bsp {
   }
 
  private:
-  /// One sibling a level waits at most.
+  /// At most one sibling a level waits.
   static constexpr std::size_t stack_size = 3 * 20 + 1;
 
   Bsp() = default;
@@ -110,7 +110,7 @@ class Bsp {
   RootFrame frame_;
   Topology topology_;
   std::vector<LevelStatistics> levels_;
-  std::vector<double> planes_;  ///< by node number, as BspPushView says; only for that walk
+  std::vector<double> planes_;  ///< by node number, as in BspPushView; only for that walk
   glm::dvec3 push_{0.0};
 };
 
@@ -119,7 +119,7 @@ bool Bsp::walk(const WalkStart<Real>& start, const RaySetup<Real>& setup, Best<R
                Visitor& visitor) const {
   using Integer = IntegerOf<Real>;
   const Real half(0.5);
-  // Of each axis, the half the ray comes from and the one it goes to.
+  // For each axis the half that the ray enters first, and the other one.
   std::array<Integer, 3> near_half;
   std::array<Integer, 3> far_half;
   for (std::uint32_t a = 0; a < 3; ++a) {

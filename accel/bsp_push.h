@@ -11,14 +11,13 @@
 //   - the descent takes one comparison a level, with the plane that each branch keeps.
 //
 // Why it finds every hit that brute force finds, bit for bit, and always ends (u, D, delta and the root box
-// as in octree.h; directions "forwards" along an axis are the ray's):
+// as in octree.h; "forwards" along an axis is the ray's direction):
 //  1. On each axis `passed` is the coordinate the ray has been pushed to when it last left a leaf along that
 //     axis. It only moves forwards, and the point that locates the next leaf is never behind it.
 //  2. A leaf holds its point, so the face by which it is left along axis k lies at or beyond passed[k].
-//  passed[k]
-//     is not in a plane: it is a plane plus half the smallest cell, which is 4 delta or more. So each step
-//     takes passed[k] on by a whole smallest cell at least. A walk thus visits no leaf twice and ends after
-//     3 * 2^20 steps at most, whatever is rounded.
+//     passed[k] is not in a plane: it is a plane plus half the smallest cell, which is 4 delta or more. So
+//     each step takes passed[k] on by at least a whole smallest cell. A walk thus visits no leaf twice and
+//     ends after 3 * 2^20 steps at most, whatever is rounded.
 //  3. A plane's parameter is a subtraction and a division, both rounded, hence monotone in the plane, and the
 //     same wherever the plane occurs. Let M be the largest parameter at which a leaf was left so far, at
 //     first that of the entry into the root. A leaf is given the piece from the M before it to the M after
@@ -58,7 +57,7 @@ namespace marti::accel {
 /// What the walk reads, by reference.
 struct BspPushView {
   const Topology* topology;
-  const double* planes;  ///< of each branch, by node number
+  const double* planes;  ///< the plane that splits each branch, by node number
   const TriangleSet* triangles;
   const RootFrame* frame;
   glm::dvec3 push;  ///< half the smallest cell
@@ -90,7 +89,7 @@ bool walk_bsp_push(const BspPushView& view, const Ray& ray, const WalkStart<Real
     const int k = static_cast<int>(a);
     axis.backwards = ((plain(start.mask) >> a) & 1U) != 0;
     axis.origin = Real(ray.origin[k]);
-    // Without slope every plane but one through the origin is as good as infinitely far.
+    // With slope 0 every plane except one through the origin counts as infinitely far.
     axis.direction = Real(ray.direction[k] == 0.0 ? std::numeric_limits<double>::min() : ray.direction[k]);
     axis.push = Real(axis.backwards ? -view.push[k] : view.push[k]);
     axis.lo = view.frame->box.lo[k];
@@ -101,7 +100,7 @@ bool walk_bsp_push(const BspPushView& view, const Ray& ray, const WalkStart<Real
   }
   Integer best_so_far = no_primitive;
   for (std::uint32_t steps = 3U << 20U; steps-- > 0;) {
-    // Locate the leaf that holds the point, and its faces.
+    // Find the leaf that holds the point, and its faces.
     std::array<double, 3> lo{axes[0].lo, axes[1].lo, axes[2].lo};
     std::array<double, 3> hi{axes[0].hi, axes[1].hi, axes[2].hi};
     std::uint32_t node = 0;
@@ -132,7 +131,7 @@ bool walk_bsp_push(const BspPushView& view, const Ray& ray, const WalkStart<Real
     for (std::uint32_t a = 0; a < 3; ++a) {
       until[a] = max(axes[a].parameter(Real(lo[a])), axes[a].parameter(Real(hi[a])));
     }
-    // x before y before z on ties.
+    // On ties x comes before y, and y before z.
     std::uint32_t exit = until[0] <= until[1] ? 0U : 1U;
     if (!(until[exit] <= until[2])) {
       exit = 2U;

@@ -1,4 +1,4 @@
-// What a structure takes while it is built, asked before its arrays grow.
+// The memory that a structure takes while it is built, checked before its arrays grow.
 #pragma once
 
 #include <algorithm>
@@ -12,11 +12,11 @@
 
 namespace marti::accel {
 
-/// Nodes that a builder makes between two questions of whether there is memory for more.
+/// Nodes that a builder makes between two checks of the memory.
 inline constexpr std::size_t nodes_between_checks = 1024;
 
-/// Bytes that a vector takes at most while `more` elements are appended: one that must grow is copied into
-/// one twice as large.
+/// The most bytes that a vector takes while `more` elements are appended: to grow, it is copied into one
+/// twice as large.
 template <class Vector>
 [[nodiscard]] std::uint64_t growing_bytes(const Vector& vector, std::size_t more) {
   const std::size_t room = vector.capacity();
@@ -25,13 +25,13 @@ template <class Vector>
          (needed <= room ? room : room + std::max(2 * vector.size(), needed));
 }
 
-/// The bytes that it has.
+/// The bytes that a vector takes.
 template <class Vector>
 [[nodiscard]] std::uint64_t bytes_of_vector(const Vector& vector) {
   return growing_bytes(vector, 0);
 }
 
-/// Throws UserError when a tree that takes `bytes` so far is beyond the budget. `kind` is the structure's.
+/// Throws UserError when `bytes`, which the tree takes so far, exceed the budget. `kind` is the structure's.
 inline void require_tree(const sim::MemoryBudget& budget, std::uint64_t bytes, std::string_view kind) {
   budget.require(bytes, "so far the structure (" + std::string(kind) + ") takes",
                  "lower structure.max_level or raise structure.max_objects");

@@ -1,7 +1,7 @@
 // Scalars that count their own operations, so that the cost of the real templates (intersection kernel,
-// traversal, shading) is measured by running them and never guessed.
+// traversal, shading) is measured by running them.
 //
-// What counts as what, on Counted:
+// How operations on Counted are counted:
 //   add          + and - of two values, += and -=
 //   multiply     *
 //   divide       /
@@ -40,7 +40,7 @@ struct OperationCounts {
     integer += other.integer;
     return *this;
   }
-  /// What happened between two readings: later - earlier.
+  /// The operations between two readings: later - earlier.
   friend OperationCounts operator-(OperationCounts later, const OperationCounts& earlier) {
     later.add -= earlier.add;
     later.multiply -= earlier.multiply;
@@ -52,14 +52,14 @@ struct OperationCounts {
   }
 };
 
-/// The calling thread's counters: everything Counted and CountedInt did on this thread since it began.
-/// Read it before and after, or assign {} to start at nought.
+/// The calling thread's counters: all operations on Counted and CountedInt on this thread since it began.
+/// Read them before and after, or assign {} to start from zero.
 [[nodiscard]] inline OperationCounts& operation_counts() {
   thread_local OperationCounts counts;
   return counts;
 }
 
-/// A double that counts. Converts from double freely (so literals work), to double only explicitly.
+/// A double that counts. Converts from double implicitly (so literals work), to double explicitly.
 class Counted {
  public:
   Counted() = default;
@@ -125,7 +125,7 @@ class Counted {
   double value_ = 0.0;
 };
 
-/// A 32-bit unsigned integer that counts.
+/// A 32-bit unsigned integer that counts its operations.
 class CountedInt {
  public:
   CountedInt() = default;
@@ -163,7 +163,7 @@ class CountedInt {
   std::uint32_t value_ = 0;
 };
 
-/// The integer that goes with a real: CountedInt beside Counted, a plain one otherwise.
+/// The integer type to use with a real: CountedInt with Counted, std::uint32_t with others.
 template <class Real>
 using IntegerOf = std::conditional_t<std::is_same_v<Real, Counted>, CountedInt, std::uint32_t>;
 

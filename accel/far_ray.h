@@ -18,22 +18,22 @@
 
 namespace marti::accel {
 
-/// A ray's parameters inside an enlarged box; empty when in > out. Never NaN.
+/// The interval of a ray's parameters inside an enlarged box; empty when in > out. Never NaN.
 struct FarSpan {
   double in;
   double out;
 };
 
-/// What the slow walk knows of its ray.
+/// The data of a ray for the slow walk.
 struct FarRay {
   std::array<double, 3> origin;
   std::array<double, 3> direction;
   double t_min;
   double margin;  ///< by how much boxes are enlarged: kernel, slab and cell errors together
-  double slack;   ///< the same as a parameter
+  double slack;   ///< the margin as a parameter of the ray
 
-  /// `float_kernel`: primitives are intersected in floats. Then the hit may be off by what watertight.h
-  /// says, coordinates and origin are rounded, and cells' own margins are nothing against that.
+  /// `float_kernel`: primitives are intersected in floats. Then a hit may be off by watertight.h's error for
+  /// floats, coordinates and origin are rounded, and the cells' own margins are negligible beside that.
   FarRay(const RootFrame& frame, const Ray& ray, bool float_kernel = false)
       : origin{ray.origin.x, ray.origin.y, ray.origin.z},
         direction{ray.direction.x, ray.direction.y, ray.direction.z},

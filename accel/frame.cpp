@@ -10,12 +10,12 @@ namespace marti::accel {
 
 namespace {
 
-// By how many delta the root reaches beyond the triangles. More than the 2 that hits need: then corners on a
-// dyadic plane of the tight box, common in models, lie clearly on one side of the moved plane instead of
-// within delta of it, and their triangles are not listed twice. And no power of two, so that the flat side of
-// a flat scene is in no plane of any level.
+// By how many delta the root reaches beyond the triangles. It is more than the 2 that hits need, so that
+// corners on a dyadic plane of the tight box, common in models, lie clearly on one side of the moved plane
+// instead of within delta of it, and their triangles are not listed twice. It is not a power of two, so that
+// the flat side of a flat scene lies in no plane of any level.
 constexpr double root_margin = 192.0;
-// As for triangles: products of three coordinates must stay far from overflow.
+// Products of three coordinates must stay far from overflow, as in triangles.cpp.
 constexpr double largest_coordinate = 0x1p300;
 
 void check_enclosed(const scenes::Bounds& box) {
@@ -32,7 +32,7 @@ void check_enclosed(const scenes::Bounds& box) {
   }
 }
 
-/// Whether a box was given at all: the default one is inside out on every axis.
+/// Whether a box was given: the default box has lo > hi on every axis.
 bool given(const scenes::Bounds& box) {
   return !(box.lo.x > box.hi.x && box.lo.y > box.hi.y && box.lo.z > box.hi.z);
 }
@@ -65,7 +65,7 @@ RootFrame make_frame(const TriangleSet& triangles, const scenes::Bounds& enclose
     frame.box.hi[a] = std::max(frame.box.hi[a], frame.box.lo[a] + 0x1p-12 * diagonal);
   }
   frame.center = 0.5 * frame.box.lo + 0.5 * frame.box.hi;
-  // 64 on each axis keeps the distance below 128 diagonals.
+  // 64 on each axis makes the distance less than 128 diagonals.
   frame.far = 64.0 * diagonal;
   frame.largest_inverse = 0x1p1014 / std::max(1.0, diagonal);
   return frame;

@@ -1,4 +1,4 @@
-// What all subdividing structures begin with: the box they divide and its margins.
+// The box that every subdividing structure divides, and its margins.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace marti::accel {
 
-/// The root box and what follows from it.
+/// The root box and the values that follow from it.
 struct RootFrame {
   /// The tight box of the triangles enlarged by 192 delta, and at least D / 4096 thick on every axis (it
   /// grows upwards, so that a flat scene does not lie in a mid-plane). Empty without triangles.
@@ -22,9 +22,9 @@ struct RootFrame {
   double largest_inverse = 0.0;  ///< cap on 1 / |direction component|, so that no plane's parameter overflows
 };
 
-/// `enclose`, unless empty, is a box that the root box must hold too: that of all frames of an animation, so
-/// that every frame has the same root. Without triangles it is not looked at. Throws UserError when it has a
-/// coordinate that is no number of magnitude up to 2^300, or is turned inside out on some axis.
+/// `enclose`, unless empty, is a box that the root box must contain: that of all frames of an animation, so
+/// that every frame has the same root. It is ignored without triangles. Throws UserError when one of its
+/// coordinates is not a number of magnitude up to 2^300, or when lo > hi on some axis.
 [[nodiscard]] RootFrame make_frame(const TriangleSet& triangles, const scenes::Bounds& enclose = {});
 
 /// Throws UserError, naming the structure and its option, when the value is out of range.

@@ -18,13 +18,14 @@ std::uint64_t cells_of(const Resolution& n) { return std::uint64_t{n[0]} * n[1] 
 
 glm::dvec3 extent_of(const RootFrame& frame) { return frame.box.hi - frame.box.lo; }
 
-/// Cubes of a size that fills the box with `cells` of them; an axis shorter than such a cube gets one cell
-/// and leaves its share to the others.
+/// The numbers of cubes of equal size that fill the box with about `cells` cubes; an axis shorter than such a
+/// cube gets one cell, and the other axes get more.
 Resolution resolution_for(const RootFrame& frame, double cells) {
   const glm::dvec3 extent = extent_of(frame);
   Resolution n{0, 0, 0};  // 0: not yet settled
   for (int a = 0; a < 3; ++a) {
-    n[static_cast<std::size_t>(a)] = extent[a] > 0.0 ? 0U : 1U;  // no extent at all: a point in the origin
+    n[static_cast<std::size_t>(a)] = extent[a] > 0.0 ? 0U : 1U;  // 0: all primitives are a point in the
+                                                                 // origin
   }
   for (;;) {
     double log_volume = 0.0;  // a product of three extents could overflow
@@ -65,7 +66,7 @@ void halve(Resolution& n) {
   }
 }
 
-/// What is asked for; a density that asks for more than `most` cells gets as many.
+/// The resolution that the options ask for; a density that asks for more than `most` cells gets `most`.
 Resolution asked_for(const RootFrame& frame, const GridOptions& options, std::uint32_t triangles,
                      double most) {
   const Resolution& n = options.resolution;
@@ -114,7 +115,7 @@ void for_cells(const TriangleSet& set, std::uint32_t id, const std::array<std::v
     const Extent<double> extent = extent_of<double>(set, id, a);
     const double lo = extent.lo - delta;
     const double hi = extent.hi + delta;
-    // The first cell whose upper plane is not below, and the last whose lower plane is not above.
+    // The first cell whose upper plane is not below the primitive, the last whose lower plane is not above.
     const auto first = planes[a].begin();
     begin[a] = static_cast<std::size_t>(std::lower_bound(first + 1, planes[a].end() - 1, lo) - first) - 1;
     end[a] = static_cast<std::size_t>(std::upper_bound(first + 1, planes[a].end() - 1, hi) - first);

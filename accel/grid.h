@@ -5,11 +5,9 @@
 //
 // Why it finds every hit that brute force finds, bit for bit (u, D, delta and the root box as in octree.h):
 //  1. A cell lists every triangle that meets the cell enlarged on all sides by delta. Neighbours share the
-//  very
-//     same plane, which is computed from its integer number.
+//     very same plane, which is computed from its integer number.
 //  2. An accepted hit at t has the ray's point at t within 2^-41 D of the triangle, hence inside the root
-//  box,
-//     hence t is between the parameters at which the ray enters and leaves the box.
+//     box, hence t is between the parameters at which the ray enters and leaves the box.
 //  3. Along each axis the computed parameter of the planes never decreases with their number: a subtraction
 //     and a multiplication by one positive number, both rounded, are monotone. The start cell is moved until
 //     the entry lies between the computed parameters of its planes, and each step goes to the cell beyond the
@@ -46,29 +44,29 @@
 namespace marti::accel {
 
 struct GridOptions {
-  /// Cells for each triangle, about; the cells are as near to cubes as whole numbers allow. Above 0, up to
-  /// 2^20.
+  /// About so many cells for each triangle; the cells are as near to cubes as whole numbers allow. Above 0,
+  /// up to 2^20.
   double density = 4.0;
-  /// Cells along x, y and z; with a 0 among them all three follow from the density. Up to 2^20 each.
+  /// Cells along x, y and z; if one is 0 all three follow from the density. Up to 2^20 each.
   std::array<std::uint32_t, 3> resolution{0, 0, 0};
-  /// Beyond this many cells the resolution is lowered. From 1 to 2^27.
+  /// The most cells; a resolution with more is lowered. From 1 to 2^27.
   std::uint64_t max_cells = std::uint64_t{1} << 22;
-  /// As long as the cells list more than this many triangles in all, the resolution is halved; it bounds the
-  /// memory of hostile scenes (4 bytes an entry). At least 1.
+  /// The resolution is halved until the cells list at most this many triangles in all; it bounds the memory
+  /// of hostile scenes (4 bytes an entry). At least 1.
   std::uint64_t max_entries = std::uint64_t{1} << 25;
-  /// What the grid and its building may take of the host's memory; a UserError refuses more.
+  /// The host memory for the grid and its building; if more is needed, a UserError is thrown.
   sim::MemoryBudget memory{};
 };
 
-/// The topology: node 0, the grid's header, is a branch, and its children are all cells as leaves: cell
-/// (x, y, z) is node 1 + x + nx (y + ny z). Without triangles node 0 is an empty leaf. A walk visits the
-/// header once and then the cells on the ray, front to back, empty ones too.
+/// The topology: node 0, the grid's header, is a branch, and its children are all cells as leaves: cell (x,
+/// y, z) is node 1 + x + nx (y + ny z). Without triangles node 0 is an empty leaf. A walk visits the header
+/// once and then the cells on the ray, front to back, empty cells included.
 class Grid {
  public:
   static constexpr std::string_view kind_name = "grid";
 
   /// Throws UserError when an option is out of range. Besides the limits of the options, cells are at least 8
-  /// delta thick, so a scene that is flat along an axis has few cells or one along it.
+  /// delta thick, so a scene that is flat along an axis has few cells along it, or one.
   [[nodiscard]] static Grid build(std::shared_ptr<const TriangleSet> triangles,
                                   const GridOptions& options = {});
 
@@ -77,15 +75,15 @@ class Grid {
   [[nodiscard]] const GridOptions& options() const { return options_; }
   [[nodiscard]] const scenes::Bounds& bounds() const { return frame_.box; }
   [[nodiscard]] double delta() const { return frame_.delta; }
-  /// What the options ask for, before the limits lower it. The same as resolution() where they do not.
+  /// The resolution that the options ask for, before the limits lower it.
   [[nodiscard]] const std::array<std::uint32_t, 3>& requested() const { return requested_; }
   /// Cells along x, y and z; all 0 without triangles.
   [[nodiscard]] const std::array<std::uint32_t, 3>& resolution() const { return resolution_; }
   /// Plane `i` of an axis, from 0 to the resolution.
   [[nodiscard]] double plane(unsigned axis, std::uint32_t i) const { return planes_[axis][i]; }
 
-  /// The nearest hit. Real is the scalar the arithmetic is done in (double, Counted to count it, or
-  /// float to compare with).
+  /// The nearest hit. Real is the scalar of the arithmetic (double, Counted to count operations, or float for
+  /// comparison).
   template <class Real = double, class Visitor>
   [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
     const RaySetup<Real> setup(ray);
@@ -112,7 +110,7 @@ class Grid {
             Visitor& visitor) const;
   template <bool Any, class Real, class Visitor>
   bool walk_far(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const;
-  /// Where a coordinate is along an axis of the box, in cells, and the cell of it.
+  /// The position of a coordinate along an axis of the box, in cells; cell_at() gives its cell.
   template <class Real>
   [[nodiscard]] Real share_along(unsigned axis, Real position) const {
     const int a = static_cast<int>(axis);
@@ -141,10 +139,10 @@ bool Grid::walk(const Ray& ray, const WalkStart<Real>& start, const RaySetup<Rea
     const double* planes;
     Real origin;
     Real inverse;    // as in start_walk
-    Integer next;    // number of the plane the cell is left through
-    Integer last;    // the plane beyond which there is no cell
+    Integer next;    // number of the plane by which the cell is left
+    Integer last;    // number of the plane beyond which there is no cell
     Integer step;    // +1 or -1, modulo 2^32
-    Integer stride;  // the same for the node number
+    Integer stride;  // the step's change of the node number
     bool negative;
 
     [[nodiscard]] Real at(std::uint32_t i) const {
@@ -166,8 +164,8 @@ bool Grid::walk(const Ray& ray, const WalkStart<Real>& start, const RaySetup<Rea
     axis.inverse = min(Real(1.0) / abs(Real(ray.direction[k])), Real(frame_.largest_inverse));
     axis.negative = ((plain(start.mask) >> a) & 1U) != 0;
     const Real guess = share_along(a, Real(ray.origin[k]) + Real(ray.direction[k]) * in);
-    const Integer side = axis.negative ? 0U : 1U;  // from a cell to the plane it is left through
-    const Integer back = axis.negative ? 1U : 0U;  // and to the one it is entered by
+    const Integer side = axis.negative ? 0U : 1U;  // from a cell to the plane by which it is left
+    const Integer back = axis.negative ? 1U : 0U;  // and to the plane by which it is entered
     Integer cell = cell_at(a, plain(guess));
     axis.step = axis.negative ? 0xffffffffU : 1U;
     const Integer first = axis.negative ? n - 1 : 0U;
@@ -196,7 +194,7 @@ bool Grid::walk(const Ray& ray, const WalkStart<Real>& start, const RaySetup<Rea
       best_so_far = best.primitive;
       limit = min(limit, best.t + start.slack);
     }
-    // x before y before z on ties.
+    // On ties x comes before y, and y before z.
     std::uint32_t a = until[0] <= until[1] ? 0U : 1U;
     if (!(until[a] <= until[2])) {
       a = 2U;
@@ -229,7 +227,7 @@ bool Grid::walk_far(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& bes
   }
   visitor.branch(0);
   const std::array<std::uint32_t, 3> strides{1U, resolution_[0], resolution_[0] * resolution_[1]};
-  // Slices across the ray's main axis, rows of a slice, cells of a row, along the direction each.
+  // Slices across the ray's main axis, rows of a slice, cells of a row, all in the ray's direction.
   const std::array<unsigned, 3> order{setup.kz, setup.kx, setup.ky};
   const auto narrow = [&](unsigned axis, std::uint32_t k) {
     const int a = static_cast<int>(axis);

@@ -1,4 +1,4 @@
-// The intersection test of any primitive of a set: the one call by which structures test what they list.
+// The intersection test of any primitive of a set: the one function by which structures test primitives.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace marti::accel {
 
-/// Tests primitive `id` of the set. True when it became the best hit; then `best` holds it.
+/// Tests primitive `id` of the set. True when it became the best hit; `best` then holds it.
 template <class Real>
 inline bool intersect_primitive(const RaySetup<Real>& ray, const TriangleSet& set, std::uint32_t id,
                                 Best<Real>& best) {

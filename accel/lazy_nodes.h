@@ -1,4 +1,4 @@
-// Where a lazy octree keeps its nodes and lists: in chunks that never move, so that rays read them while
+// The storage of a lazy octree's nodes and lists, in chunks that never move, so that rays read them while
 // other threads add more.
 #pragma once
 
@@ -16,29 +16,29 @@
 
 namespace marti::accel {
 
-/// A node still to be subdivided: its place and what it lists.
+/// A node still to be subdivided: its place and the triangles that it lists.
 struct PendingNode {
   OctreeCell cell;
   std::vector<std::uint32_t> list;
 };
 
-/// `info` says what the node is; the rest may be read only after it was read with acquire
-/// order and found to be a leaf or a branch, or by the thread that turned it from pending to building.
+/// `info` gives the state of the node. Other members may be read only after `info` was read with acquire
+/// order and gave a leaf or a branch, or by the thread that changed it from pending to building.
 struct LazyNode {
   static constexpr std::uint32_t pending = 0x40000000U;   ///< to be subdivided when a ray needs it
-  static constexpr std::uint32_t building = 0x60000000U;  ///< a thread is at it
+  static constexpr std::uint32_t building = 0x60000000U;  ///< a thread is subdividing it
 
   std::atomic<std::uint32_t> info{OctreeNode::leaf_bit};  ///< as OctreeNode's, or one of the above
   std::uint32_t first = 0;                                ///< branch: its first child's number
   const std::uint32_t* list = nullptr;                    ///< leaf: the triangles it lists
-  PendingNode* waiting = nullptr;                         ///< pending: owned
+  PendingNode* waiting = nullptr;                         ///< pending: its place and list, owned
 
   [[nodiscard]] static bool is_pending(std::uint32_t info) {
     return (info & OctreeNode::leaf_bit) == 0 && (info & pending) != 0;
   }
 };
 
-/// Grows only. Node numbers begin at 0, the root; the eight children of a branch are consecutive.
+/// Nodes are only added. Numbers begin at 0, the root; the eight children of a branch are consecutive.
 class LazyNodes {
  public:
   LazyNodes();
@@ -46,16 +46,16 @@ class LazyNodes {
   LazyNodes& operator=(const LazyNodes&) = delete;
   ~LazyNodes();
 
-  /// The node must have been added, and its number have come here through an acquire of its parent's info.
+  /// The node must exist, and the caller must have its number from an acquire of its parent's info.
   [[nodiscard]] LazyNode& operator[](std::uint32_t n) const {
     const std::size_t at = n + node_offset;
     return (*chunks_)[at / chunk_nodes].load(std::memory_order_relaxed)[at % chunk_nodes];
   }
 
-  /// Eight nodes, as yet empty leaves; returns the first one's number. Any thread may call it. Throws
-  /// UserError when there would be more than most_octree_nodes.
+  /// Adds eight nodes, which are empty leaves at first; returns the number of the first. Any thread may call
+  /// it. Throws UserError when there would be more than most_octree_nodes.
   [[nodiscard]] std::uint32_t add_children();
-  /// Room for a list that stays as long as this object. Any thread may call it.
+  /// Room for a list, which exists as long as this object. Any thread may call it.
   [[nodiscard]] std::uint32_t* add_list(std::size_t entries);
 
   [[nodiscard]] std::uint32_t size() const { return size_.load(std::memory_order_acquire); }
@@ -69,7 +69,7 @@ class LazyNodes {
 
   std::unique_ptr<std::array<std::atomic<LazyNode*>, most_chunks>> chunks_;
   std::atomic<std::uint32_t> size_{1};
-  std::mutex mutex_;  ///< guards what follows, and who writes what precedes
+  std::mutex mutex_;  ///< guards the members below, and writes to those above
   std::vector<std::unique_ptr<LazyNode[]>> owned_;
   std::vector<std::unique_ptr<std::uint32_t[]>> lists_;
   std::uint32_t* free_list_ = nullptr;

@@ -10,7 +10,7 @@ namespace marti::accel {
 
 namespace {
 
-// A thread keeps the memory in which it sorted a node of up to this many triangles for the next one.
+// A thread keeps its memory for sorting for the next node, up to that for a node with this many triangles.
 constexpr std::size_t kept_scratch = std::size_t{1} << 16;
 
 [[noreturn]] void refuse_limit(const OctreeOptions& options) {
@@ -41,7 +41,7 @@ LazyOctree::LazyOctree(std::shared_ptr<const TriangleSet> triangles, const Octre
     refuse_limit(options);
   }
   state.listed = topology.entries.size();
-  // Both number breadth-first, so the numbers are the same.
+  // Both number their nodes breadth-first, so the numbers are the same.
   std::vector<OctreeCell> cells(topology.nodes.size());
   std::size_t unsplit = 0;
   for (std::uint32_t n = 0; n < topology.nodes.size(); ++n) {
@@ -98,7 +98,7 @@ std::uint32_t LazyOctree::resolve(State& state, LazyNode& node) {
   for (;;) {
     std::uint32_t info = LazyNode::pending;
     if (node.info.compare_exchange_strong(info, LazyNode::building, std::memory_order_acquire)) {
-      // Whatever happens, those who wait must be woken; after a failure the next of them tries itself.
+      // Waiting threads must be woken even after a failure; the next of them then tries to divide the node.
       struct Publish {
         LazyNode& node;
         std::uint32_t info = LazyNode::pending;
@@ -111,7 +111,7 @@ std::uint32_t LazyOctree::resolve(State& state, LazyNode& node) {
       return publish.info;
     }
     if (!LazyNode::is_pending(info)) {
-      // Another thread's: what it wrote must be seen.
+      // Divided by another thread; the acquire makes its writes visible.
       return node.info.load(std::memory_order_acquire);
     }
     node.info.wait(LazyNode::building, std::memory_order_acquire);
@@ -138,7 +138,7 @@ std::uint32_t LazyOctree::divide(State& state, LazyNode& node) {
     for (const auto& child : sorted.lists) {
       listed += child.size();
     }
-    // In steps modulo 2^64, as the children may list fewer than their parent.
+    // Computed modulo 2^64, as the children may list fewer triangles than their parent.
     const std::uint64_t more = listed - list.size();
     if (state.listed.fetch_add(more, std::memory_order_relaxed) + more >= state.options.max_entries) {
       state.listed.fetch_sub(more, std::memory_order_relaxed);
@@ -229,9 +229,9 @@ std::vector<std::uint32_t> LazyOctree::pending() const {
 OctreeBuild LazyOctree::snapshot() const {
   OctreeBuild build;
   Topology& topology = build.topology;
-  std::vector<std::uint32_t> here{0};  // our numbers of the level at hand
+  std::vector<std::uint32_t> here{0};  // numbers in this tree of the nodes of the present level
   topology.nodes.emplace_back();
-  std::size_t next = 0;  // the number in the snapshot
+  std::size_t next = 0;  // number in the snapshot
   for (std::uint8_t number = 1; !here.empty(); ++number) {
     LevelStatistics& level = build.levels.emplace_back();
     std::vector<std::uint32_t> below;

@@ -1,16 +1,16 @@
 // The octree that is built while it is used (McNeill, Shah, Hebert, Lister, Grimsdale, "Performance of Space
 // Subdivision Techniques in Ray Tracing", Computer Graphics Forum 11(4), 1992): down to an initial level
-// before the first ray, below it a node at a time, each when the first ray comes to it. Nodes are branches
+// before the first ray, and below it node by node, each when the first ray reaches it. Nodes are branches
 // (B), leaves (L) or still to be subdivided (P).
 //
-// Any number of threads may use it at once. The first that comes to a P node subdivides it, exactly once;
-// others that come to it wait. What it has been divided into never moves nor changes, so that the rest of the
-// walk is that of a finished tree, and takes no lock.
+// Any number of threads may use it at once. The first one that reaches a P node subdivides it, exactly once;
+// others that reach it meanwhile wait. A subdivided node and its children never move or change, so the rest
+// of a walk is that of a finished tree and takes no lock.
 //
-// It is the octree of octree.h, divided by the same rules, so its hits are the same, bit for bit, and
-// expanded fully it is the same tree node by node, in whatever order it grew. To keep that true it never
-// stops at a limit that depends on the order: where the tree would list max_entries triangles or more, the
-// query that would make it so throws UserError. (An octree built at once keeps such a node as a leaf.)
+// It is the octree of octree.h, divided by the same rules, so its hits are the same, bit for bit, and when
+// fully expanded it is the same tree node by node, in whatever order it grew. For that reason it never stops
+// at a limit that depends on the order: a query after which the tree would list max_entries triangles or more
+// throws UserError. (An octree built at once keeps such a node as a leaf.)
 #pragma once
 
 #include <atomic>
@@ -31,16 +31,16 @@ namespace marti::accel {
 
 struct LazyOctreeOptions {
   OctreeOptions tree;
-  /// How far it is built before the first ray. As it is: fully, so that nothing is left to do.
+  /// How far it is built before the first ray. The default is fully, which leaves nothing to do.
   BuildLimit initial;
 };
 
-/// How much of a lazy octree is there.
+/// How much of a lazy octree has been built.
 struct LazyOctreeState {
   struct Level {
     std::uint64_t branches = 0;  ///< B
     std::uint64_t leaves = 0;    ///< L
-    std::uint64_t pending = 0;   ///< P
+    std::uint64_t pending = 0;   ///< P nodes
     std::uint64_t leaf_entries = 0;
     std::uint64_t pending_entries = 0;
 
@@ -48,14 +48,14 @@ struct LazyOctreeState {
   };
   std::vector<Level> levels;  ///< [level - 1]
   Level all;                  ///< their sum
-  /// Bytes of all nodes, B, L and P alike, and of the places (cells) of P nodes.
+  /// Bytes of all nodes, B, L and P, and of the places (cells) of P nodes.
   std::uint64_t node_bytes = 0;
   /// Bytes of the lists of L and P nodes, 4 for each triangle listed.
   std::uint64_t list_bytes = 0;
-  /// Bytes of the lists that P nodes had before they were subdivided after the initial build. They were freed
-  /// at once; list_bytes does not hold them.
+  /// Bytes of the lists of P nodes that were subdivided after the initial build. They were freed at once;
+  /// list_bytes does not include them.
   std::uint64_t released_list_bytes = 0;
-  /// P nodes that rays have subdivided (or found to be leaves, because dividing them separates nothing).
+  /// P nodes that rays have subdivided (or that became leaves, because dividing them separates nothing).
   std::uint64_t subdivided = 0;
 };
 
@@ -67,7 +67,7 @@ class LazyOctree {
   [[nodiscard]] static LazyOctree build(std::shared_ptr<const TriangleSet> triangles,
                                         const LazyOctreeOptions& options = {});
 
-  /// Goes on from a tree built or updated elsewhere, of which the nodes of build.unsplit are P. Throws
+  /// Continues a tree that was built or updated elsewhere; the nodes in build.unsplit are its P nodes. Throws
   /// UserError when build.cut.
   LazyOctree(std::shared_ptr<const TriangleSet> triangles, const OctreeOptions& options,
              const RootFrame& frame, const OctreeBuild& build);
@@ -78,11 +78,11 @@ class LazyOctree {
   [[nodiscard]] const TriangleSet& triangles() const;
   [[nodiscard]] const OctreeOptions& options() const;
   [[nodiscard]] const scenes::Bounds& bounds() const;
-  /// Throws UserError: the topology changes while rays are traced, so that none can go with a work log.
+  /// Throws UserError: the topology changes while rays are traced, so no work log can refer to it.
   [[nodiscard]] const Topology& topology() const;
 
-  /// The nearest hit. The visitor is told node numbers in the order of the nodes' making, which depends on
-  /// the threads. Throws UserError as said above.
+  /// The nearest hit. The visitor is told node numbers, which follow the order in which nodes were made and
+  /// so depend on the threads. Throws UserError at max_entries (see above).
   template <class Real = double, class Visitor>
   [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
     return octree_closest<Real>(view(), ray, visitor);
@@ -94,18 +94,18 @@ class LazyOctree {
     return octree_occluded<Real>(view(), ray, visitor);
   }
 
-  /// Subdivides the node, of pending(), unless it was; as a ray that comes to it does.
+  /// Subdivides a node of pending(), unless that was done since, as a ray that reaches it does.
   void subdivide(std::uint32_t node) const;
-  /// Subdivides until no P node is left. Throws UserError as said above.
+  /// Subdivides until no P node is left. Throws UserError at max_entries (see above).
   void expand() const;
 
-  // What follows must not run while rays are traced.
+  // The functions below must not run while rays are traced.
 
   [[nodiscard]] LazyOctreeState state() const;
   /// The numbers of the P nodes, ascending.
   [[nodiscard]] std::vector<std::uint32_t> pending() const;
-  /// The tree as it is, numbered breadth-first: equal trees give equal exports, whatever the order they grew
-  /// in. P nodes are leaves that are named in `unsplit`. Topology::work is left empty.
+  /// The present tree, numbered breadth-first: equal trees give equal snapshots, in whatever order they grew.
+  /// P nodes are leaves that are listed in `unsplit`. Topology::work is empty.
   [[nodiscard]] OctreeBuild snapshot() const;
 
  private:
@@ -114,7 +114,7 @@ class LazyOctree {
     OctreeOptions options;
     RootFrame frame;
     LazyNodes nodes;
-    std::atomic<std::uint64_t> listed{0};  ///< in the lists of L and P nodes
+    std::atomic<std::uint64_t> listed{0};  ///< entries of the lists of L and P nodes
     std::atomic<std::uint64_t> released{0};
     std::atomic<std::uint64_t> subdivided{0};
   };
@@ -145,7 +145,7 @@ class LazyOctree {
   };
 
   [[nodiscard]] View view() const { return {state_.get(), state_->triangles.get(), &state_->frame}; }
-  /// Waits for, or does, a pending node's subdivision; returns what it has become.
+  /// Subdivides a pending node or waits until another thread has; returns the node's new `info`.
   static std::uint32_t resolve(State& state, LazyNode& node);
   static std::uint32_t divide(State& state, LazyNode& node);
   static void place_pending(LazyNode& node, const OctreeCell& cell, std::span<const std::uint32_t> list);

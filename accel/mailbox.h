@@ -2,12 +2,12 @@
 // cells is tested once per ray (Arnaldi, Priol, Bouatouch, "A new space subdivision method for ray tracing
 // CSG modelled scenes", The Visual Computer 3, 1987; Amanatides and Woo, Eurographics 1987).
 //
-// Exact: one box for each primitive and 64-bit ray numbers, which never come round. The hits are the same
-// with and without. A primitive that a ray has missed is missed again; one that it has hit does not become
-// the best hit twice, because neither its t nor its id is below its own.
+// Exact: there is one mailbox for each primitive, and ray numbers have 64 bits, so they never repeat. The
+// hits are the same with and without. A primitive that a ray has missed would be missed again; one that it
+// has hit would not become the best hit twice, because neither its t nor its id is below its own.
 //
-// They are asked for by the visitor: a walk with a Mailboxed visitor has them, every other has none and
-// does not pay for them. A visitor belongs to one thread, and so do its mailboxes.
+// The visitor asks for them: a walk with a Mailboxed visitor has them; every other walk has none and does not
+// pay for them. A visitor belongs to one thread, and so do its mailboxes.
 #pragma once
 
 #include <cstdint>
@@ -26,18 +26,18 @@ class Mailboxed : public Visitor {
 
   using Visitor::Visitor;
 
-  /// Makes room for primitives 0 to `primitives` - 1. To be called before the first ray.
+  /// Makes room for primitives 0 to `primitives` - 1. Call it before the first ray.
   void prepare(std::uint32_t primitives) {
     if (last_ray_.size() < primitives) {
       last_ray_.resize(primitives, 0);
     }
   }
 
-  /// A new query begins: nothing is tested yet.
+  /// Begins a new query, for which no primitive is tested yet.
   void next_ray() { ++ray_; }
 
-  /// Looks the k-th entry of a leaf's list up, in order from 0. True when this ray has tested primitive
-  /// `id`; otherwise it is about to.
+  /// Looks up the k-th entry of a leaf's list, in order from 0. True when this ray has tested primitive `id`
+  /// before; otherwise the caller tests it next.
   bool look_up(std::uint32_t k, std::uint32_t id) {
     if (k % 32 == 0) {
       if (k == 0) {
@@ -66,7 +66,7 @@ class Mailboxed : public Visitor {
  private:
   std::vector<std::uint64_t> last_ray_;
   std::uint64_t ray_ = 0;
-  std::vector<std::uint32_t> tested_;  ///< of the leaf at hand, a bit for each entry looked up
+  std::vector<std::uint32_t> tested_;  ///< for the present leaf, a bit for each entry looked up
   bool left_out_ = false;
 };
 
@@ -75,7 +75,7 @@ inline constexpr bool has_mailboxes = requires {
   Visitor::has_mailboxes;
 };
 
-/// Every query of every structure begins with this.
+/// Every query of every structure calls this first.
 template <class Visitor>
 inline void begin_query(Visitor& visitor) {
   if constexpr (has_mailboxes<Visitor>) {

@@ -13,10 +13,10 @@ namespace marti::accel {
 namespace {
 
 constexpr double not_a_triangle = std::numeric_limits<double>::quiet_NaN();
-// With no more entries than this, copies of the leaves' triangles (80 bytes an entry) are worth their memory.
+// Up to this ratio, copies of the leaves' triangles (80 bytes an entry) are worth their memory.
 constexpr std::uint64_t packed_entries_per_triangle = 16;
 constexpr std::uint64_t packed_entries_always = std::uint64_t{1} << 16;
-// Nodes that a thread packs at a stretch.
+// Nodes that a thread packs in one piece.
 constexpr std::size_t nodes_at_once = 4096;
 
 OctreeNode record_of(const Topology& topology, const TopologyNode& node) {

@@ -1,4 +1,4 @@
-// The octree: built breadth-first, split at the centre of every axis, walked as HERO does.
+// The octree: built breadth-first, split at the centre of every axis, walked by the HERO algorithm.
 //
 // Why it finds every hit that brute force finds, bit for bit, although all its arithmetic is rounded
 // (u = 2^-53, D the length of the root box's diagonal):
@@ -42,25 +42,25 @@ class Octree {
 
   /// Builds the whole tree, on options.threads host threads. Throws UserError when an option is out of range.
   ///
-  /// A node with more than max_objects triangles stays a leaf all the same when
+  /// A node with more than max_objects triangles nevertheless remains a leaf when
   ///  - it is at max_level,
   ///  - a child would be thinner than 8 delta on some axis, or the centre not strictly inside,
   ///  - splitting would separate nothing: two or more children list all its triangles and the others
   ///    none (so that coincident triangles do not multiply), or
-  ///  - max_entries is reached, or 2^28 nodes (a work log numbers no more).
+  /// - max_entries is reached, or 2^28 nodes (a work log cannot number more).
   [[nodiscard]] static Octree build(std::shared_ptr<const TriangleSet> triangles,
                                     const OctreeOptions& options = {});
 
-  /// The tree over `triangles` that was built elsewhere as build_octree builds it (octree_update.h).
+  /// A tree over `triangles` that was built elsewhere, as build_octree would build it (octree_update.h).
   Octree(std::shared_ptr<const TriangleSet> triangles, const OctreeOptions& options, const RootFrame& frame,
          OctreeBuild build);
 
   [[nodiscard]] const Topology& topology() const { return topology_; }
   [[nodiscard]] const TriangleSet& triangles() const { return *triangles_; }
   [[nodiscard]] const OctreeOptions& options() const { return options_; }
-  /// The root box: the tight box of the triangles (and of what the options have it enclose) enlarged by 192
-  /// delta, and at least D / 4096 thick on every axis (it grows upwards, so that a flat scene does not lie in
-  /// a mid-plane). Empty without triangles.
+  /// The root box: the tight box of the triangles (and of OctreeOptions::enclose) enlarged by 192 delta, and
+  /// at least D / 4096 thick on every axis (it grows upwards, so that a flat scene does not lie in a
+  /// mid-plane). Empty without triangles.
   [[nodiscard]] const scenes::Bounds& bounds() const { return frame_.box; }
   /// By how much cells are enlarged when triangles are sorted into them; see above.
   [[nodiscard]] double delta() const { return frame_.delta; }
@@ -70,11 +70,11 @@ class Octree {
   /// levels()[i] is level i + 1; as many as the tree has.
   [[nodiscard]] const std::vector<LevelStatistics>& levels() const { return levels_; }
 
-  /// Bytes of host memory that the walks' own records of a tree take, beside its topology.
+  /// Bytes of host memory for the walks' own records of a tree, without its topology.
   [[nodiscard]] static std::uint64_t walk_bytes(const Topology& topology, const TriangleSet& triangles);
 
-  /// The nearest hit. Real is the scalar the arithmetic is done in (double, Counted to count it, or
-  /// float to compare with).
+  /// The nearest hit. Real is the scalar of the arithmetic (double, Counted to count operations, or float for
+  /// comparison).
   template <class Real = double, class Visitor>
   [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
     return octree_closest<Real>(view(), ray, visitor);
@@ -87,7 +87,7 @@ class Octree {
   }
 
  private:
-  friend class CutOctree;  // octree_cut.h: one more walk
+  friend class CutOctree;  // a further walk, octree_cut.h
   [[nodiscard]] OctreeView view() const {
     return {nodes_.data() + node_offset,
             packed_nodes_.empty() ? nullptr : packed_nodes_.data() + node_offset,

@@ -17,13 +17,13 @@ namespace marti::accel {
 namespace {
 
 constexpr std::uint32_t deepest_level = 21;
-// Triangles that are sorted at a stretch; a node with more is sorted by several threads.
+// Triangles in a piece of work; a node with more of them is sorted by several threads.
 constexpr std::size_t piece_entries = 2048;
-// Pieces handed out at a time: of small nodes there are many.
+// Pieces that a thread takes at a time, because there are many small nodes.
 constexpr std::size_t pieces_at_once = 16;
 
-/// Every level is made of the one before in three steps: the triangles of its nodes are sorted, in parallel;
-/// which nodes are split is decided in the nodes' order, because that depends on how much the tree lists so
+/// Each level is made from the one before in three steps: its nodes' triangles are sorted, in parallel; which
+/// nodes are split is decided in the order of the nodes, because it depends on how much the tree lists so
 /// far; the children's lists are written, in parallel.
 class Builder {
  public:
@@ -56,13 +56,13 @@ class Builder {
     std::uint32_t number = 1;
     std::uint32_t first_node = 0;
     std::vector<std::array<std::uint32_t, 3>> cells;
-    std::vector<std::size_t> begin{0};  ///< into lists, one more than cells
+    std::vector<std::size_t> begin{0};  ///< first entry of each cell in lists, and the end
     std::vector<std::uint32_t> lists;
   };
 
   /// Consecutive entries of one node.
   struct Piece {
-    std::size_t node;  ///< in the level
+    std::size_t node;  ///< number in the level
     std::size_t begin;
     std::size_t end;
     std::array<std::uint32_t, 8> count;  ///< how many go to each child
@@ -76,7 +76,7 @@ class Builder {
   }
   [[nodiscard]] bool is_full(std::size_t node) const { return count_of(node) > options_.max_objects; }
 
-  /// Whether any node of the level at hand can be split.
+  /// Whether any node of the present level can be split.
   [[nodiscard]] bool may_split() {
     pieces_.clear();
     if (!level_splits(frame_, options_.max_level, level_.number)) {
@@ -105,7 +105,7 @@ class Builder {
   }
 
   void make_pieces() {
-    // Then nothing will be split, so nothing need be sorted.
+    // No node will be split then, so none need be sorted.
     if (out_.topology.entries.size() + level_.lists.size() >= options_.max_entries ||
         out_.topology.nodes.size() >= most_octree_nodes) {
       for (std::size_t node = 0; node < level_.cells.size(); ++node) {
@@ -147,7 +147,7 @@ class Builder {
                     });
   }
 
-  /// In the order of the nodes: leaves are written, branches given their children's numbers and places.
+  /// In the order of the nodes: writes leaves, and gives branches the numbers and places of their children.
   void decide() {
     next_.number = level_.number + 1;
     next_.first_node = static_cast<std::uint32_t>(out_.topology.nodes.size());
@@ -182,7 +182,7 @@ class Builder {
     }
   }
 
-  /// For the level's nodes from `node` to the next question, and for `more` bytes.
+  /// Checks the memory for the level's nodes from `node` up to the next check, and for `more` bytes.
   void require_memory(std::size_t node, std::uint64_t more) const {
     const std::size_t end = std::min(node + nodes_between_checks, level_.cells.size());
     const std::size_t children = 8 * (end - node);
@@ -239,7 +239,7 @@ class Builder {
   }
 
   void scatter() {
-    next_.lists.clear();  // all is written anew, so nothing need be copied
+    next_.lists.clear();  // everything is overwritten, so nothing need be copied
     require_memory(level_.cells.size(), 0);
     next_.lists.resize(next_.begin.back());
     parallel_pieces(
@@ -266,7 +266,7 @@ class Builder {
   Level level_;
   Level next_;
   std::vector<Piece> pieces_;
-  std::vector<std::uint8_t> children_;  ///< beside level_.lists: the children each entry goes to, as bits
+  std::vector<std::uint8_t> children_;  ///< by entry of level_.lists: the children it goes to, as bits
 };
 
 }  // namespace

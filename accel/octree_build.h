@@ -16,12 +16,12 @@ namespace marti::accel {
 /// A node's number must fit in a work log's operand.
 inline constexpr std::size_t most_octree_nodes = (std::size_t{1} << 28) - 8;
 
-/// Where a build ends before the tree is complete. The nodes of the level it ends at are left as they are.
+/// Where a build ends before the tree is complete. The nodes of the level at which it ends are not split.
 struct BuildLimit {
-  /// The last level to have nodes; 0: no limit.
+  /// The last level; 0: no limit.
   std::uint32_t level = 0;
-  /// Above 0: end at the first level with more than this many times as many leaves as nodes to be split
-  /// (McNeill et al. 1992: L_n > k (B_n + P_n), where no node of the level at hand is a branch yet).
+  /// If above 0: end at the first level with more than k times as many leaves as nodes to be split (McNeill
+  /// et al. 1992: L_n > k (B_n + P_n); no node of the present level is a branch yet).
   double k = 0.0;
 };
 
@@ -31,17 +31,17 @@ struct OctreeBuild {
   /// Leaves of the last level that the limit kept from being split, ascending. In the topology they are
   /// leaves with more than max_objects entries.
   std::vector<std::uint32_t> unsplit;
-  /// max_entries or most_octree_nodes kept a node from being split.
+  /// Whether max_entries or most_octree_nodes kept a node from being split.
   bool cut = false;
 };
 
 /// Throws UserError, naming `structure`, when an option is out of range.
 void check_octree_options(std::string_view structure, const OctreeOptions& options);
 
-/// Builds over all triangles. The options must be in range and the frame made of these triangles. The same
-/// result with any number of threads. Beside the result it needs 5 bytes for each triangle listed on the
-/// level at hand and 4 on the next, 20 bytes for each of their nodes, and 128 for each node to be split and
-/// each 2,048 triangles listed.
+/// Builds over all triangles. The options must be in range and the frame made from these triangles. The
+/// result is the same with any number of threads. Besides the result it needs 5 bytes for each triangle
+/// listed on the present level and 4 on the next, 20 bytes for each of their nodes, and 128 for each node to
+/// be split and each 2,048 triangles listed.
 [[nodiscard]] OctreeBuild build_octree(const TriangleSet& triangles, const OctreeOptions& options,
                                        const RootFrame& frame, const BuildLimit& limit = {});
 

@@ -1,6 +1,6 @@
-// The voxel cut: a walk of the octree that does not go into a cell whose projection on the screen is smaller
+// The voxel cut: a walk of the octree that does not enter a cell whose projection on the screen is smaller
 // than a pixel, but takes the cell as one voxel. An approximation, after the voxel antialiasing of R. Shah
-// (DPhil thesis, University of Sussex) as McNeill, Shah, Hebert, Lister, Grimsdale, CGF 11(4), 1992, use it.
+// (DPhil thesis, University of Sussex) as used by McNeill, Shah, Hebert, Lister, Grimsdale, CGF 11(4), 1992.
 //
 // When a cell is small. The root with edges e, seen along the unit direction d, covers
 //     P = e_y e_z |d_x| + e_x e_z |d_y| + e_x e_y |d_z|
@@ -10,15 +10,15 @@
 // back to the eye. The cell is small when, at the point where the ray enters it,
 //     max(P, longest^2) / 4^(l-1) < threshold * w * z^2.
 //
-// What a small cell does. The share that its surfaces cover of it, seen along the ray, is estimated
-// (voxel_cover.h). From one quarter on the ray ends here: the whole cell is opaque. Below, the walk goes on
-// into the cell as usual, so no ray slips through a surface that lies in the corners of cells, and a cell
-// that holds a corner of something does not become a brick. What is left of the surfaces' shape is thus up to
-// a cell too thick. A cell in which a triangle listed in an earlier one was met already is not taken whole.
+// What happens at a small cell. The share of it that its surfaces cover, seen along the ray, is estimated
+// (voxel_cover.h). With a quarter or more the ray ends: the whole cell is opaque. Else the walk enters the
+// cell as usual, so no ray slips through a surface in the corners of cells, and a cell that holds only a
+// corner of a surface does not become a brick. Surfaces thus appear up to one cell too thick. A cell in which
+// a triangle listed in an earlier cell was already hit is not taken whole.
 //
-// A ray that left a surface takes no cell whole that holds its origin or is nearer than four of the cell's
-// own diagonals: the surface it left passes through those. On a flat one, parallel to a face of the cells,
-// rays that stay in its cells for longer are so oblique that it covers less than a quarter.
+// For a ray that left a surface, no cell is taken whole that holds the ray's origin or is nearer than four of
+// the cell's diagonals, as the surface passes through those. On a flat surface parallel to a cell face, rays
+// that stay longer in its cells are so oblique that it covers less than a quarter.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ namespace marti::accel {
 
 inline constexpr std::uint32_t no_voxel = 0xffffffffU;
 
-/// Lengths of a level's cells in those of the root: 2^(1 - level).
+/// Edge lengths of a level's cells relative to those of the root: 2^(1 - level).
 inline constexpr std::array<double, 22> level_scale = [] {
   std::array<double, 22> scale{2.0};
   for (std::size_t level = 1; level < scale.size(); ++level) {
@@ -43,21 +43,21 @@ inline constexpr std::array<double, 22> level_scale = [] {
   return scale;
 }();
 
-/// A small cell of which less is covered is not taken whole.
+/// A small cell whose surfaces cover a smaller share is not taken whole.
 inline constexpr double least_covered_share = 0.25;
 
-/// How large a pixel is along a ray of unit direction.
+/// The size of a pixel along a ray of unit direction.
 struct Footprint {
   double pixel = 0.0;  ///< solid angle below which a cell is taken whole: threshold times a pixel's; above 0
   double path = 0.0;   ///< length of the rays from the eye to this ray's origin; 0 for a camera ray
 };
 
-/// The voxels of a tree, by reference. Every node from `first_node` on that is no empty leaf has one.
+/// The voxels of a tree, by reference. Every node from `first_node` on, except empty leaves, has one.
 struct VoxelTable {
   const std::uint32_t* voxel_of = nullptr;  ///< [node - first_node]: its voxel, or no_voxel
   const VoxelCover* covers = nullptr;       ///< [voxel]
   std::uint32_t first_node = 0;             ///< the first node of the first level that can be small
-  std::uint32_t first_record = 0;           ///< what visitors are told: first_record + voxel
+  std::uint32_t first_record = 0;           ///< visitors are told first_record + voxel
 };
 
 /// What a ray sees: a triangle, a voxel, or neither.
@@ -69,7 +69,7 @@ struct CutHit {
   [[nodiscard]] bool found() const { return hit.found() || voxel != no_voxel; }
 };
 
-/// One ray's side of the cut.
+/// The state of the cut for one ray.
 template <class Real>
 class CutRay {
  public:
@@ -89,14 +89,14 @@ class CutRay {
     products_ = products_of(d);
   }
 
-  /// Whether a node of that level, which the ray enters at `in`, is small.
+  /// Whether a node of `level`, which the ray enters at `in`, is small.
   [[nodiscard]] bool small(std::uint32_t node, unsigned level, const Real& in) const {
     const Real shrink(level_scale[level]);
     return node >= voxels_.first_node && path_ + in > limit_ * shrink && in > t_min_ &&
            in >= clearance_ * shrink;
   }
 
-  /// Whether a small node that is no empty leaf is what the ray sees.
+  /// Whether the ray sees this small node, which is not an empty leaf, as a voxel.
   template <class Visitor>
   [[nodiscard]] bool sees(std::uint32_t node, double in, Visitor& visitor) {
     const std::uint32_t voxel = voxels_.voxel_of[node - voxels_.first_node];
@@ -110,7 +110,7 @@ class CutRay {
     return false;
   }
 
-  /// What was seen, given the nearest triangle found.
+  /// The result for the ray, given the nearest triangle found.
   [[nodiscard]] CutHit result(const Best<Real>& best) const {
     CutHit hit = seen_;
     if (hit.voxel == no_voxel) {
@@ -122,8 +122,8 @@ class CutRay {
  private:
   Real path_;
   Real t_min_;
-  Real limit_;      // least distance of a small root
-  Real clearance_;  // least t of a small root
+  Real limit_;      // path length from which on the root itself would be small
+  Real clearance_;  // t from which on the root itself may be taken whole
   Real share_;      // longest^2 / P
   SymmetricForm<Real> products_;
   CutHit seen_;
@@ -216,7 +216,7 @@ class CutOctree {
   CutOctree(const Octree& octree, const VoxelTable& voxels) : octree_(octree), voxels_(voxels) {}
   [[nodiscard]] const TriangleSet& triangles() const { return octree_.triangles(); }
 
-  /// What a ray of unit direction sees. With a pixel of (nearly) no size, the octree's nearest hit.
+  /// What a ray of unit direction sees. With a pixel size near 0, the octree's nearest hit.
   template <class Real = double, class Visitor>
   [[nodiscard]] CutHit closest(const Ray& ray, const Footprint& footprint, Visitor& visitor) const {
     const OctreeView view = octree_.view();

@@ -1,7 +1,7 @@
-// The octree's slow, conservative walk, for rays that start so far away (or run so fast or so slowly) that
-// the rounding of their parameters is no longer small against the cells' margin. Every child's box is
-// enlarged by the ray's own error and tested against the ray; those met are visited in order of entry. All
-// rays whose hits are computed in floats take it: against their error the cells' margins are too thin.
+// The octree's slow, conservative walk, for rays that start so far away (or whose direction is so long or so
+// short) that the rounding of their parameters is no longer small against the cells' margin. Every child's
+// box is enlarged by the ray's own error; the boxes hit are visited in order of entry. All rays whose hits
+// are computed in floats take this walk: the cells' margins are too thin for their error.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The octree as its walks read it: compact nodes, and leaves' triangles gathered in fours.
+// The octree as its walks read it: compact nodes, and the triangles of leaves in packs of four.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace marti::accel {
 
-/// An array that begins on a cache line.
+/// An array aligned to a cache line.
 template <class T>
 struct CacheLineAllocator {
   using value_type = T;
@@ -43,31 +43,31 @@ struct OctreeNode {
   [[nodiscard]] std::uint32_t entries() const { return info & ~leaf_bit; }
 };
 
-/// Nodes are stored from this index on: the eight children of a branch, which begin at 1 + 8k, then fill
+/// The index of node 0 in memory: the eight children of a branch, which begin at 1 + 8k, then fill exactly
 /// one cache line.
 inline constexpr std::size_t node_offset = 7;
 
 /// Four triangles side by side: coordinate[3 * corner + axis][lane]. A leaf's last pack repeats its last
-/// primitive in the lanes left over, which changes no result. The coordinates of a sphere, cylinder or cone
-/// are NaN: its lane is then never refused and never computed, but handed to the scalar kernel.
+/// primitive in the unused lanes, which changes no result. The coordinates of a sphere, cylinder or cone are
+/// NaN: its lane is then never refused by the sign test but passed to the scalar kernel.
 struct alignas(64) TrianglePack {
   std::array<std::array<double, 4>, 9> coordinate;
   std::array<std::uint32_t, 4> id;
 };
 
-/// What a walk needs, by reference. The walks for any scalar are templates over the view: another kind of
-/// tree has the same members (lazy_octree.h), and no packs.
+/// The data of a walk, by reference. The walks for any scalar are templates over the view: the lazy octree's
+/// view has the same members (lazy_octree.h), but no packs.
 struct OctreeView {
   using Record = OctreeNode;
   static constexpr bool has_packs = true;
 
-  /// The record of the node a ray has come to.
+  /// The record of node `n`.
   [[nodiscard]] const OctreeNode& node(std::uint32_t n) const { return nodes[n]; }
   /// The triangles that a leaf lists.
   [[nodiscard]] const std::uint32_t* list(const OctreeNode& record) const { return entries + record.first; }
 
   const OctreeNode* nodes;   ///< nodes[0] is the root
-  const OctreeNode* packed;  ///< the same, with a leaf's first pack as its `first`; null without packs
+  const OctreeNode* packed;  ///< as nodes, but `first` of a leaf is its first pack; null without packs
   const TrianglePack* packs;
   const std::uint32_t* entries;  ///< triangle ids
   const TriangleSet* triangles;

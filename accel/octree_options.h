@@ -1,4 +1,4 @@
-// What an octree is built by, and what is counted of it.
+// The options of an octree, and its statistics.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,15 @@ struct OctreeOptions {
   std::uint32_t max_objects = 8;
   /// The deepest level; the root is level 1. From 1 to 21.
   std::uint32_t max_level = 12;
-  /// No node is split once the leaves made so far and the nodes waiting list more than this many triangles in
+  /// No node is split once the leaves made so far and the waiting nodes list more than this many triangles in
   /// all; it bounds the memory of hostile scenes (4 bytes an entry). At least 1.
   std::uint64_t max_entries = std::uint64_t{1} << 25;
-  /// The root box holds this one too; empty: only the triangles. Give the bounds of all frames when triangles
-  /// move, so that the trees of all frames have the same cells (octree_update.h). See make_frame.
+  /// A box that the root box must contain too; empty: only the triangles. Give the bounds of all frames when
+  /// triangles move, so that the trees of all frames have the same cells (octree_update.h). See make_frame.
   scenes::Bounds enclose{};
   /// Host threads that build; 0: all. The tree is the same with any number.
   unsigned threads = 0;
-  /// What the tree and its building may take of the host's memory; a UserError refuses more as it grows.
+  /// The host memory for the tree and its building; if more is needed, a UserError is thrown as it grows.
   sim::MemoryBudget memory{};
 };
 

@@ -1,7 +1,7 @@
-// How an octree's node is divided: which of its eight children each of its triangles is sorted into, and
-// when it stays a leaf. Every builder of the octree (at once, lazily, in part) asks here, so that all of them
-// make the same tree; and as the arithmetic is a template over its scalar, what a node's division costs is
-// counted by running it with Counted.
+// How a node of an octree is divided: into which of its eight children each of its triangles is sorted, and
+// when it remains a leaf. Every builder of the octree (at once, lazily, in part) uses these functions, so
+// that all of them make the same tree. The arithmetic is a template over its scalar, so the cost of dividing
+// a node is counted by running it with Counted.
 #pragma once
 
 #include <array>
@@ -35,12 +35,12 @@ struct OctreeCell {
 /// Children bit set by child number: those in the upper half of each axis.
 inline constexpr std::array<std::uint32_t, 3> upper_children{0xaaU, 0xccU, 0xf0U};
 
-/// One node made ready to sort its triangles.
+/// Sorts the triangles of one node.
 template <class Real = double>
 class ChildSorter {
  public:
   ChildSorter(const RootFrame& frame, const OctreeCell& cell) : delta_(frame.delta) {
-    // A plane from its whole coordinate, so that neighbours share the same number.
+    // A plane is computed from its integer coordinate, so that neighbours get the same number.
     const Real scale(std::ldexp(1.0, -static_cast<int>(cell.level)));
     for (std::size_t a = 0; a < 3; ++a) {
       const auto axis = static_cast<glm::length_t>(a);
@@ -56,8 +56,8 @@ class ChildSorter {
     }
   }
 
-  /// The children that list primitive `id`, as a set of bits; adds the overlap tests it took to `tests`. A
-  /// primitive well inside one child needs none.
+  /// The children that list primitive `id`, as a set of bits; adds the number of overlap tests to `tests`. A
+  /// primitive well inside one child needs no test.
   [[nodiscard]] std::uint32_t children(const TriangleSet& set, std::uint32_t id, std::uint32_t& tests) const {
     IntegerOf<Real> candidates = 0xffU;
     bool inside = true;
@@ -92,14 +92,14 @@ class ChildSorter {
  private:
   std::array<std::array<Real, 3>, 3> planes_{};  ///< [low, middle, high][axis]
   std::array<std::array<Real, 3>, 2> center_{};  ///< of the children, [lower, upper][axis]
-  std::array<std::array<Real, 3>, 2> half_{};    ///< half their size and the margin
+  std::array<std::array<Real, 3>, 2> half_{};    ///< half their size, plus the margin
   Real delta_;
 };
 
-/// What sorting one node gave.
+/// The result of sorting one node.
 struct SortedChildren {
   std::array<std::vector<std::uint32_t>, 8> lists;  ///< what each child lists, in the node's order
-  std::uint32_t overlaps = 0;                       ///< triangle against box tests it took
+  std::uint32_t overlaps = 0;                       ///< number of triangle against box tests
 };
 
 /// Sorts the node of `cell`, which lists `list`, into its eight children.
@@ -118,7 +118,7 @@ void sort_into_children(const TriangleSet& triangles, const RootFrame& frame, co
   }
 }
 
-/// Whether cells of `level` are thick enough to be told apart: at least 8 delta on every axis.
+/// Whether cells of `level` are thick enough to be used: at least 8 delta on every axis.
 [[nodiscard]] inline bool resolvable(const RootFrame& frame, std::uint32_t level) {
   for (int a = 0; a < 3; ++a) {
     const double thickness = std::ldexp(frame.box.hi[a] - frame.box.lo[a], -static_cast<int>(level - 1));
@@ -134,8 +134,8 @@ void sort_into_children(const TriangleSet& triangles, const RootFrame& frame, co
   return level < max_level && resolvable(frame, level + 1);
 }
 
-/// Whether the children's lists only repeat their parent's: two or more children list everything and the
-/// others nothing. `counts` are the children's entries.
+/// Whether a split would only repeat the parent's list: two or more children list everything and the others
+/// nothing. `counts` are the numbers of the children's entries.
 [[nodiscard]] inline bool separates_nothing(std::span<const std::uint32_t, 8> counts,
                                             std::size_t parent_count) {
   std::size_t complete = 0;
@@ -149,7 +149,7 @@ void sort_into_children(const TriangleSet& triangles, const RootFrame& frame, co
   return complete >= 2;
 }
 
-/// The same of lists already sorted.
+/// separates_nothing() for sorted lists.
 [[nodiscard]] inline bool separates_nothing(const SortedChildren& sorted, std::size_t parent_count) {
   std::array<std::uint32_t, 8> counts{};
   for (std::size_t child = 0; child < 8; ++child) {

@@ -1,4 +1,4 @@
-// How a ray meets the root of the octree: what all but the slow walk begin with.
+// How a ray enters the root of the octree: the beginning of all walks except the slow one.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace marti::accel {
 
-/// The ray's parameters at one node: at its planes nearer (s0) and farther (s1) along each axis, and where
-/// the walk enters and leaves it.
+/// The ray's parameters at one node: at its nearer (s0) and farther (s1) planes along each axis, and where
+/// the ray enters and leaves the node.
 template <class Real>
 struct NodeSpan {
   std::array<Real, 3> s0;
@@ -25,14 +25,14 @@ struct NodeSpan {
   std::uint32_t node = 0;
 };
 
-/// A ray at the root.
+/// The state of a ray at the root.
 template <class Real>
 struct WalkStart {
   NodeSpan<Real> root;
   IntegerOf<Real> mask = 0U;  ///< bit a: the direction is negative along axis a
   Real slack{0.0};            ///< 4 delta as a parameter
   bool hits_root = false;
-  bool far = false;  ///< take the slow walk instead; the rest is not set
+  bool far = false;  ///< take the slow walk instead; the other members are not set
 };
 
 template <class Real>
@@ -43,7 +43,7 @@ template <class Real>
   using std::min;
   WalkStart<Real> start;
   if constexpr (std::is_same_v<Real, float>) {
-    start.far = true;  // against the error of floats the cells' margins are too thin
+    start.far = true;  // the cells' margins are too thin for the error of floats
     return start;
   }
   const std::array<Real, 3> o{Real(ray.origin.x), Real(ray.origin.y), Real(ray.origin.z)};
@@ -61,8 +61,8 @@ template <class Real>
   start.slack = scale * Real(4.0 * frame.delta);
   NodeSpan<Real>& root = start.root;
   for (std::uint32_t a = 0; a < 3; ++a) {
-    // A zero component, of either sign, gives the cap: the planes' parameters are then huge, with the
-    // right sign, and so is the average of two.
+    // A zero component, of either sign, gives the cap: the planes' parameters are then huge, with the right
+    // sign, and so is the average of two.
     const Real inverse = min(Real(1.0) / abs(d[a]), Real(frame.largest_inverse));
     if (d[a] < Real(0.0)) {
       start.mask = start.mask | (1U << a);
@@ -80,8 +80,8 @@ template <class Real>
 }
 
 /// For each outcome of the comparisons mx <= my, my <= mz, mx <= mz (bits 0 to 2): the axes in the order of
-/// their mid-planes, two bits each; x before y before z on ties. Outcomes 3 and 4 contradict themselves and
-/// do not occur.
+/// their mid-planes, two bits each; on ties x comes before y, and y before z. Outcomes 3 and 4 are
+/// contradictory and do not occur.
 inline constexpr std::array<std::uint8_t, 8> plane_order = [] {
   std::array<std::uint8_t, 8> table{};
   for (unsigned bits = 0; bits < 8; ++bits) {
@@ -97,8 +97,8 @@ inline constexpr std::array<std::uint8_t, 8> plane_order = [] {
   return table;
 }();
 
-/// Takes the span that waits on top of the stack. False when the walk is over: none waits, or this one, and
-/// so all below it, begins more than `slack` beyond the best hit at `best_t`.
+/// Takes the span on top of the stack. False when the walk is over: the stack is empty, or this span, and so
+/// all below it, begins more than `slack` beyond the best hit at `best_t`.
 template <class Real, class Span, std::size_t Size>
 [[nodiscard]] inline bool take_waiting(const std::array<Span, Size>& stack, std::size_t& waiting,
                                        const Real& best_t, const Real& slack, Span& now) {
@@ -109,7 +109,7 @@ template <class Real, class Span, std::size_t Size>
   return !(now.in > best_t + slack);
 }
 
-/// A walk holds at most three waiting siblings a level.
+/// At most three siblings a level wait.
 inline constexpr std::size_t walk_stack_size = std::size_t{3} * 21 + 1;
 
 }  // namespace marti::accel

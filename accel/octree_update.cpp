@@ -16,7 +16,7 @@ namespace marti::accel {
 
 namespace {
 
-/// By bits, so that a zero that changed its sign counts.
+/// Compares bits, so that a zero with another sign counts as different.
 template <std::size_t N>
 bool same_bits(const std::array<double, N>& a, const std::array<double, N>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
@@ -24,14 +24,14 @@ bool same_bits(const std::array<double, N>& a, const std::array<double, N>& b) {
   });
 }
 
-/// In what the rest of a shape is made of.
+/// Whether two shapes are equal in all values from which the others are computed.
 bool same_shape(const QuadricShape& a, const QuadricShape& b) {
   return a.kind == b.kind && same_bits(a.center, b.center) && same_bits(a.axis, b.axis) &&
          same_bits(std::array{a.half, a.radius, a.slope}, std::array{b.half, b.radius, b.slope}) &&
          same_bits(a.lo, b.lo) && same_bits(a.hi, b.hi);
 }
 
-/// Goes through both trees level by level, and decides in the order of the nodes as the fresh build does.
+/// Walks both trees level by level, and decides in the order of the nodes, as the fresh build does.
 class Updater {
  public:
   Updater(const Octree& before, const TriangleSet& after, const std::vector<std::uint32_t>& moved,
@@ -74,9 +74,9 @@ class Updater {
   struct Item {
     std::array<std::uint32_t, 3> at{};
     std::uint32_t old =
-        no_old_node;        ///< the old tree's node of the same cell; none below a node sorted in full
-    Range left;             ///< in Level::ids: the moved triangles it listed; none without `old`
-    Range come;             ///< the moved triangles it lists; without `old`: all it lists
+        no_old_node;        ///< the old tree's node of the same cell; none below a node that was split
+    Range left;             ///< in Level::ids: the moved triangles that it listed before; empty without `old`
+    Range come;             ///< the moved triangles that it lists now; without `old`, all its triangles
     std::size_t count = 0;  ///< triangles it lists
 
     [[nodiscard]] bool touched() const { return left.first != left.second || come.first != come.second; }
@@ -111,12 +111,12 @@ class Updater {
     }
   }
 
-  /// Makes a branch of it if that separates anything.
+  /// Makes the node a branch if that separates anything.
   bool divide(const Item& item) {
     if (item.old != no_old_node) {
       const bool was_branch = !old_.nodes[item.old].leaf;
       if (!item.touched() && (was_branch || !before_.cut())) {
-        // What it was, it is. A full leaf of a tree that was not cut could not be separated.
+        // Nothing changes for it. A full leaf of a tree that was not cut could not be separated.
         if (was_branch) {
           keep(item);
         }
@@ -141,7 +141,7 @@ class Updater {
     }
   }
 
-  /// The moved triangles alone, out of where they were and into where they are.
+  /// Moves only the moved triangles, from the children where they were to the children where they are.
   bool resort(const Item& item) {
     const ChildSorter<double> sorter(frame_, {level_.number, item.at});
     const std::uint32_t first = old_.nodes[item.old].first;
@@ -212,7 +212,7 @@ class Updater {
     statistics.overfull_leaves += list.size() > options_.max_objects ? 1U : 0U;
   }
 
-  /// All the item lists, ascending. Valid until the next call.
+  /// All triangles that the item lists, ascending. Valid until the next call.
   std::span<const std::uint32_t> list_of(const Item& item) {
     const auto come = std::span(level_.ids).subspan(item.come.first, item.come.second - item.come.first);
     if (item.old == no_old_node) {
@@ -233,7 +233,7 @@ class Updater {
     return list_;
   }
 
-  /// Adds what the leaves at or below an old node list and did not move; some of it often.
+  /// Adds the unmoved triangles listed in the leaves at or below an old node; some appear repeatedly.
   void gather_stayed(std::uint32_t old) {
     const TopologyNode& node = old_.nodes[old];
     if (!node.leaf) {
@@ -249,8 +249,8 @@ class Updater {
     }
   }
 
-  /// Sorts moved triangles, where they are in `triangles`, into lists for the children; returns the tests
-  /// run.
+  /// Sorts moved triangles, with their coordinates in `triangles`, into lists for the children; returns the
+  /// number of tests.
   std::uint32_t sort(const ChildSorter<double>& sorter, const TriangleSet& triangles, const Range& range,
                      std::array<std::vector<std::uint32_t>, 8>& lists) {
     for (auto& list : lists) {
@@ -306,7 +306,7 @@ class Updater {
   OctreeUpdate& out_;
   Level level_;
   Level next_;
-  std::size_t number_ = 0;  ///< of the node at hand in the new tree
+  std::size_t number_ = 0;  ///< number of the present node in the new tree
   std::array<std::vector<std::uint32_t>, 8> left_;
   std::array<std::vector<std::uint32_t>, 8> come_;
   SortedChildren sorted_;

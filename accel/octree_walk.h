@@ -5,9 +5,9 @@
 // planes into child numbers, whatever the signs of the direction. Nothing is mirrored, so nothing is
 // rounded for it.
 //
-// This file holds the walk for any scalar; octree_walk_avx2.h the same steps on vectors for doubles, and
-// octree_far.h the slow walk for rays from far away. All three give the same hits, and the first two the
-// same visits.
+// This file holds the walk for any scalar; octree_walk_avx2.h has the same steps on vectors for doubles, and
+// octree_far.h the slow walk for rays from far away. All three give the same hits, and the first two the same
+// visits.
 #pragma once
 
 #include <array>
@@ -51,8 +51,8 @@ inline bool test_leaf(const View& view, const typename View::Record& record, std
   return false;
 }
 
-/// Goes from a branch to its children on the ray: returns the first, the others wait, the next one last.
-/// `Span` is NodeSpan or has its members, and a level too where a walk needs it.
+/// Goes from a branch to its children on the ray: returns the first and puts the others on the stack, the
+/// next one on top. `Span` is NodeSpan or has its members, plus a level where a walk needs it.
 template <class Real, class Span>
 inline Span enter_children(const Span& now, std::uint32_t first_child, const IntegerOf<Real>& mask,
                            std::array<Span, walk_stack_size>& stack, std::size_t& waiting) {
@@ -69,7 +69,7 @@ inline Span enter_children(const Span& now, std::uint32_t first_child, const Int
   const std::uint32_t outcome =
       (m[0] <= m[1] ? 1U : 0U) | (m[1] <= m[2] ? 2U : 0U) | (m[0] <= m[2] ? 4U : 0U);
   const unsigned order = plane_order[outcome];
-  // Find the children in order of entry, then let the later ones wait.
+  // Find the children in order of entry, then push the later ones.
   std::array<Span, 4> children;
   std::size_t found = 0;
   Real in = now.in;
@@ -142,7 +142,7 @@ inline bool query_octree(const View& view, const Ray& ray, const RaySetup<Real>&
     return false;
   }
 #ifdef MARTI_ACCEL_AVX2
-  // Four triangles at a time leave nothing to gain by looking each one up.
+  // As four triangles are tested at a time, mailbox look-ups one by one would gain nothing.
   if constexpr (std::is_same_v<Real, double> && View::has_packs && !has_mailboxes<Visitor>) {
     if (view.packed != nullptr) {
       return walk_octree_avx2<Any>(view, start, setup, best, visitor);

@@ -1,6 +1,6 @@
 // The walk of octree_walk.h for doubles on machines with AVX2: the three axes of a node in one vector, four
-// triangles of a leaf at a time. The same operations in the same order on each lane, so the same
-// visits and the same hits, bit for bit.
+// triangles of a leaf at a time. Each lane does the same operations in the same order, so visits and hits are
+// the same, bit for bit.
 #pragma once
 
 #if defined(__x86_64__)
@@ -82,7 +82,7 @@ struct VectorRay {
   return _mm256_load_pd(pack.coordinate[coordinate].data());
 }
 
-/// What the kernel computes of four triangles up to the sign test, lane by lane.
+/// The kernel's values for four triangles, up to the sign test, lane by lane.
 struct alignas(32) PackEdges {
   std::array<double, 4> u;
   std::array<double, 4> v;
@@ -103,7 +103,7 @@ struct alignas(32) PackEdges {
   return _mm256_andnot_pd(_mm256_set1_pd(-0.0), x);
 }
 
-/// Bit per lane of a pack: not refused by the sign test. Only then `edges` is written.
+/// The lanes of a pack, as bits, that the sign test does not refuse. `edges` is written if there are any.
 [[gnu::target("avx2"), gnu::always_inline]] inline unsigned pack_candidates(const TrianglePack& pack,
                                                                             const RaySetup<double>& setup,
                                                                             const VectorRay& ray,
@@ -129,7 +129,7 @@ struct alignas(32) PackEdges {
   const __m256d u = _mm256_sub_pd(cx_by, cy_bx);
   const __m256d v = _mm256_sub_pd(ax_cy, ay_cx);
   const __m256d w = _mm256_sub_pd(bx_ay, by_ax);
-  // A NaN among the three can only hide a sign, never make one.
+  // A NaN among the three can make a sign go unseen, but never create one.
   const __m256d zero = _mm256_setzero_pd();
   const __m256d least = _mm256_min_pd(_mm256_min_pd(u, v), w);
   const __m256d most = _mm256_max_pd(_mm256_max_pd(u, v), w);
@@ -152,8 +152,8 @@ struct alignas(32) PackEdges {
   return candidates;
 }
 
-/// The rest of the kernel for one lane; whatever is out of the ordinary (slivers, zero areas, NaN, which are
-/// the coordinates of what is no triangle) goes through the scalar kernels.
+/// The rest of the kernel for one lane. Special cases (slivers, zero areas, and NaN, the coordinates of
+/// primitives other than triangles) are computed by the scalar kernels.
 inline bool finish_lane(const OctreeView& view, const RaySetup<double>& setup, const PackEdges& edges,
                         std::uint32_t lane, std::uint32_t id, Best<double>& best) {
   const double det = edges.det[lane];
@@ -203,7 +203,7 @@ template <bool Any, class Visitor>
 [[gnu::target("avx2")]] bool walk_octree_avx2(const OctreeView& view, const WalkStart<double>& start,
                                               const RaySetup<double>& setup, Best<double>& best,
                                               Visitor& visitor) {
-  // Nobody sees visits to empty leaves when nobody looks.
+  // Without a visitor nobody needs the visits to empty leaves.
   constexpr bool skip_empty = std::is_same_v<Visitor, NullVisitor>;
   const VectorRay ray{_mm256_set1_pd(setup.origin_x), _mm256_set1_pd(setup.origin_y),
                       _mm256_set1_pd(setup.origin_z), _mm256_set1_pd(setup.shear_x),
@@ -236,7 +236,7 @@ template <bool Any, class Visitor>
                                                         _mm256_permute4x64_pd(m, 0b11101001), _CMP_LE_OQ));
         alignas(32) std::array<double, 4> planes;
         _mm256_store_pd(planes.data(), m);
-        // The later children wait, the last one undermost.
+        // Push the later children, the last one first.
         const unsigned order = crossing_order[outcome][crossed];
         unsigned child = side | crossed;
         for (int shift = 2 * std::popcount(crossed) - 2; shift >= 0; shift -= 2) {

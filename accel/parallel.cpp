@@ -21,7 +21,7 @@ void parallel_pieces(std::size_t count, std::size_t grain, unsigned threads,
     }
     return;
   }
-  // More threads than cores are asked for by tests of determinism; TBB grants them only on request.
+  // Tests of determinism ask for more threads than cores; TBB grants them only through this control.
   std::optional<tbb::global_control> more_threads;
   if (threads > here) {
     more_threads.emplace(tbb::global_control::max_allowed_parallelism, threads);

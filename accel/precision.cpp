@@ -15,13 +15,13 @@ namespace {
 constexpr double enough_steps = 65536.0;
 constexpr double longest_edge = 0x1p62;
 
-/// The number as a float. Beyond the largest float it is infinite, as in the kernel. Not inlined: g++ 12
-/// makes one vector of three such conversions and leaves the rounding out.
+/// The number rounded to a float; infinite beyond the largest float, as in the kernel. Not inlined, because
+/// g++ 12 turns three such conversions into one vector and omits the rounding.
 [[gnu::noinline]] double rounded(double x) { return static_cast<double>(static_cast<float>(x)); }
 
 double longest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// Whether the edges span an area, at any scale: both are brought near 1 by a power of two first.
+/// Whether the edges span an area, at any scale: both are first scaled near 1 by a power of two.
 bool has_area(glm::dvec3 p, glm::dvec3 q) {
   int exponent = 0;
   (void)std::frexp(std::max(longest(p), longest(q)), &exponent);
@@ -56,7 +56,7 @@ void look_at_quadric(const QuadricShape& shape, PrecisionNeed& need) {
   need.out_of_range += extent > longest_edge || extent < 1.0 / longest_edge ? 1U : 0U;
 }
 
-/// Between neighbouring floats at x; infinite beyond their range.
+/// The distance of neighbouring floats at x; infinite beyond their range.
 double spacing_at(double x) {
   if (!(x <= static_cast<double>(std::numeric_limits<float>::max()))) {
     return std::numeric_limits<double>::infinity();

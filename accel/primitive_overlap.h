@@ -1,4 +1,4 @@
-// Does a primitive of a set, of whatever kind, meet a box?
+// Whether a primitive of a set, of any kind, meets a box.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace marti::accel {
 
-/// As box_overlap.h for triangles and quadric_overlap.h for the others: never "no" when they meet.
+/// As box_overlap.h for triangles and quadric_overlap.h for the others: never false when they meet.
 template <class Real>
 [[nodiscard]] inline bool overlaps(const TriangleSet& set, std::uint32_t id,
                                    const std::array<Real, 3>& center, const std::array<Real, 3>& half) {

@@ -8,7 +8,7 @@ namespace marti::accel {
 
 namespace {
 
-/// Coordinates along kx, ky and kz of the ray.
+/// Coordinates along the ray's axes kx, ky and kz.
 template <class Real>
 struct Vector {
   Real x;
@@ -27,16 +27,16 @@ Vector<Real> along(const Vector<Real>& a, const Vector<Real>& b, Real s) {
   return {a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
 }
 
-/// The ray as it comes to one primitive.
+/// The ray relative to one primitive.
 template <class Real>
 struct Approach {
-  Vector<Real> center;     ///< the primitive's centre, from the origin
+  Vector<Real> center;     ///< the primitive's centre, relative to the ray's origin
   Vector<Real> direction;  ///< its component z is 1
-  Real squared;            ///< of the direction
+  Real squared;            ///< squared length of the direction
   Real nearest;            ///< parameter of the point nearest to the centre
-  Vector<Real> offset;     ///< that point, from the centre
-  Real rounding;           ///< how far from the surface a good root may be
-  Real tolerance;          ///< how far any accepted one may be
+  Vector<Real> offset;     ///< that point, relative to the centre
+  Real rounding;           ///< largest distance from the surface of a root that needs no improvement
+  Real tolerance;          ///< largest distance from the surface of an accepted root
 
   Approach(const RaySetup<Real>& ray, const QuadricShape& shape)
       : center{Real(shape.center[ray.kx]) - ray.origin_x, Real(shape.center[ray.ky]) - ray.origin_y,
@@ -58,10 +58,10 @@ struct Approach {
   }
 };
 
-/// Improves the root s until its point is within `rounding` of the surface, as long as that helps; then
-/// whether it is within `tolerance` and the cone's ends. surface.place(s) gives a point's signed distance
-/// `excess` beyond the surface and whether it is `within` the ends; surface.rate(place) how fast the excess
-/// grows with s.
+/// Improves the root s until its point is within `rounding` of the surface, as long as that helps; returns
+/// whether it is then within `tolerance` and the cone's ends. surface.place(s) gives a point's signed
+/// distance `excess` beyond the surface, surface.within(place) whether it is within the ends,
+/// surface.rate(place) how fast the excess grows with s.
 template <class Real, class Surface>
 bool settle(Real& s, const Surface& surface) {
   using std::abs;
@@ -78,7 +78,7 @@ bool settle(Real& s, const Surface& surface) {
   return abs(place.excess) <= surface.tolerance && surface.within(place);
 }
 
-/// Takes the hit at t when it is the best.
+/// Makes the hit at t the best one if it is better.
 template <class Real>
 bool offer(Real t, std::uint32_t id, Best<Real>& best) {
   if (!(t <= best.t) || (t == best.t && id >= best.primitive)) {
@@ -91,7 +91,7 @@ bool offer(Real t, std::uint32_t id, Best<Real>& best) {
   return true;
 }
 
-/// The first of two roots, in order of t, that `settle` confirms and that is not before t_min.
+/// Offers the first of two roots, in order of t, that `settle` confirms and that is not before t_min.
 template <class Real, class Surface>
 bool choose(const RaySetup<Real>& ray, Real low, Real high, const Surface& surface, std::uint32_t id,
             Best<Real>& best) {
@@ -117,7 +117,7 @@ struct SphereSurface {
   };
   const Approach<Real>& approach;
   Real radius_squared;
-  // The excess is that of the square: | |p|^2 - r^2 | <= tolerance r implies | |p| - r | <= tolerance.
+  // The excess is of squared distances: | |p|^2 - r^2 | <= tolerance r implies | |p| - r | <= tolerance.
   Real rounding;
   Real tolerance;
 
@@ -132,7 +132,7 @@ struct SphereSurface {
 template <class Real>
 struct ConeSurface {
   struct Place {
-    Vector<Real> out;  ///< from the axis
+    Vector<Real> out;  ///< vector from the axis to the point
     Real distance;
     Real height;
     Real excess;
@@ -141,7 +141,7 @@ struct ConeSurface {
   const QuadricShape& shape;
   const Vector<Real>& axis;
   const Vector<Real>& across;  ///< the direction's component across the axis
-  Real growth;                 ///< of the radius with s
+  Real growth;                 ///< growth of the radius with s
   Real rounding;
   Real tolerance;
 
@@ -157,7 +157,7 @@ struct ConeSurface {
   [[nodiscard]] Real rate(const Place& at) const {
     return (dot(at.out, across) / at.distance - growth) * Real(shape.cosine);
   }
-  /// Whether the nearest point of the cone is between its ends.
+  /// Whether the nearest point of the cone lies between its ends.
   [[nodiscard]] bool within(const Place& at) const {
     using std::abs;
     return abs(at.height + at.excess * Real(shape.slope * shape.cosine)) <= Real(shape.half);
@@ -202,7 +202,7 @@ bool intersect_cone(const RaySetup<Real>& ray, const QuadricShape& shape, std::u
   Vector<Real> radial = along(approach.offset, axis, -height);
   Real moved = -(dot(radial, across) / across_squared);
   if (!(abs(moved) <= Real(2.0 * shape.reach))) {
-    moved = Real(0.0);  // the ray runs nearly along the axis: the nearest point is out of the way
+    moved = Real(0.0);  // the ray runs nearly along the axis: the nearest point is too far away to help
   }
   radial = along(radial, across, moved);
   height = height + climb * moved;

@@ -7,11 +7,11 @@
 // chapter 7, 2019). A cone's equation is moved once more, to the point nearest to its axis, and solved by
 // q = -(B + sign(B) sqrt(B^2 - A C)) so that neither root cancels.
 //
-// Then every root is checked, and this is what the structures and the tracer rely on. With s as it is, the
-// point of the ray is computed afresh, and so is its distance from the surface. If that is more than the
+// Then every root is checked; the structures and the tracer rely on this. The point of the ray at s is
+// computed again from s, and its distance from the surface from that. If the distance is more than the
 // rounding of a good root,
 //     2^-49 reach + 2 u L      (u = 2^-53, L the sum of the magnitudes of the centre's offset from the
-//     origin)
+//                               origin)
 // the root is improved by Newton's method, twice at most and only as long as that helps. It is refused if it
 // is still beyond
 //     2^-46 reach + 4 u L.
@@ -26,7 +26,7 @@
 //
 // With floats u is 2^-24 and 2^-49 and 2^-46 are 2^-20 and 2^-17; coordinates are rounded to floats first.
 //
-// Which root is the hit depends on the ray and the primitive only, never on what was hit before.
+// Which root is the hit depends only on the ray and the primitive, never on earlier hits.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@
 
 namespace marti::accel {
 
-/// Tests one sphere, cylinder or cone. True when it became the best hit; then `best` holds it, with weights
+/// Tests one sphere, cylinder or cone. True when it became the best hit; `best` then holds it, with weights
 /// u, v, w of 0.
 template <class Real>
 bool intersect_quadric(const RaySetup<Real>& ray, const QuadricShape& shape, std::uint32_t id,

@@ -1,15 +1,15 @@
-// Does the surface of a sphere, cylinder or cone meet an axis-aligned box? Both closed: touching counts. A
-// box wholly inside the surface does not meet it.
+// Whether the surface of a sphere, cylinder or cone meets an axis-aligned box. Both are closed: touching
+// counts. A box entirely inside the surface does not meet it.
 //
 // Sphere: the box's nearest and farthest points from the centre, exact up to rounding (Arvo, "A Simple Method
 // for Box-Sphere Intersection Testing", Graphics Gems, 1990).
-// Cone: the box is apart from the solid cone with flat ends when a direction separates them, and both of
-// their extents along a direction have closed forms, so every "apart" is proved whatever the direction. Tried
-// are the coordinate axes and the directions found by projecting a point back and forth between box and
-// cone, which tends to the shortest distance between the two (Cheney, Goldstein, "Proximity maps for
-// convex sets", Proc. AMS 10, 1959). The box is inside when its corners are, because the solid is convex.
-// What is listed too often are boxes that touch neither but are not separated after the few directions tried,
-// and boxes that meet only the flat ends' middle (there is no surface there).
+// Cone: the box does not meet the solid cone with flat ends when a direction separates the two. The extents
+// of both along any direction have closed forms, so a separation found is a proof, whatever the direction.
+// The directions tried are the coordinate axes and those found by projecting a point back and forth between
+// box and cone, which converges to the shortest distance between the two (Cheney, Goldstein, "Proximity maps
+// for convex sets", Proc. AMS 10, 1959). The box is inside when its corners are, because the solid is convex.
+// Listed without need are boxes that do not meet the solid but are not separated after the few directions
+// tried, and boxes that meet only the flat ends' middle (there is no surface there).
 //
 // Rounding: every comparison leaves a slack of 2^-45 of the sum of all distances involved; each value
 // compared has fewer than 32 roundings of values below that sum.
@@ -117,7 +117,7 @@ class ConeAgainstBox {
   }
 
  private:
-  /// Whether the box lies beyond the solid along a direction of any length.
+  /// Whether the box lies beyond the solid along a direction, which may have any length.
   [[nodiscard]] bool separates(const Triple<Real>& direction) const {
     using std::abs;
     using std::max;
@@ -146,8 +146,8 @@ class ConeAgainstBox {
 
 }  // namespace detail
 
-/// True when the surface meets the closed box [c - h, c + h]; may also be true when they are apart, see
-/// above. Real is the scalar the arithmetic is done in (double, or Counted to count it).
+/// True when the surface meets the closed box [c - h, c + h]; may also be true when it does not, see above.
+/// Real is the scalar of the arithmetic (double, or Counted to count operations).
 template <class Real>
 [[nodiscard]] inline bool overlaps(const QuadricShape& shape, const std::array<Real, 3>& c,
                                    const std::array<Real, 3>& h) {

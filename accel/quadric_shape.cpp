@@ -24,7 +24,7 @@ QuadricShape shape_of(const scenes::Quadric& quadric) {
     shape.radius = 0.5 * quadric.radius + 0.5 * end_radius;
     shape.slope = (end_radius - quadric.radius) / height;
     shape.cosine = 1.0 / std::hypot(1.0, shape.slope);
-    // A quarter more than needed: the kernel uses it to reject early.
+    // A quarter more than needed, because the kernel uses it for early rejection.
     shape.reach = 1.25 * std::hypot(shape.half, std::max(quadric.radius, end_radius));
     for (std::size_t a = 0; a < 3; ++a) {
       const auto k = static_cast<int>(a);

@@ -8,12 +8,12 @@
 
 namespace marti::accel {
 
-/// What the kernels tell apart. A cylinder is a cone whose radius does not change: the same kernel.
+/// The kinds that the kernels distinguish. A cylinder is a cone with constant radius and has the same kernel.
 enum class PrimitiveKind : std::uint8_t { triangle, sphere, cone };
 
-/// The numbers the kernel, the overlap test and shading read. For a cone the radius at height h above the
-/// centre is radius + slope * h, for -half <= h <= half. The numbers themselves are the primitive: rounding
-/// in making them moves it a little, but everything after sees one and the same surface.
+/// The numbers that the kernel, the overlap test and shading read. For a cone the radius at height h above
+/// the centre is radius + slope * h, for -half <= h <= half. These numbers define the primitive: computing
+/// them rounds, which moves it a little, but all later computations use exactly the same surface.
 struct QuadricShape {
   PrimitiveKind kind = PrimitiveKind::sphere;
   std::array<double, 3> center{};  ///< a sphere's centre, or the middle of a cone's axis
@@ -22,7 +22,7 @@ struct QuadricShape {
   double radius = 0.0;             ///< at the centre
   double slope = 0.0;              ///< growth of the radius along the axis
   double cosine = 1.0;         ///< 1 / sqrt(1 + slope^2): from radial distance to distance from the surface
-  double reach = 0.0;          ///< no point is farther from the centre; rounded up
+  double reach = 0.0;          ///< upper bound of the distance of its points from the centre
   std::array<double, 3> lo{};  ///< the box around it, rounded outwards
   std::array<double, 3> hi{};
 };

@@ -10,8 +10,8 @@ namespace marti::accel {
 
 inline constexpr std::uint32_t no_primitive = 0xffffffffU;
 
-/// The points origin + t * direction with t_min <= t <= t_max. The direction need not be of unit length
-/// but must be finite and not zero; t is measured in its length.
+/// The points origin + t * direction with t_min <= t <= t_max. The direction must be finite and not zero but
+/// need not be of unit length; t is in units of its length.
 struct Ray {
   glm::dvec3 origin{0.0};
   glm::dvec3 direction{0.0, 0.0, 1.0};
@@ -19,9 +19,9 @@ struct Ray {
   double t_max = std::numeric_limits<double>::infinity();
 };
 
-/// The nearest hit: least t, and the lowest primitive id among equal t. `primitive == no_primitive` when
-/// the ray hits nothing. u, v, w are the barycentric weights of the triangle's three corners; 0 when the
-/// primitive is no triangle.
+/// The nearest hit: least t, and the lowest primitive id among equal t. `primitive == no_primitive` when the
+/// ray hits nothing. u, v, w are the barycentric weights of the triangle's three corners; 0 for primitives
+/// other than triangles.
 struct Hit {
   double t = std::numeric_limits<double>::infinity();
   std::uint32_t primitive = no_primitive;

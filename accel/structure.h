@@ -1,4 +1,4 @@
-// The seam at which one structure is exchanged for another.
+// The interface through which structures are exchangeable.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@
 
 namespace marti::accel {
 
-/// A built structure over one triangle set. Immutable (or, the lazy octree, as good as), so any number of
+/// A built structure over one triangle set. Immutable (the lazy octree appears so), hence any number of
 /// threads may use it. All kinds give the same hits, bit for bit.
 class Structure {
  public:
@@ -40,7 +40,7 @@ class Structure {
   [[nodiscard]] virtual bool occluded(const Ray& ray) const = 0;
 };
 
-/// A concrete structure behind the seam.
+/// A concrete structure behind the interface.
 template <class Concrete>
 class StructureOf final : public Structure {
  public:
@@ -64,16 +64,16 @@ class StructureOf final : public Structure {
   Concrete concrete_;
 };
 
-/// Options of every kind; a kind reads its own.
+/// Options of every kind; each kind reads its own.
 struct StructureOptions {
   OctreeOptions octree;
   BspOptions bsp;
   GridOptions grid;
-  /// Other than density: an octree with the options above is built to measure it, and thrown away.
+  /// If not density: an octree with the options above is built to measure it, and then deleted.
   GridMatch grid_match = GridMatch::density;
 };
 
-/// The kinds make_structure knows: "octree", "bsp", "grid" and "none" (brute force).
+/// The kinds that make_structure accepts: "octree", "bsp", "grid" and "none" (brute force).
 [[nodiscard]] std::span<const std::string_view> structure_kinds();
 
 /// Builds a structure. Throws UserError for an unknown kind or an option out of range.
@@ -81,18 +81,18 @@ struct StructureOptions {
                                                         std::shared_ptr<const TriangleSet> triangles,
                                                         const StructureOptions& options = {});
 
-/// A lazy octree behind the seam: no kind of make_structure, because it cannot be recorded and two of them
-/// that traced other rays are not the same. Throws UserError for an option out of range.
+/// A lazy octree behind the interface. It is not a kind of make_structure, because it cannot be recorded, and
+/// two of them differ when they traced different rays. Throws UserError for an option out of range.
 [[nodiscard]] std::unique_ptr<Structure> make_lazy_octree(std::shared_ptr<const TriangleSet> triangles,
                                                           const LazyOctreeOptions& options = {});
-/// Bytes of host memory that the structure takes beside its triangles, about.
+/// Approximate bytes of host memory that the structure takes, without its triangles.
 [[nodiscard]] std::uint64_t host_bytes(const Structure& structure);
 
 /// The walk that the structure's queries take.
 [[nodiscard]] Traversal traversal_of(const Structure& structure);
 
-/// Calls `f` with the concrete structure (const Octree&, and so on), so that code inside is
-/// compiled for each and the traversal is inlined.
+/// Calls `f` with the concrete structure (const Octree&, and so on), so that the code of `f` is compiled for
+/// each and the traversal is inlined.
 template <class F>
 decltype(auto) visit_structure(const Structure& structure, F&& f) {
   if (const auto* octree = dynamic_cast<const StructureOf<Octree>*>(&structure)) {

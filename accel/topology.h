@@ -1,5 +1,5 @@
-// A structure's tree without its geometry: what the timing world needs to turn "visit node n" and
-// "test the objects of leaf n" into addresses.
+// A structure's tree without its geometry: what timing needs to turn "visit node n" and "test the objects of
+// leaf n" into addresses.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ struct TopologyNode {
   bool operator==(const TopologyNode&) const = default;
 };
 
-/// What it took to make a node's children when the tree was built.
+/// The work of making a node's children when the tree was built.
 struct SplitWork {
-  std::uint32_t listed = 0;    ///< triangles the node listed
+  std::uint32_t listed = 0;    ///< number of triangles that the node listed
   std::uint32_t overlaps = 0;  ///< triangle against box tests run to sort them into children; 0 for a leaf
 
   bool operator==(const SplitWork&) const = default;
@@ -30,13 +30,13 @@ struct SplitWork {
 struct Topology {
   std::vector<TopologyNode> nodes;
   std::vector<std::uint32_t> entries;
-  /// One for each node of a tree; empty for structures that are not built by splitting nodes.
+  /// One entry for each node of a tree; empty for structures that are not built by splitting nodes.
   std::vector<SplitWork> work;
 
   bool operator==(const Topology&) const = default;
 };
 
-/// Bytes of host memory.
+/// Bytes of host memory that the topology takes.
 [[nodiscard]] inline std::uint64_t bytes_of(const Topology& topology) {
   return topology.nodes.size() * sizeof(TopologyNode) + topology.entries.size() * sizeof(std::uint32_t) +
          topology.work.size() * sizeof(SplitWork);

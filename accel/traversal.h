@@ -1,5 +1,5 @@
-// The ways of walking a structure. Each has its own mix of operations, so a work log names the one that
-// made it.
+// The ways of walking a structure. Each has its own mix of operations, so a work log says which one made
+// it.
 #pragma once
 
 #include <array>

@@ -14,7 +14,7 @@
 namespace marti::accel {
 
 /// Corners a, b, c as ax ay az bx by bz cx cy cz. A vertex shared by triangles is copied bit for bit, which
-/// is what makes their common edges watertight.
+/// makes their common edges watertight.
 using TriangleCorners = std::array<double, 9>;
 
 /// Primitive ids are indices: of T triangles, triangle i is Scene::triangles[i] and has the id i; the curved
@@ -22,10 +22,10 @@ using TriangleCorners = std::array<double, 9>;
 class TriangleSet {
  public:
   TriangleSet() = default;
-  /// The scene's triangles must be valid (see scene.h): indices in range. Throws UserError for positions and
-  /// quadrics that are not.
+  /// The scene's triangles must be valid (see scene.h): indices in range. Throws UserError for invalid
+  /// positions and quadrics.
   explicit TriangleSet(const scenes::Scene& scene);
-  /// Finite coordinates of magnitude up to 2^300 and valid quadrics; throws UserError otherwise.
+  /// Coordinates must be finite with magnitudes up to 2^300, and quadrics valid; throws UserError otherwise.
   explicit TriangleSet(std::vector<TriangleCorners> triangles,
                        const std::vector<scenes::Quadric>& quadrics = {});
 
@@ -34,18 +34,18 @@ class TriangleSet {
     return scene.triangles.size() * sizeof(TriangleCorners) + scene.quadrics.size() * sizeof(QuadricShape);
   }
 
-  /// All primitives: ids are below it.
+  /// The number of all primitives; ids are below it.
   [[nodiscard]] std::uint32_t size() const {
     return static_cast<std::uint32_t>(triangles_.size() + quadrics_.size());
   }
-  /// Triangles: their ids are below it.
+  /// The number of triangles; their ids are below it.
   [[nodiscard]] std::uint32_t triangles() const { return static_cast<std::uint32_t>(triangles_.size()); }
   [[nodiscard]] PrimitiveKind kind(std::uint32_t id) const {
     return id < triangles() ? PrimitiveKind::triangle : quadric(id).kind;
   }
-  /// The triangle `id`, which must be one.
+  /// The triangle with the id `id`, which must be that of a triangle.
   [[nodiscard]] const TriangleCorners& operator[](std::uint32_t id) const { return triangles_[id]; }
-  /// The sphere, cylinder or cone `id`, which must be one.
+  /// The sphere, cylinder or cone with the id `id`, which must be that of one.
   [[nodiscard]] const QuadricShape& quadric(std::uint32_t id) const {
     return quadrics_[id - triangles_.size()];
   }
@@ -54,7 +54,7 @@ class TriangleSet {
     const double* p = &triangles_[id][std::size_t{3} * which];
     return {p[0], p[1], p[2]};
   }
-  /// The tight box of all primitives; empty when there is none.
+  /// The tight box of all primitives; empty when there are none.
   [[nodiscard]] const scenes::Bounds& bounds() const { return bounds_; }
 
  private:

@@ -1,10 +1,10 @@
 // How much of a cell its surfaces cover, seen from any direction: the geometry of the voxel cut.
 //
-// Surfaces inside a cell have areas a_i and unit normals n_i. Seen along d they cover at most
-// sum a_i |n_i . d|. By Cauchy and Schwarz this is no more than sqrt(A d'Md) with A = sum a_i and
-// M = sum a_i n_i n_i', and equal to it when all surfaces have the same slope to d, as those of a small cell
-// nearly have. M does not care to which side a normal points, and -Md is the mean of the normals turned to
-// the viewer, weighted by the areas he sees.
+// Surfaces inside a cell have areas a_i and unit normals n_i. Seen along d they cover at most sum a_i |n_i .
+// d|. By Cauchy and Schwarz this is no more than sqrt(A d'Md) with A = sum a_i and M = sum a_i n_i n_i', and
+// equal to it when all surfaces have the same slope to d, as nearly holds in a small cell. M does not depend
+// on the side to which a normal points, and -Md is the mean of the normals turned to the viewer, weighted by
+// the areas that the viewer sees.
 #pragma once
 
 #include <array>
@@ -31,13 +31,13 @@ template <class Real>
           two * (d[0] * d[1]), two * (d[0] * d[2]), two * (d[1] * d[2])};
 }
 
-/// What a cell holds. Areas are measured as if the cell were as large as the root (times 4^(level - 1)), in
-/// squares of the root's longest edge.
+/// The surfaces in a cell. Areas are measured as if the cell were as large as the root (times 4^(level - 1)),
+/// in squares of the root's longest edge.
 struct VoxelCover {
   float area = 0.0F;
   SymmetricForm<float> form{};
 
-  /// The area covered seen along the unit direction whose products are given.
+  /// The area covered, seen along the unit direction whose products_of() is given.
   template <class Real>
   [[nodiscard]] Real seen(const SymmetricForm<Real>& products) const {
     using std::sqrt;

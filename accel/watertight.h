@@ -1,4 +1,4 @@
-// The one ray/triangle intersection of the project, watertight and two-sided.
+// The ray/triangle intersection of the whole project, watertight and two-sided.
 //
 // Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. Per ray the space is
 // translated to the origin and sheared so that the ray becomes the z axis; a triangle is hit when the
@@ -61,8 +61,8 @@ struct EdgeFunctions {
   Real w;
 };
 
-/// The best hit so far: least t, then lowest primitive id. `t` starts at t_max, so one comparison covers
-/// both limits.
+/// The best hit so far: least t, then lowest primitive id. `t` begins at t_max, so one comparison tests both
+/// limits.
 template <class Real>
 struct Best {
   Real t;
@@ -100,7 +100,7 @@ extern template EdgeFunctions<double> accurate_edges(const Sheared<double>&, con
 extern template EdgeFunctions<Counted> accurate_edges(const Sheared<Counted>&, const Sheared<Counted>&,
                                                       const Sheared<Counted>&);
 
-/// |det| below this share of the products' magnitudes takes the accurate path.
+/// With |det| below this share of the products' magnitudes, the accurate computation is used.
 inline constexpr double sliver_share = 0x1p-8;
 
 template <class Real>
@@ -112,7 +112,7 @@ RaySetup<Real>::RaySetup(const Ray& ray) {
   kz = size[0] < size[1] ? (size[1] < size[2] ? 2U : 1U) : (size[0] < size[2] ? 2U : 0U);
   kx = kz == 2U ? 0U : kz + 1U;
   ky = kx == 2U ? 0U : kx + 1U;
-  // A NaN or an infinity among the six numbers makes this a NaN. A check of ours, so it is not counted.
+  // A NaN or an infinity among the six numbers makes this a NaN. As a mere check it is not counted.
   const double finite = 0.0 * ray.direction.x + 0.0 * ray.direction.y + 0.0 * ray.direction.z +
                         0.0 * ray.origin.x + 0.0 * ray.origin.y + 0.0 * ray.origin.z;
   if (!(plain(size[kz]) + finite >= RealFormat<Real>::least && plain(size[kz]) <= RealFormat<Real>::largest))
@@ -166,7 +166,7 @@ template <class Real>
   return (e.u < zero || e.v < zero || e.w < zero) && (e.u > zero || e.v > zero || e.w > zero);
 }
 
-/// Tests one triangle. True when it became the best hit; then `best` holds it.
+/// Tests one triangle. True when it became the best hit; `best` then holds it.
 template <class Real>
 inline bool intersect(const RaySetup<Real>& ray, const TriangleCorners& corners, std::uint32_t id,
                       Best<Real>& best) {
@@ -192,7 +192,7 @@ inline bool intersect(const RaySetup<Real>& ray, const TriangleCorners& corners,
   }
   Real det = edges.u + edges.v + edges.w;
   const Real products = (abs(cx_by) + abs(cy_bx)) + (abs(ax_cy) + abs(ay_cx)) + (abs(bx_ay) + abs(by_ax));
-  // Also taken by NaN, which then fails every comparison below.
+  // The condition is also true for NaN, which then fails every comparison below.
   if (!(abs(det) >= Real(sliver_share) * products)) [[unlikely]] {
     edges = accurate_edges(a, b, c);
     if (outside(edges)) {

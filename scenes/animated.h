@@ -15,18 +15,18 @@ namespace marti::scenes {
 struct AnimationFacts {
   std::string name;            ///< may be empty
   double duration = 0.0;       ///< seconds, to the last key frame
-  std::uint64_t channels = 0;  ///< properties of nodes that it changes
+  std::uint64_t channels = 0;  ///< number of node properties that it changes
 };
 
-/// What can move in a scene.
+/// The parts of a scene that can move.
 struct MotionFacts {
-  std::vector<AnimationFacts> animations;  ///< all of the file
-  int chosen = -1;                         ///< the one that plays, -1 for none
-  std::uint64_t skins = 0;                 ///< that meshes of the scene use
+  std::vector<AnimationFacts> animations;  ///< all animations of the file
+  int chosen = -1;                         ///< the one that plays, -1 if none does
+  std::uint64_t skins = 0;                 ///< used by meshes of the scene
   std::uint64_t morph_targets = 0;         ///< of the meshes of the scene
 };
 
-/// How much of one kind of a file's parts a scene uses.
+/// How many parts of one kind of a file a scene uses.
 struct PartUse {
   std::string_view name;  ///< in the plural: "nodes"
   std::uint64_t all = 0;
@@ -35,11 +35,11 @@ struct PartUse {
 
 /// How much of its file a scene uses.
 struct FileUse {
-  std::vector<PartUse> parts;      ///< empty for a scene that comes from no file
-  std::uint64_t unread_bytes = 0;  ///< of the accessors and images that nothing of the scene uses
+  std::vector<PartUse> parts;      ///< empty for a scene that is not from a file
+  std::uint64_t unread_bytes = 0;  ///< of the accessors and images that the scene does not use
 };
 
-/// Where poses come from. Any number of threads may ask at once.
+/// The source of poses. Any number of threads may ask at once.
 class PoseSource {
  public:
   PoseSource() = default;
@@ -48,9 +48,9 @@ class PoseSource {
   virtual ~PoseSource() = default;
   /// The pose at a finite time. See AnimatedScene::at.
   [[nodiscard]] virtual Scene at(double seconds) const = 0;
-  /// False when there is one pose only.
+  /// False when there is only one pose.
   [[nodiscard]] virtual bool moves() const = 0;
-  /// Seconds to the last key frame; 0 when there is one pose only.
+  /// Seconds to the last key frame; 0 when there is only one pose.
   [[nodiscard]] virtual double duration() const = 0;
   [[nodiscard]] virtual MotionFacts facts() const = 0;
   [[nodiscard]] virtual FileUse file_use() const { return {}; }
@@ -59,33 +59,33 @@ class PoseSource {
 /// A scene over time. Copies share their data.
 ///
 /// All poses have the same triangles: the same number in the same order with the same materials and source
-/// polygons, so that a primitive id means the same one in each. Only positions, normals, lights, camera and
-/// notes differ, and the order of a triangle's corners where a node is mirrored in one pose and not in the
-/// other. What does not move has bit-identical positions.
+/// polygons, so that a primitive id means the same triangle in each. Only positions, normals, lights, camera
+/// and notes differ, and the order of a triangle's corners where a node is mirrored in only one of two poses.
+/// Parts that do not move have bit-identical positions.
 class AnimatedScene {
  public:
   /// A scene of one pose.
   explicit AnimatedScene(Scene only);
   explicit AnimatedScene(std::shared_ptr<const PoseSource> source) : source_(std::move(source)) {}
 
-  /// The pose at a time in seconds; before the animation's beginning and after its end it stands still.
-  /// The same time gives the same bits. A triangle with a corner that is not finite or beyond 1e30 in this
-  /// pose shrinks to a point without area, so that no id moves up, and a note counts such triangles.
-  /// Throws UserError when the time is not finite, when no triangle has finite positions, and when a
-  /// transform is not finite or leaves a light or the camera no direction.
+  /// The pose at a time in seconds; times before the beginning or after the end of the animation give its
+  /// first or last pose. The same time gives the same bits. A triangle with a corner that is not finite or
+  /// beyond 1e30 in this pose shrinks to a point without area, so that all ids stay the same; a note says how
+  /// many did. Throws UserError when the time is not finite, when no triangle has finite positions, and when
+  /// a transform is not finite or leaves a light or the camera no direction.
   [[nodiscard]] Scene at(double seconds) const;
 
-  /// The same, but a time other than 0 is refused where there is one pose only; `name` of the scene begins
-  /// the message.
+  /// at(), but with only one pose, a time other than 0 is an error, whose message begins with the scene's
+  /// `name`.
   [[nodiscard]] Scene asked_for(double seconds, const std::string& name) const;
 
-  /// Does an animation play? If not there is one pose only.
+  /// Whether an animation plays. If not, there is only one pose.
   [[nodiscard]] bool moves() const { return source_->moves(); }
 
-  /// Seconds to the last key frame; 0 when there is one pose only.
+  /// Seconds to the last key frame; 0 when there is only one pose.
   [[nodiscard]] double duration() const { return source_->duration(); }
 
-  /// Throws UserError when an animation of the file is broken, chosen or not.
+  /// Throws UserError when any animation of the file is broken, whether it plays or not.
   [[nodiscard]] MotionFacts facts() const { return source_->facts(); }
 
   [[nodiscard]] FileUse file_use() const { return source_->file_use(); }

@@ -24,7 +24,7 @@ struct Camera {
   glm::dvec3 up{0.0, 1.0, 0.0};
   double vertical_fov = 0.7853981633974483;  ///< full angle in radians, above 0 and below pi
 
-  /// Throws UserError when eye, at and up do not span a frame or a size is zero.
+  /// Throws UserError when eye, at and up do not span a frame or when a size is zero.
   [[nodiscard]] ImagePlane image_plane(std::uint32_t width, std::uint32_t height) const;
 };
 

@@ -1,4 +1,4 @@
-// Counting what is in a scene.
+// Counts the contents of a scene.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -16,12 +16,12 @@ namespace {
 using PositionBits = std::array<std::uint64_t, 3>;
 
 PositionBits bits_of(const glm::dvec3& p) {
-  // + 0.0 makes -0 and +0 one position.
+  // + 0.0 turns -0 into +0, so that both are one position.
   return {std::bit_cast<std::uint64_t>(p.x + 0.0), std::bit_cast<std::uint64_t>(p.y + 0.0),
           std::bit_cast<std::uint64_t>(p.z + 0.0)};
 }
 
-/// For each vertex the rank of its position among the distinct ones.
+/// For each vertex the rank of its position among the different positions.
 std::vector<std::uint32_t> position_ranks(const Scene& scene) {
   std::vector<std::pair<PositionBits, std::uint32_t>> sorted;
   sorted.reserve(scene.positions.size());
@@ -71,8 +71,8 @@ std::uint64_t host_bytes(const Scene& scene) {
 }
 
 std::uint64_t host_bytes_of_facts(const Scene& scene) {
-  // Positions with their numbers, and their ranks; each triangle's corners, in a vector that grows by
-  // doubling, and its key.
+  // For each vertex its position with its number, and its rank; for each triangle its corners, in a vector
+  // that grows by doubling, and its key.
   const std::uint64_t vertex = sizeof(PositionBits) + 8 + 4;
   const std::uint64_t triangle = 3 * (3 * 4) + 3 * 4;
   return scene.positions.size() * vertex + scene.triangles.size() * triangle;

@@ -60,7 +60,7 @@ void note_degenerate(Scene& scene) {
   }
 }
 
-/// What the exporter keeps beside the glTF model: background and ambient light.
+/// Reads what the exporter stores in `extras`: background and ambient light.
 void read_own_surroundings(const Model& model, Scene& scene) {
   if (const tinygltf::Value* own = gltf::own_extras(model.data().extras)) {
     scene.background = gltf::color_in(*own, "background", 0.0, 1e9).value_or(scene.background);
@@ -74,7 +74,7 @@ std::string seconds_text(double seconds) {
   return text.str();
 }
 
-/// Triangles with a bad corner shrink onto a good corner, if need be another triangle's. Returns how many.
+/// Shrinks triangles with a bad corner to a good corner, if need be another triangle's; returns how many.
 std::uint64_t shrink_bad_triangles(const Model& model, const std::vector<char>& bad, Scene& scene) {
   const auto good_corner = [&bad](const Triangle& triangle) {
     return std::find_if(triangle.vertex.begin(), triangle.vertex.end(),
@@ -101,7 +101,7 @@ std::uint64_t shrink_bad_triangles(const Model& model, const std::vector<char>& 
 }
 
 /// A glTF file as a scene over time. The static pose decides which triangles there are; the pose at time 0
-/// decides where a camera or light that the file lacks is.
+/// decides where the default camera or light is placed if the file has none.
 class GltfPoses : public PoseSource {
  public:
   GltfPoses(const std::filesystem::path& path, const GltfOptions& options, const ImageDecoder& decode)
@@ -219,7 +219,7 @@ class GltfPoses : public PoseSource {
     }
   }
 
-  /// Camera and lights, made up where the file has none; then they stand still.
+  /// Sets camera and lights, with default ones if the file has none; those do not move.
   void look(const Pose& pose) {
     has_camera_ = gltf::set_camera(model_, pose.nodes, still_);
     if (!has_camera_) {
@@ -249,7 +249,7 @@ class GltfPoses : public PoseSource {
     return pose;
   }
 
-  /// Returns how many triangles had to shrink.
+  /// Places the vertices of a pose. Returns the number of triangles that had to shrink.
   std::uint64_t place_vertices(const Pose& pose, Scene& scene) const {
     std::vector<char> bad(scene.positions.size(), 0);
     for (const gltf::VertexInstance& instance : instances_) {
@@ -291,7 +291,7 @@ class GltfPoses : public PoseSource {
   std::optional<gltf::Animation> animation_;
   std::vector<gltf::SceneNode> nodes_;
   std::optional<gltf::Skins> skins_;
-  Scene still_;  // of an animated file all but what moves
+  Scene still_;  // for an animated file, the parts that do not move
   std::vector<gltf::VertexInstance> instances_;
   std::vector<gltf::TriangleRange> ranges_;
   std::uint64_t morph_targets_ = 0;

@@ -6,13 +6,13 @@
 // weights (3.11, Appendix C); materials; perspective cameras; KHR_lights_punctual,
 // KHR_materials_transmission, KHR_materials_ior, KHR_materials_emissive_strength. Left out with a note:
 // points and lines, displacements of texture coordinates, other textures, alpha modes. One source triangle is
-// one polygon. Indices below 0 read as "not given" where glTF allows that.
+// one polygon. Indices below 0 count as "not given" where glTF allows that.
 //
-// Motion. The static pose (nodes, morph weights and joints as the file has them, no animation) decides which
+// Motion. The static pose (nodes, morph weights and joints as in the file, no animation) decides which
 // triangles there are: one with a corner that is not finite or beyond 1e30 there is left out of all poses. A
-// node that is mirrored by its transform turns the winding of its triangles; the transform of a skinned
-// mesh's node is ignored, its mirroring too. A vertex's joint weights are divided by their sum. A camera or a
-// light that the file lacks is made up for the pose at time 0 and stands still.
+// node that is mirrored by its transform reverses the winding of its triangles; the transform of a skinned
+// mesh's node is ignored, including its mirroring. A vertex's joint weights are divided by their sum. If the
+// file has no camera or no light, a default one is made for the pose at time 0 and does not move.
 //
 // Materials. With base colour c, metallic m, roughness r, transmission t, index of refraction n,
 // F0 = ((n-1)/(n+1))^2 and gloss g = (1-r)^2, our weights are
@@ -25,8 +25,8 @@
 //   specular colour = white mixed with c by m;  emission = emissive factor times its strength.
 // A material with valid `extras.marti` (see gltf_export.h) gets the exact weights written there.
 //
-// Lights keep colour times intensity (candela, lux) as it stands: there is no exposure. Point and spot
-// lights fall off with the square of the distance. A camera's aspect ratio is the image's own.
+// Lights keep colour times intensity (candela, lux) unchanged: there is no exposure. Point and spot lights
+// fall off with the square of the distance. A camera's aspect ratio is that of the image.
 #pragma once
 
 #include <cstdint>
@@ -46,31 +46,31 @@ struct GltfOptions {
   /// Index or name of the animation that plays; empty: the first, if the file has one; "none": the static
   /// pose, unless an animation has that name.
   std::string animation;
-  double time = 0.0;  ///< seconds from the animation's beginning, of the one pose that load_gltf gives
-  /// Where there is one, images are not decoded: textures have their size and their file, and no texels (see
+  double time = 0.0;  ///< of the pose that load_gltf gives: seconds from the animation's beginning
+  /// If set, images are not decoded: textures have their size and their file, but no texels (see
   /// decode_texels).
   ImageSizer size_only;
-  /// Where there is one, and no `size_only`: tells an image's size before it is decoded, so that one beyond
+  /// If set without `size_only`: gives an image's size before it is decoded, so that an image too large for
   /// `memory` is refused first.
   ImageSizer size_first;
-  /// Also reads and checks what no part of the scene uses: all images, and all accessors of numbers.
+  /// Also reads and checks parts that the scene does not use: all images, and all accessors of numbers.
   bool read_unused = false;
-  std::uint64_t max_triangles = std::uint64_t{1} << 25;  ///< more than this is refused; vertices likewise
+  std::uint64_t max_triangles = std::uint64_t{1} << 25;  ///< more than this is refused; also for vertices
   std::uint64_t max_file_bytes = (std::uint64_t{1} << 32) - 1;  ///< of each file read
-  /// What the files, the scene made of them and its textures may take, all together. Instances are counted
-  /// before they are expanded, texels before they are decoded.
+  /// The memory that the files, the scene made of them and its textures may take together. Instances are
+  /// counted before they are expanded, texels before they are decoded.
   sim::MemoryBudget memory;
 };
 
 /// Opens a file. A scene without a camera or a light gets one that frames it, and a note. Triangles with a
-/// position that is not finite are left out and counted in one note; degenerate ones are kept and counted.
-/// `decode` may be empty; then a material with a base colour texture is refused.
-/// Throws UserError, the path first, for anything missing, broken, out of range or not supported; no input
-/// makes it crash or loop. Of several animations only the chosen one is checked; facts() checks all.
+/// position that is not finite are left out, and a note counts them; degenerate ones are kept and counted.
+/// `decode` may be empty; then a material with a base colour texture is refused. Throws UserError, the path
+/// first, for anything missing, broken, out of range or not supported; no input makes it crash or loop. Of
+/// several animations only the chosen one is checked; facts() checks all.
 [[nodiscard]] AnimatedScene open_gltf(const std::filesystem::path& path, const GltfOptions& options,
                                       const ImageDecoder& decode);
 
-/// The pose at `options.time`. A time other than 0 is refused when no animation plays.
+/// The pose at `options.time`. A time other than 0 is an error when no animation plays.
 [[nodiscard]] Scene load_gltf(const std::filesystem::path& path, const GltfOptions& options,
                               const ImageDecoder& decode);
 

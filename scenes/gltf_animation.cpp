@@ -14,7 +14,7 @@ namespace marti::scenes::gltf {
 
 namespace {
 
-constexpr double shortest_quaternion = 1e-6;  // as for the rotation of a node
+constexpr double shortest_quaternion = 1e-6;  // as for a node's rotation
 constexpr double longest_quaternion = 1e6;
 
 Interpolation interpolation_of(const Model& model, const std::string& text, const std::string& name) {
@@ -41,7 +41,7 @@ void check_weights(const Model& model, const std::vector<double>& weights, std::
   }
 }
 
-/// Reads what samplers refer to, and keeps the sum within the file's limits.
+/// Reads the data of samplers, and keeps their sum within the file's limits.
 class TrackReader {
  public:
   TrackReader(const Model& model, std::string animation) : model_(model), animation_(std::move(animation)) {}
@@ -59,7 +59,7 @@ class TrackReader {
     frames.times = model_.read_values(sampler.input, 1, name + ": its input");
     check_times(frames.times, name);
     check_output_type(sampler.output, only_floats, name);
-    const bool scalars = !is_rotation && !only_floats;  // weights
+    const bool scalars = !is_rotation && !only_floats;  // weights are stored as scalars
     frames.values =
         model_.read_values(sampler.output, scalars ? 1 : static_cast<int>(width), name + ": its output");
     const bool spline = frames.interpolation == Interpolation::cubic_spline;
@@ -81,7 +81,7 @@ class TrackReader {
     return model_.at(model_.data().accessors, index, "accessor", user);
   }
 
-  /// Many samplers of one large accessor would else be free.
+  /// Counts elements for each sampler: many samplers may share one large accessor in a small file.
   void charge(int index, const std::string& user) {
     read_ += accessor(index, user).count;
     if (read_ > model_.options().max_triangles) {
@@ -174,7 +174,7 @@ Animation::Animation(const Model& model, int index) {
   std::set<std::pair<int, Path>> targets;
   std::uint64_t changed = 0;
   std::map<std::pair<int, std::size_t>, std::size_t> known;  // tracks by sampler and kind of value
-  std::map<int, std::size_t> morphs;                         // targets by mesh
+  std::map<int, std::size_t> morphs;                         // morph targets by mesh
   for (std::size_t i = 0; i < source.channels.size(); ++i) {
     const tinygltf::AnimationChannel& channel = source.channels[i];
     const std::string name = prefix + ", channel " + std::to_string(i);
@@ -199,7 +199,7 @@ Animation::Animation(const Model& model, int index) {
                  std::to_string(channel.target_node) + ", which has a matrix instead");
     }
     const tinygltf::AnimationSampler& sampler = model.at(source.samplers, channel.sampler, "sampler", name);
-    // One sampler may serve weights of one target, three numbers and four: all are checked for their use.
+    // One sampler may serve weights of one target, three numbers and four: each use is checked separately.
     const auto key = std::pair(channel.sampler, path == Path::weights ? width + 4 : width);
     auto track = known.find(key);
     if (track == known.end()) {
@@ -210,7 +210,7 @@ Animation::Animation(const Model& model, int index) {
       duration_ = std::max(duration_, tracks_.back().times.back());
     }
     channels_.push_back({channel.target_node, path, track->second});
-    // A pose holds a copy of all that changes.
+    // A pose holds a copy of everything that changes.
     changed += width;
     if (changed > model.options().max_triangles) {
       model.fail(prefix + " changes more than " + std::to_string(model.options().max_triangles) +

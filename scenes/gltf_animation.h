@@ -1,4 +1,4 @@
-// Inside of the folder: the animations of a glTF file (glTF 2.0.1, section 3.11).
+// Internal to scenes/: the animations of a glTF file (glTF 2.0.1, section 3.11).
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace marti::scenes::gltf {
 
-/// How many morph targets the primitives of a mesh have; they must agree. Throws UserError.
+/// The number of morph targets of the primitives of a mesh, which must be equal. Throws UserError.
 [[nodiscard]] std::size_t morph_target_count(const Model& model, int mesh);
 
-/// The weights of a node's morph targets where no animation changes them: the node's, else the mesh's, else
-/// none, which stands for zeros (section 3.7.4). They live in the model. The node has a mesh with `count`
-/// targets. Throws UserError.
+/// The weights of a node's morph targets without animation: the node's, else the mesh's, else null, which
+/// means zeros (section 3.7.4). They live in the model. The node has a mesh with `count` targets. Throws
+/// UserError.
 [[nodiscard]] const std::vector<double>* default_weights(const Model& model, int node, std::size_t count);
 
 class Animation {
@@ -24,13 +24,13 @@ class Animation {
   /// Decodes and checks all channels. Throws UserError.
   Animation(const Model& model, int index);
 
-  /// The properties that it changes, at a time.
+  /// The properties that it changes, with their values at a time.
   [[nodiscard]] NodeChanges at(double seconds) const;
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] double duration() const { return duration_; }  ///< seconds, to the last key frame
   [[nodiscard]] std::uint64_t channels() const { return channels_.size(); }
-  [[nodiscard]] std::uint64_t size() const;  ///< numbers that were read
+  [[nodiscard]] std::uint64_t size() const;  ///< how many numbers were read
 
  private:
   enum class Path { translation, rotation, scale, weights };
@@ -47,8 +47,8 @@ class Animation {
   std::vector<Channel> channels_;
 };
 
-/// The animation that the options ask for, by index or name: empty for the first, "none" for none (unless one
-/// has that name). -1 when none plays. Throws UserError.
+/// The animation that the options ask for, by index or name: empty means the first, "none" no animation
+/// (unless one has that name). -1 when none plays. Throws UserError.
 [[nodiscard]] int chosen_animation(const Model& model);
 
 }  // namespace marti::scenes::gltf

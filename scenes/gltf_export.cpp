@@ -103,7 +103,7 @@ class Exporter {
     return static_cast<int>(model_.accessors.size() - 1);
   }
 
-  /// An attribute of 32-bit floats from vectors of `N` doubles.
+  /// Adds an attribute of 32-bit floats, from vectors of `N` doubles.
   template <int N, typename Vector>
   int add_attribute(const std::vector<Vector>& values, int type, bool with_bounds) {
     std::vector<float> floats;
@@ -131,7 +131,7 @@ class Exporter {
     return accessor;
   }
 
-  /// The order of the triangles: their own, unless it has too many runs of one material.
+  /// The order in which triangles are written: unchanged, unless they form too many runs of one material.
   std::vector<std::uint32_t> triangle_order() const {
     std::vector<std::uint32_t> order(scene_.triangles.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -227,7 +227,7 @@ class Exporter {
     tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
     const glm::dvec3 color = glm::clamp(source.color, 0.0, 1.0);
     pbr.baseColorFactor = {color.r, color.g, color.b, 1.0};
-    // A near thing for other programs: a mirror of some weight is a metal of that weight.
+    // An approximation for other programs: a mirror of some weight becomes a metal of that weight.
     pbr.metallicFactor = std::clamp(source.reflection, 0.0, 1.0);
     pbr.roughnessFactor = source.reflection > 0.0 ? 0.0
                           : source.highlight > 0.0
@@ -260,7 +260,7 @@ class Exporter {
     model_.materials.push_back(material);
   }
 
-  /// A node's matrix that has its own -z along `forward`.
+  /// A node's matrix at `place` with the node's -z axis along `forward`.
   static std::vector<double> placed(const glm::dvec3& place, const glm::dvec3& forward,
                                     const glm::dvec3& up) {
     const glm::dvec3 right = glm::normalize(glm::cross(forward, up));
@@ -270,7 +270,7 @@ class Exporter {
   }
 
   void add_camera() {
-    static_cast<void>(scene_.camera.image_plane(1, 1));  // refuses a camera without a frame
+    static_cast<void>(scene_.camera.image_plane(1, 1));  // throws for a camera without a frame
     const Bounds bounds = bounds_of(scene_);
     tinygltf::Camera camera;
     camera.type = "perspective";
@@ -336,7 +336,7 @@ void export_glb(const Scene& source, const std::filesystem::path& path, const Im
   } catch (const std::bad_alloc&) {
     exporter.fail("there is not enough memory to write the scene");
   } catch (const std::exception& error) {
-    // A name that is no UTF-8, for example.
+    // For example, a name that is not UTF-8.
     exporter.fail(std::string("the scene cannot be written: ") + error.what());
   }
   sim::write_file(path, content);

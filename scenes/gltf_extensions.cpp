@@ -56,8 +56,8 @@ std::string ignored_extensions(const tinygltf::Model& file) {
 std::string compression_of_view(const tinygltf::Model& file, int view) {
   const tinygltf::BufferView& compressed = file.bufferViews[static_cast<std::size_t>(view)];
   const tinygltf::Buffer& buffer = file.buffers[static_cast<std::size_t>(compressed.buffer)];
-  // A buffer with the extension stands for bytes that are only there after decompression, unless it has an
-  // URI. What tinygltf gives a buffer without one in a .glb file is the file's own.
+  // The bytes of a buffer with the extension exist only after decompression, unless the buffer has a URI. For
+  // a buffer without one in a .glb file, tinygltf substitutes the bytes of the file itself.
   return buffer.uri.empty() && !meshopt_among(buffer.extensions).empty() ? meshopt_among(buffer.extensions)
                                                                          : std::string();
 }

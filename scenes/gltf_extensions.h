@@ -1,4 +1,4 @@
-// Inside of the folder: what is done about a glTF file's extensions.
+// Internal to scenes/: how a glTF file's extensions are treated.
 #pragma once
 
 #include <string>
@@ -13,11 +13,11 @@ namespace marti::scenes::gltf {
 /// The extensions that the file uses and that are not supported, with commas between them.
 [[nodiscard]] std::string ignored_extensions(const tinygltf::Model& file);
 
-/// The extension that has compressed the bytes of a buffer view (EXT_meshopt_compression or its Khronos
-/// twin) where nobody has stored them uncompressed as well; else empty. The view and its buffer must exist.
+/// The extension with which the bytes of a buffer view are compressed (EXT_meshopt_compression or its Khronos
+/// twin), if the file does not also hold them uncompressed; else empty. The view and its buffer must exist.
 [[nodiscard]] std::string compression_of_view(const tinygltf::Model& file, int view);
 
-/// The same for the attributes and indices of a primitive (KHR_draco_mesh_compression).
+/// The extension with which a primitive's attributes and indices are compressed (KHR_draco_mesh_compression).
 [[nodiscard]] std::string compression_of_primitive(const tinygltf::Model& file,
                                                    const tinygltf::Primitive& primitive);
 

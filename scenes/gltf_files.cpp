@@ -63,7 +63,7 @@ tinygltf::FsCallbacks FileAccess::callbacks() {
 }
 
 bool FileAccess::may_read(const std::string& name) {
-  // tinygltf looks in the current directory as well; a file must not depend on where it is opened from.
+  // tinygltf also looks in the current directory; the result must not depend on it.
   if (!refusal_.empty() || !name.starts_with(directory_) || name.find('\0') != std::string::npos) {
     return false;
   }
@@ -80,12 +80,12 @@ bool FileAccess::may_read(const std::string& name) {
 bool FileAccess::read(const std::string& name, std::vector<unsigned char>& bytes, std::string& error) {
   try {
     std::error_code failed;
-    // The place that was checked: without links on the way.
+    // The checked location, with links resolved.
     const std::filesystem::path file = std::filesystem::weakly_canonical(name);
     const std::uintmax_t size = std::filesystem::file_size(file, failed);
     if (!failed && size <= max_bytes_) {
       try {
-        memory_.require(2 * size, "the file " + shown(name) + " takes", "");  // a copy of it is made
+        memory_.require(2 * size, "the file " + shown(name) + " takes", "");  // it is copied once
         memory_.take(size, "the file " + shown(name) + " takes", "");
       } catch (const sim::UserError& reason) {
         refusal_ = reason.what();

@@ -1,4 +1,4 @@
-// Inside of the folder: which files a glTF file may have read, for tinygltf's callbacks.
+// Internal to scenes/: the files that a glTF file may refer to, for tinygltf's callbacks.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,17 @@
 
 namespace marti::scenes::gltf {
 
-/// Files in the folder of the scene and below, once all links are resolved. An URI that leads elsewhere (by
-/// "..", also as "%2e%2e", by a symbolic link, an absolute path or a scheme such as "file:") is refused, and
-/// so is a file that is too large for the budget.
+/// Allows files in the folder of the scene and below, after all links are resolved. A URI that leads
+/// elsewhere (by "..", also as "%2e%2e", by a symbolic link, an absolute path or a scheme such as "file:") is
+/// refused, and so is a file that is too large for the budget.
 class FileAccess {
  public:
-  /// `directory` is the scene's folder; the budget must outlive this. No file may have more than `max_bytes`.
+  /// `directory` is the scene's folder; the budget must outlive this object. No file may exceed `max_bytes`.
   FileAccess(const std::filesystem::path& directory, std::uint64_t max_bytes, sim::MemoryBudget& memory);
 
-  /// With the slash at its end.
+  /// The scene's folder, with a slash at the end.
   [[nodiscard]] const std::string& directory() const { return directory_; }
-  /// Refers to this.
+  /// The callbacks for tinygltf. They refer to this object.
   [[nodiscard]] tinygltf::FsCallbacks callbacks();
   /// Why a file was refused, as one sentence; empty when none was.
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
@@ -38,8 +38,8 @@ class FileAccess {
   std::string refusal_;
 };
 
-/// Foreign text in quotation marks and in ASCII, what cannot be printed escaped, the rest after 200
-/// characters cut off.
+/// Foreign text in quotation marks and in ASCII, with unprintable characters escaped, cut off after 200
+/// characters.
 [[nodiscard]] std::string shown(std::string_view text);
 
 }  // namespace marti::scenes::gltf

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// A member that is a list; an empty one where there is no such list.
+// A member that is a list; if there is none, an empty list.
 json& list_in(json& object, const char* name) {
   static thread_local json none;
   none = json::array();

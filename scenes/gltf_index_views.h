@@ -1,5 +1,5 @@
-// Inside of the folder: vertex indices without a buffer view, which glTF 2.0 allows (section 3.6.2.3: zeros
-// that sparse values replace; or what an extension compresses) and tinygltf does not.
+// Internal to scenes/: vertex indices without a buffer view. glTF 2.0 allows them (section 3.6.2.3: zeros
+// that sparse values replace; or data compressed by an extension), tinygltf does not.
 #pragma once
 
 #include <string>
@@ -11,17 +11,17 @@
 namespace marti::scenes::gltf {
 
 struct IndexViews {
-  std::string json;  ///< with a buffer view for each of them, any; empty where there is none of them
-  std::vector<int> accessors;  ///< that had none
+  std::string json;  ///< with an arbitrary buffer view added to each of them; empty if there are none
+  std::vector<int> accessors;  ///< those without a buffer view
 };
 
-/// Finds the accessors that primitives have for indices and that name no buffer view.
+/// Finds the accessors that primitives use for indices and that have no buffer view.
 [[nodiscard]] IndexViews given_index_views(std::string_view json);
 
-/// A .glb file with another JSON text. The file must begin with a whole one.
+/// Replaces the JSON text of a .glb file. The file must begin with a complete one.
 [[nodiscard]] std::string with_json(std::string_view glb, std::string json);
 
-/// Takes the views from the parsed accessors again.
+/// Removes the added views from the parsed accessors.
 void take_index_views(const IndexViews& given, tinygltf::Model& file);
 
 }  // namespace marti::scenes::gltf

@@ -11,7 +11,7 @@ namespace marti::scenes::gltf {
 
 namespace {
 
-/// Elements of an accessor; nothing where there is none. What is wrong with it is found when it is read.
+/// The number of an accessor's elements; std::nullopt without accessor. Faults are found when it is read.
 std::optional<std::uint64_t> count_of(const tinygltf::Model& file, int accessor) {
   if (accessor < 0 || static_cast<std::size_t>(accessor) >= file.accessors.size()) {
     return std::nullopt;
@@ -26,10 +26,10 @@ std::optional<std::uint64_t> count_of(const tinygltf::Model& file, int accessor)
   return std::min<std::uint64_t>(a.count, most);
 }
 
-/// One mesh, as each of its nodes has it.
+/// The size of a mesh, as instantiated by each of its nodes.
 Expanded expanded_mesh(const tinygltf::Model& file, const tinygltf::Mesh& mesh) {
   Expanded expanded;
-  std::set<int> shared;  // a node's primitives share the vertices of an accessor
+  std::set<int> shared;  // primitives of a node share the vertices of an accessor
   for (const tinygltf::Primitive& primitive : mesh.primitives) {
     const int positions = attribute(primitive.attributes, "POSITION");
     const std::optional<std::uint64_t> vertices = count_of(file, positions);
@@ -50,7 +50,7 @@ Expanded expanded_mesh(const tinygltf::Model& file, const tinygltf::Mesh& mesh) 
 std::uint64_t Expanded::bytes() const {
   constexpr std::uint64_t vector = sizeof(glm::dvec3);
   const std::uint64_t vertex = vector + 1 + (normals ? vector : 0) + (coordinates ? sizeof(glm::dvec2) : 0);
-  // Two: the scene that is kept, and the one that is handed out.
+  // Twice: for the scene that is kept and for the one that is returned.
   return 2 * (vertices * vertex + triangles * sizeof(Triangle)) + sources * 3 * vector;
 }
 
@@ -73,7 +73,7 @@ Expanded expanded_instances(const Model& model, const std::vector<SceneNode>& no
     all.normals = all.normals || found->second.normals;
     all.coordinates = all.coordinates || found->second.coordinates;
   }
-  // The loader accepts no more.
+  // The loader refuses more.
   all.vertices = std::min(all.vertices, model.options().max_triangles);
   all.triangles = std::min(all.triangles, model.options().max_triangles);
   return all;

@@ -1,4 +1,4 @@
-// Inside of the folder: how large a scene becomes when every node has vertices and triangles of its own.
+// Internal to scenes/: the size of a scene when every node gets vertices and triangles of its own.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@ namespace marti::scenes::gltf {
 struct Expanded {
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
-  std::uint64_t sources = 0;  ///< vertices of the meshes themselves, once each
+  std::uint64_t sources = 0;  ///< vertices of the meshes themselves, each counted once
   bool normals = false;
   bool coordinates = false;
 
-  /// What the scene, a copy of it for a pose, and the meshes' own vertices take.
+  /// Bytes for the scene, a copy of it for a pose, and the meshes' own vertices.
   [[nodiscard]] std::uint64_t bytes() const;
 };
 
-/// Counted from what the accessors say, at most what their buffer views hold, without reading vertices.
+/// Counted from the accessors' declared sizes, limited by their buffer views, without reading vertices.
 [[nodiscard]] Expanded expanded_instances(const Model& model, const std::vector<SceneNode>& nodes);
 
 }  // namespace marti::scenes::gltf

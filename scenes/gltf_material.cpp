@@ -30,7 +30,7 @@ bool in_range(const std::optional<double>& value, double lowest, double highest)
   return value && *value >= lowest && *value <= highest;
 }
 
-/// Overwrites the weights by the exact ones, if all of them are there and in range.
+/// Replaces the weights by the exact ones, if all of these exist and are in range.
 bool apply_own_weights(const tinygltf::Value& own, Material& material) {
   const auto color = color_in(own, "color", 0.0, 1.0);
   const auto specular = color_in(own, "specular_color", 0.0, 1.0);
@@ -58,7 +58,7 @@ bool apply_own_weights(const tinygltf::Value& own, Material& material) {
   return true;
 }
 
-/// The mapping of gltf.h.
+/// Computes the weights of gltf.h.
 void set_weights(Material& material, double metallic, double roughness, double transmission) {
   const double root = (material.ior - 1.0) / (material.ior + 1.0);
   const double f0 = root * root;
@@ -138,7 +138,7 @@ Material Materials::convert(int index, int& texture_coordinates) {
   }
   material.ior = 1.5;
   if (const tinygltf::Value* ior = extension(source.extensions, "KHR_materials_ior")) {
-    // 0 stands for an index without end in the extension: total reflection.
+    // In the extension 0 means an infinite index: total reflection.
     const double given = number_in(*ior, "ior").value_or(1.5);
     material.ior = given == 0.0
                        ? largest_ior
@@ -258,7 +258,7 @@ Texture Materials::decode_image(int image, const std::string& user) const {
   if (const ImageSizer& sizer =
           model_.options().size_first ? model_.options().size_first : model_.options().size_only) {
     const ImageSize size = read_image(found, sizer);
-    // The samples as the decoder gives them, and the texels made of them.
+    // Both the samples from the decoder and the texels made of them.
     model_.require_memory(2 * bytes_a_texel * size.width * size.height, textures_take);
   }
   Texture texture = read_image(found, decode_);

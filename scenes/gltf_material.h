@@ -1,4 +1,4 @@
-// Inside of the folder: glTF materials and textures as ours, converted when first used.
+// Internal to scenes/: converts glTF materials and textures when they are first used.
 #pragma once
 
 #include <map>
@@ -20,17 +20,17 @@
 
 namespace marti::scenes::gltf {
 
-/// Member `key` of an object as a number, or nothing.
+/// Member `key` of an object as a number; std::nullopt if it is not one.
 [[nodiscard]] std::optional<double> number_in(const tinygltf::Value& object, const char* key);
 
-/// Member `key` of an object as three numbers of `lowest` to `highest`, or nothing.
+/// Member `key` of an object as three numbers of `lowest` to `highest`; std::nullopt if it is not that.
 [[nodiscard]] std::optional<glm::dvec3> color_in(const tinygltf::Value& object, const char* key,
                                                  double lowest, double highest);
 
 /// The `extras.marti` object, or nullptr.
 [[nodiscard]] const tinygltf::Value* own_extras(const tinygltf::Value& extras);
 
-/// What the loader leaves out, counted for the notes.
+/// What the loader leaves out, with counts, for the notes.
 struct LeftOut {
   std::map<std::string, std::uint64_t> features;  ///< by a description in the plural
 };
@@ -42,29 +42,29 @@ class Materials {
 
   struct Use {
     std::uint32_t material = 0;    ///< index into Scene::materials
-    int texture_coordinates = -1;  ///< the TEXCOORD set its texture needs, -1 for none
+    int texture_coordinates = -1;  ///< the TEXCOORD set that its texture needs, -1 if none
   };
   /// The material of a primitive; -1 is glTF's default material.
   Use use(int index);
 
-  /// Materials of the file in use.
+  /// Number of the file's materials in use.
   [[nodiscard]] std::uint64_t used() const { return used_.size() - (used_.contains(-1) ? 1U : 0U); }
-  /// Images of the file in use, by index.
+  /// The file's images in use, by index.
   [[nodiscard]] const std::set<int>& used_images() const { return images_; }
-  /// Decodes an image that nothing uses, to check it.
+  /// Decodes an image that the scene does not use, to check it.
   void check_image(int image) const { static_cast<void>(decode_image(image, "the file")); }
 
  private:
   Material convert(int index, int& texture_coordinates);
   std::uint32_t texture_index(int texture, const std::string& user);
-  /// The first image in use with the same bytes: it is decoded once, and there is one texture of it.
+  /// The first image in use with the same bytes, so that equal images are decoded once and share a texture.
   int first_alike(int image, const std::string& user);
   struct Image {
     std::string name;
     std::span<const std::byte> bytes;
   };
   [[nodiscard]] Image find_image(int image, const std::string& user) const;
-  /// Throws UserError for what `decode` finds wrong with the image.
+  /// Throws UserError when `decode` fails.
   template <class Decode>
   auto read_image(const Image& image, const Decode& decode) const;
   [[nodiscard]] Texture decode_image(int image, const std::string& user) const;

@@ -13,7 +13,7 @@ void MeshReader::add(std::size_t place, Pose& pose) {
   const tinygltf::Node& node = model_.data().nodes[static_cast<std::size_t>(index)];
   const std::string user_name = "node " + std::to_string(index);
   const tinygltf::Mesh& mesh = model_.at(model_.data().meshes, node.mesh, "mesh", user_name);
-  // Primitives that give no triangle would else be free: many nodes times many points take for ever.
+  // Counted, because primitives without triangles cost time too: many nodes times many points.
   visits_ += mesh.primitives.size();
   if (visits_ > model_.options().max_triangles) {
     model_.fail("the scene has more than " + std::to_string(model_.options().max_triangles) +
@@ -100,7 +100,7 @@ void MeshReader::add_primitive(const tinygltf::Primitive& primitive, const Pose&
   if (corners < 3 || (is_list && corners % 3 != 0)) {
     model_.fail(name + ": " + std::to_string(corners) + " corners do not make triangles");
   }
-  // The transform of a skinned mesh's node is ignored (section 3.7.3.2), and so is its mirroring.
+  // The transform of a skinned mesh's node is ignored (section 3.7.3.2), including its mirroring.
   const bool mirrored = user.skin < 0 && is_mirrored(pose.nodes[user.place].world);
   const auto first = static_cast<std::uint32_t>(scene_.triangles.size());
   const std::size_t count = is_list ? corners / 3 : corners - 2;

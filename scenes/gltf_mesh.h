@@ -1,4 +1,4 @@
-// Inside of the folder: meshes of a glTF file as triangles of a scene.
+// Internal to scenes/: meshes of a glTF file as triangles of a scene.
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,17 @@
 
 namespace marti::scenes::gltf {
 
-/// Triangles in a row that belong to one node without a skin.
+/// Consecutive triangles that belong to one node without a skin.
 struct TriangleRange {
   std::uint32_t first = 0;
   std::uint32_t count = 0;
   std::size_t place = 0;  ///< of the node among the scene's nodes
-  bool mirrored = false;  ///< is their winding turned round against the file's?
+  bool mirrored = false;  ///< whether their winding is reversed relative to the file
 };
 
 class MeshReader {
  public:
-  /// All must outlive this.
+  /// All arguments must outlive this object.
   MeshReader(const Model& model, Materials& materials, Skins& skins, Scene& scene, LeftOut& left_out)
       : model_(model),
         materials_(materials),
@@ -36,14 +36,14 @@ class MeshReader {
         left_out_(left_out),
         vertices_(model) {}
 
-  /// Adds the triangles of the mesh of a node, vertices placed as in `pose`, whose skins are brought up to
-  /// date.
+  /// Adds the triangles of the mesh of a node, with vertices placed as in `pose`; adds the skins it uses to
+  /// the pose.
   void add(std::size_t place, Pose& pose);
 
   /// Triangles left out because a position is not finite (or beyond 1e30).
   [[nodiscard]] std::uint64_t bad_triangles() const { return bad_triangles_; }
 
-  /// What it takes to place the vertices anew.
+  /// The data for placing the vertices in another pose.
   [[nodiscard]] const std::vector<VertexInstance>& instances() const { return instances_; }
   [[nodiscard]] const std::vector<TriangleRange>& ranges() const { return ranges_; }
   [[nodiscard]] std::uint64_t morph_targets() const { return morph_targets_; }
@@ -57,7 +57,7 @@ class MeshReader {
     std::size_t place = 0;
     int skin = -1;
     const std::vector<double>* weights = nullptr;
-    // By what they come from, and the accessor of texture coordinates.
+    // by their source, and the accessor of texture coordinates
     std::map<std::pair<const VertexSource*, int>, Vertices> shared;
   };
 
@@ -80,7 +80,7 @@ class MeshReader {
   std::uint64_t morph_targets_ = 0;
   std::vector<char> bad_vertex_;
   std::uint64_t bad_triangles_ = 0;
-  std::uint64_t visits_ = 0;  // of primitives, in all instances
+  std::uint64_t visits_ = 0;  // number of primitives visited, in all instances
 };
 
 }  // namespace marti::scenes::gltf

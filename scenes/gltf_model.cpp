@@ -23,9 +23,9 @@ namespace marti::scenes::gltf {
 namespace {
 
 constexpr std::uint64_t max_json_bytes = std::uint64_t{1} << 30;
-constexpr int max_json_depth = 128;  // tinygltf walks `extras` and `extensions` by recursion
+constexpr int max_json_depth = 128;  // tinygltf reads `extras` and `extensions` recursively
 
-/// Keeps an image file's bytes as they are. Bytes of buffer views are left alone: tinygltf has not checked
+/// Keeps an image file's bytes undecoded. Bytes of buffer views are not touched: tinygltf has not checked
 /// that they lie inside their buffer.
 bool keep_image(tinygltf::Image* image, const int /*index*/, std::string* /*error*/, std::string* /*warning*/,
                 int /*width*/, int /*height*/, const unsigned char* bytes, int size, void* /*user*/) {
@@ -36,13 +36,13 @@ bool keep_image(tinygltf::Image* image, const int /*index*/, std::string* /*erro
   return true;
 }
 
-/// What can be told of a JSON text before it is parsed.
+/// The shape of a JSON text, found before it is parsed.
 struct JsonShape {
   int depth = 0;
   std::uint64_t objects = 0;
-  std::uint64_t values = 0;  ///< about: members and elements
+  std::uint64_t values = 0;  ///< approximate number of members and elements
 
-  /// What its parsed form takes, beside the text: the strings, and for each object tinygltf's own.
+  /// Bytes of its parsed form, without the text: the strings, and tinygltf's own data for each object.
   [[nodiscard]] std::uint64_t bytes(std::uint64_t text) const {
     return 2 * text + 600 * objects + 48 * values;
   }
@@ -75,7 +75,7 @@ JsonShape shape_of(std::string_view json) {
   return shape;
 }
 
-/// The JSON text of either kind of file; of a broken .glb as much as there is.
+/// The JSON text of either kind of file; for a broken .glb as much of it as there is.
 std::string_view json_of(std::string_view file, bool binary) {
   if (!binary) {
     return file;
@@ -88,7 +88,7 @@ std::string_view json_of(std::string_view file, bool binary) {
   return file.substr(20, length);
 }
 
-/// tinygltf ends its messages with line breaks; ours are one line.
+/// Joins lines: tinygltf ends its messages with line breaks; ours are one line.
 std::string one_line(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) {
     text.pop_back();
@@ -97,8 +97,8 @@ std::string one_line(std::string text) {
   return sim::shown(text);
 }
 
-/// tinygltf's complaints without those about what glTF 2.0 allows: skins without inverse bind matrices
-/// (section 3.7.3.1), and channels without a target node, which are to be ignored (3.11) and are.
+/// tinygltf's complaints without those about things that glTF 2.0 allows: skins without inverse bind matrices
+/// (section 3.7.3.1), and channels without a target node, which must be ignored (3.11) and are.
 std::string true_faults(const std::string& error) {
   static constexpr std::array<std::string_view, 3> allowed = {
       "'inverseBindMatrices' property is missing in Skin.", "'node' property is missing.",
@@ -132,7 +132,7 @@ std::size_t component_size(int type) {
   }
 }
 
-/// Unaligned little-endian read, as in the file and on the machines we build for.
+/// Unaligned little-endian read; both the file and the machines we build for are little-endian.
 template <typename T>
 T load(const std::byte* from) {
   T value;
@@ -151,7 +151,7 @@ std::uint32_t load_unsigned(const std::byte* from, int type) {
   }
 }
 
-/// One component; the mapping of normalised integers is that of glTF 2.0, section 3.11.
+/// Reads one component; normalised integers are mapped as in glTF 2.0, section 3.11.
 double load_value(const std::byte* from, int type, bool normalized) {
   switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE: {
@@ -196,7 +196,7 @@ void Model::parse() {
   std::error_code failed;
   if (const std::uintmax_t size = std::filesystem::file_size(path_, failed);
       !failed && size <= options_.max_file_bytes) {
-    take_memory(2 * size, "it takes");  // tinygltf copies what of it is no JSON
+    take_memory(2 * size, "it takes");  // tinygltf copies the part that is not JSON
   }
   std::string file;
   try {
@@ -234,11 +234,11 @@ void Model::parse() {
   if (!access.refusal().empty()) {
     fail(access.refusal());
   }
-  // tinygltf reads the names of the extensions before it comes upon what it cannot read for want of one.
+  // tinygltf reads the names of the extensions before it fails on data that need one of them.
   if (const std::string extension = missing_requirement(data_); !extension.empty()) {
     fail("it requires the extension " + shown(extension) + ", which is not supported");
   }
-  // Some faults only leave a message: a primitive that cannot be parsed is dropped, for example.
+  // Some faults are only reported by a message: for example, a primitive that cannot be parsed is dropped.
   const std::string faults = true_faults(error);
   if (!parsed || !faults.empty()) {
     const std::string ignored = one_line(ignored_extensions(data_));

@@ -1,6 +1,6 @@
-// Inside of the folder: a parsed glTF file with the checks that every part of the loader needs. tinygltf
-// accepts indices out of range, recursive nodes and short buffers; nothing of the model is to be used
-// without going through these.
+// Internal to scenes/: a parsed glTF file with the checks that every part of the loader needs. tinygltf
+// accepts indices out of range, recursive nodes and short buffers, so the model's data must only be accessed
+// through these checks.
 #pragma once
 
 #include <atomic>
@@ -20,30 +20,30 @@ namespace marti::scenes::gltf {
 
 class FileAccess;
 
-/// An accessor without a buffer view stands for this many zeros at most.
+/// The most zeros that an accessor without a buffer view may stand for.
 inline constexpr std::size_t most_zeros = std::size_t{1} << 22U;
 
 class Model {
  public:
-  /// Reads and parses the file and those it refers to. Throws UserError.
+  /// Reads and parses the file and the files that it refers to. Throws UserError.
   Model(std::filesystem::path path, const GltfOptions& options);
 
   [[nodiscard]] const tinygltf::Model& data() const { return data_; }
   [[nodiscard]] const GltfOptions& options() const { return options_; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
-  /// Takes from options().memory. Throws UserError when there is not as much left; `what` begins the
-  /// sentence, as "its textures take". For the thread that opens the file.
+  /// Takes `bytes` from options().memory. Throws UserError when less is left; `what` begins the sentence, as
+  /// "its textures take". Only for the thread that opens the file.
   void take_memory(std::uint64_t bytes, const char* what) const;
-  /// The same for what is given back soon: takes nothing.
+  /// Checks for memory that is soon freed again: as take_memory(), but takes nothing.
   void require_memory(std::uint64_t bytes, const char* what) const;
 
   /// Throws a UserError that begins with the file's path.
   [[noreturn]] void fail(const std::string& what) const;
-  /// A PartError: the file has not the part (scenes/part_error.h) that the options ask for.
+  /// Throws a PartError: the file lacks the part (scenes/part_error.h) that the options ask for.
   [[noreturn]] void fail_choice(const char* part, const std::string& what) const;
 
-  /// `list[index]`, or a UserError that says who refers to a missing `kind`.
+  /// `list[index]`; a UserError that names the `user` of the missing `kind` if there is no such element.
   template <typename T>
   [[nodiscard]] const T& at(const std::vector<T>& list, int index, const char* kind,
                             const std::string& user) const {
@@ -67,7 +67,7 @@ class Model {
   /// An accessor of unsigned scalars, for vertex indices.
   [[nodiscard]] std::vector<std::uint32_t> read_indices(int accessor, const std::string& user) const;
 
-  /// Whether the accessor has been asked for so far. It must be one of the file's.
+  /// Whether the accessor has been read so far. It must be one of the file's.
   [[nodiscard]] bool was_read(std::size_t accessor) const { return read_[accessor]; }
 
  private:
@@ -81,7 +81,7 @@ class Model {
                                    const std::string& user) const;
   [[nodiscard]] Elements elements(int view, std::uint64_t offset, std::uint64_t count, int component_type,
                                   int components, const std::string& user) const;
-  /// Hands each replacement to `store`: its element and its bytes.
+  /// Passes each replacement to `store`: its element and its bytes.
   template <typename Store>
   void apply_sparse(const tinygltf::Accessor& accessor, int components, const std::string& user,
                     const Store& store) const;

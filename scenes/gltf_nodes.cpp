@@ -25,7 +25,7 @@ bool is_finite(const glm::dmat4& m) {
   return std::all_of(values, values + 16, [](double v) { return std::isfinite(v); });
 }
 
-/// Three or four numbers of a node, as the animation has them or else the file.
+/// Three or four numbers of a node, from the animation if it changes them, else from the file.
 template <typename Vector>
 std::vector<double> changed(const std::optional<Vector>& change, const std::vector<double>& given) {
   if (!change) {
@@ -78,7 +78,7 @@ glm::dmat4 local_transform(const Model& model, int index, const NodeChange& chan
   return m;
 }
 
-/// The parent of each node, -1 for none. A node has one parent at most, and following parents ends.
+/// The parent of each node, -1 for none. Throws for a node with two parents and for cycles.
 std::vector<int> find_parents(const Model& model) {
   const std::vector<tinygltf::Node>& nodes = model.data().nodes;
   std::vector<int> parents(nodes.size(), -1);
@@ -94,7 +94,7 @@ std::vector<int> find_parents(const Model& model) {
       known = parent;
     }
   }
-  // With one parent each, the nodes not reached from the roots are those in and below cycles.
+  // As each node has at most one parent, the nodes not reached from the roots are those in and below cycles.
   std::vector<int> reached;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (parents[i] < 0) {
@@ -153,7 +153,7 @@ std::vector<int> roots_of_scene(const Model& model, const std::vector<int>& pare
 std::vector<SceneNode> nodes_of_scene(const Model& model) {
   const std::vector<int> roots = roots_of_scene(model, find_parents(model));
   std::vector<SceneNode> nodes;
-  // A stack of our own: the depth of the hierarchy is the file's choice. Pushed in reverse to keep order.
+  // An explicit stack, because the file decides the depth of the hierarchy. Pushed in reverse to keep order.
   std::vector<SceneNode> open;
   for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
     open.push_back({*root, -1});

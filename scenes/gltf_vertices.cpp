@@ -20,14 +20,14 @@ bool is_usable(const glm::dvec3& p) {
 }
 
 /// The inverse transpose of the upper 3 x 3 part up to a positive factor: its cofactors, negated for a
-/// mirroring transform. Needs no division, so a flattening transform does no harm.
+/// mirroring transform. It needs no division, so singular transforms cause no error.
 glm::dmat3 normal_transform(const glm::dmat4& world) {
   const glm::dmat3 m(world);
   const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
   return glm::dot(m[0], cofactors[0]) < 0.0 ? -cofactors : cofactors;
 }
 
-/// A unit vector, or zero where it has no direction.
+/// A unit vector along n, or zero if n has no direction.
 glm::dvec3 unit_or_zero(const glm::dvec3& n) {
   const glm::dvec3 unit = n / glm::length(n);
   const bool usable = std::isfinite(unit.x) && std::isfinite(unit.y) && std::isfinite(unit.z) &&
@@ -35,8 +35,8 @@ glm::dvec3 unit_or_zero(const glm::dvec3& n) {
   return usable ? unit : glm::dvec3(0.0);
 }
 
-/// The sum of a vertex's vector and its displacements. A weight of 0 leaves out even what is not finite; so
-/// do no weights.
+/// The sum of a vertex's vector and its weighted displacements. A displacement with weight 0 is left out even
+/// if it is not finite; without weights all are left out.
 glm::dvec3 morphed(glm::dvec3 vector, const VertexSource& source, const std::vector<double>* weights,
                    std::vector<glm::dvec3> MorphTarget::*kind, std::size_t vertex) {
   for (std::size_t i = 0; weights != nullptr && i < source.targets.size(); ++i) {
@@ -66,7 +66,7 @@ std::string set_name(const char* semantic, std::size_t set) {
   return std::string(semantic) + "_" + std::to_string(set);
 }
 
-/// How many sets of joints and weights a primitive has.
+/// The number of sets of joints and weights that a primitive has.
 std::size_t influence_sets(const Model& model, const tinygltf::Primitive& primitive,
                            const std::string& name) {
   std::size_t joints = 0;
@@ -170,7 +170,7 @@ void VertexReader::read_targets(const tinygltf::Primitive& primitive, VertexSour
       target.positions =
           read_vectors(from.at("POSITION"), source.positions.size(), user + ": POSITION", "displacements");
     }
-    // Without normals of the mesh those of the triangles hold, and displacements of normals do not count.
+    // Without normals of the mesh, triangles use their own, and displacements of normals are ignored.
     if (from.contains("NORMAL") && !source.normals.empty()) {
       target.normals =
           read_vectors(from.at("NORMAL"), source.positions.size(), user + ": NORMAL", "displacements");

@@ -18,7 +18,7 @@ namespace {
 constexpr double largest_intensity = 1e12;
 constexpr double largest_distance = 1e30;
 
-/// The unit vector along a column of a transform; UserError when the transform flattens it.
+/// The unit vector along a column of a transform; UserError when the column has length 0.
 glm::dvec3 axis_of(const Model& model, const glm::dmat4& world, int column, const std::string& name) {
   const glm::dvec3 axis(world[column]);
   const double length = glm::length(axis);
@@ -91,7 +91,7 @@ Camera convert_camera(const Model& model, const PlacedNode& place, int index) {
   const std::string name = "camera " + std::to_string(index);
   const tinygltf::Camera& source = model.data().cameras[static_cast<std::size_t>(index)];
   const double fov = source.perspective.yfov;
-  // glTF 2.0 asks for more than 0 and less than pi; views as narrow or wide as these are taken for mistakes.
+  // glTF 2.0 requires more than 0 and less than pi; narrower or wider views are taken for mistakes.
   constexpr double least = 1e-6;
   if (!(fov > least && fov < std::numbers::pi - least)) {
     std::ostringstream text;
@@ -104,7 +104,7 @@ Camera convert_camera(const Model& model, const PlacedNode& place, int index) {
   camera.vertical_fov = fov;
   camera.eye = place_of(model, place.world, name);
   camera.up = axis_of(model, place.world, 1, name);
-  // A point far enough away keeps the direction exact where the eye is far from the origin.
+  // A point at this distance gives an exact direction even if the eye is far from the origin.
   const double distance = std::max(1.0, glm::length(camera.eye));
   camera.at = camera.eye - distance * axis_of(model, place.world, 2, name);
   try {

@@ -1,4 +1,4 @@
-// Inside of the folder: lights and cameras of a glTF file, and those made up where it has none.
+// Internal to scenes/: lights and cameras of a glTF file, and default ones if it has none.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace marti::scenes::gltf {
 /// Adds the KHR_lights_punctual lights of the placed nodes.
 void add_lights(const Model& model, const std::vector<PlacedNode>& nodes, Scene& scene);
 
-/// Sets the camera that is asked for, or the first perspective one. False when the scene has none.
+/// Sets the camera that the options ask for, or the first perspective one. False when the scene has none.
 [[nodiscard]] bool set_camera(const Model& model, const std::vector<PlacedNode>& nodes, Scene& scene);
 
 /// A camera that sees the whole scene, from a little above on the +z side. The scene has triangles.

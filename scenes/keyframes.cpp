@@ -11,7 +11,7 @@ namespace marti::scenes {
 
 namespace {
 
-/// Where a time falls: exactly on key frame `frame` when `t` is 0, else the share `t` of the way to the next.
+/// A time among key frames: exactly at `frame` if `t` is 0, else at the share `t` of the way to the next.
 struct Place {
   std::size_t frame = 0;
   double t = 0.0;
@@ -37,7 +37,7 @@ Place find(const KeyFrames& frames, double seconds) {
   return place;
 }
 
-/// The numbers of a key frame; `part` of a cubic spline: 0 in-tangents, 1 values, 2 out-tangents.
+/// The numbers of a key frame; for a cubic spline `part` is 0: in-tangents, 1: values, 2: out-tangents.
 std::span<const double> numbers(const KeyFrames& frames, std::size_t frame, std::size_t part) {
   const bool spline = frames.interpolation == Interpolation::cubic_spline;
   const std::size_t at = spline ? 3 * frame + part : frame;
@@ -85,14 +85,14 @@ glm::dvec4 rotation_at(const KeyFrames& frames, double seconds) {
   if (place.t == 0.0 || frames.interpolation != Interpolation::linear) {
     return quaternion(value_at(frames, place));
   }
-  // Quaternions stored as integers are of unit length only about.
+  // Quaternions stored as integers have only approximately unit length.
   return slerp(glm::normalize(quaternion(numbers(frames, place.frame, 1))),
                glm::normalize(quaternion(numbers(frames, place.frame + 1, 1))), place.t);
 }
 
 glm::dvec4 slerp(const glm::dvec4& from, const glm::dvec4& to, double t) {
   const glm::dvec4 target = glm::dot(from, to) < 0.0 ? -to : to;
-  // The angle from chords: an arc cosine has no digits left where the two are close.
+  // The angle from chords: an arc cosine loses all digits when the two are close.
   const double angle = 2.0 * std::atan2(glm::length(target - from), glm::length(target + from));
   const double sine = std::sin(angle);
   if (!(sine > 0.0)) {

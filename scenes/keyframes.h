@@ -18,18 +18,18 @@ struct KeyFrames {
   Interpolation interpolation = Interpolation::linear;
   std::size_t width = 1;
   std::vector<double> times;  ///< seconds, strictly increasing, at least one
-  /// `width` numbers for each time. Of a cubic spline three times as many: for each time the in-tangents, the
-  /// values and the out-tangents, tangents being per second.
+  /// `width` numbers for each time. For a cubic spline three times as many: for each time the in-tangents,
+  /// the values and the out-tangents; tangents are per second.
   std::vector<double> values;
 };
 
-/// The value at a finite time: at a key frame exactly its value, before the first and after the last key
-/// frame theirs, between two of them component by component.
+/// The value at a finite time: at a key frame exactly its value, before the first key frame the first value,
+/// after the last one the last; between two key frames interpolated component by component.
 [[nodiscard]] std::vector<double> value_at(const KeyFrames& frames, double seconds);
 
-/// The same for rotations, quaternions (x, y, z, w) of a length above 0: linear interpolation is spherical,
-/// along the shorter way (Appendix C.4). The result is in general not of unit length, and that of a cubic
-/// spline may even have none.
+/// value_at() for rotations, quaternions (x, y, z, w) of a length above 0: linear interpolation is spherical,
+/// along the shorter way (Appendix C.4). The result is in general not of unit length; that of a cubic spline
+/// may have length 0.
 [[nodiscard]] glm::dvec4 rotation_at(const KeyFrames& frames, double seconds);
 
 /// Spherical linear interpolation between two unit quaternions, by the shorter way; `t` from 0 to 1.

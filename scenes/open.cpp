@@ -18,7 +18,7 @@ bool names_a_file(std::string_view spec) {
 
 namespace {
 
-// An absolute path on the right replaces the base directory.
+// operator/ returns the right-hand path if that is absolute.
 std::filesystem::path path_of(std::string_view spec, const OpenOptions& options) {
   return options.base_directory / std::filesystem::path(spec);
 }

@@ -1,4 +1,4 @@
-// One door to every scene: a file or a recipe, by what the user wrote.
+// Opens any scene, a file or a recipe, from the text that the user wrote.
 #pragma once
 
 #include <cstdint>
@@ -14,36 +14,36 @@
 namespace marti::scenes {
 
 struct OpenOptions {
-  std::filesystem::path base_directory;  ///< where a relative file name starts; empty: the current directory
-  GltfOptions gltf;                      ///< what to choose from a file
+  std::filesystem::path base_directory;  ///< of relative file names; empty: the current directory
+  GltfOptions gltf;                      ///< which parts of a file to use
 };
 
 /// Opens `spec`: a file when it ends in .gltf or .glb (in any case), else a procedural scene such as
-/// "teapot:12", which has one pose. `options.gltf.time` is not looked at. Choosing a scene, a camera or an
-/// animation other than "none" of a procedural scene is an error.
-/// Throws UserError as open_gltf and make_procedural do.
+/// "teapot:12", which has one pose. `options.gltf.time` is ignored. For a procedural scene, choosing a scene,
+/// a camera or an animation other than "none" is an error. Throws UserError as open_gltf and make_procedural
+/// do.
 [[nodiscard]] AnimatedScene open_animated(std::string_view spec, const OpenOptions& options,
                                           const ImageDecoder& decode);
 
-/// Whether `spec` is a file's name, by its ending, and not a procedural scene's.
+/// Whether `spec` is the name of a file, by its ending, rather than of a procedural scene.
 [[nodiscard]] bool names_a_file(std::string_view spec);
 
-/// The pose at `options.gltf.time`. A time other than 0 is an error where nothing moves. `use` may be null;
-/// else it says how much of its file the scene uses.
+/// The pose at `options.gltf.time`. A time other than 0 is an error if the scene does not move. Unless `use`
+/// is null, it receives how much of its file the scene uses.
 [[nodiscard]] Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode,
                                FileUse* use = nullptr);
 
 /// The counts that describe a scene.
 struct SceneFacts {
   std::string name;
-  std::uint64_t polygons = 0;  ///< of the source
+  std::uint64_t polygons = 0;  ///< polygons of the source
   std::uint64_t triangles = 0;
   std::uint64_t spheres = 0;
   std::uint64_t cylinders = 0;
   std::uint64_t cones = 0;
   std::uint64_t vertices = 0;              ///< as stored
-  std::uint64_t distinct_positions = 0;    ///< that triangles refer to, compared bit for bit
-  std::uint64_t degenerate_triangles = 0;  ///< of exactly no area
+  std::uint64_t distinct_positions = 0;    ///< of triangles' corners, compared bit for bit
+  std::uint64_t degenerate_triangles = 0;  ///< with an area of exactly zero
   std::uint64_t duplicate_triangles = 0;   ///< with the same three positions as an earlier one, in any order
   std::uint64_t materials = 0;
   std::uint64_t textures = 0;
@@ -54,13 +54,13 @@ struct SceneFacts {
 
 /// Bytes of host memory that the scene's vertices, primitives and decoded texels take.
 [[nodiscard]] std::uint64_t host_bytes(const Scene& scene);
-/// And those that facts_of() takes for as long as it sorts.
+/// Bytes of host memory that facts_of() takes in addition, while it sorts.
 [[nodiscard]] std::uint64_t host_bytes_of_facts(const Scene& scene);
 
-/// How many triangles have exactly no area. In time proportional to their number.
+/// The number of triangles with an area of exactly zero. Takes time proportional to the number of triangles.
 [[nodiscard]] std::uint64_t count_degenerate(const Scene& scene);
 
-/// Sorts positions and triangles to compare them.
+/// Counts everything in SceneFacts; sorts positions and triangles to compare them.
 [[nodiscard]] SceneFacts facts_of(const Scene& scene);
 
 /// The facts as text, one "name: value" line each, with the scene's notes at the end.

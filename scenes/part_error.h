@@ -1,4 +1,4 @@
-// What was asked for of a scene and is not there.
+// An error about a part of a scene that was asked for and does not exist.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace marti::scenes {
 
-/// The choice is wrong, not the scene: whoever asked for it knows where.
+/// The fault lies in the choice, not in the scene; the code that made the choice adds its place.
 class PartError : public sim::UserError {
  public:
   /// The field of GltfOptions that holds the choice: "scene", "camera", "animation" or "time".

@@ -10,7 +10,7 @@ namespace marti::scenes {
 
 namespace {
 
-/// A sum of doubles held without rounding error, as parts of growing magnitude (Shewchuk, section 2.4).
+/// A sum of doubles without rounding error, as components of growing magnitude (Shewchuk, section 2.4).
 class Expansion {
  public:
   void add(double value) {
@@ -64,7 +64,7 @@ class Ring {
   [[nodiscard]] std::size_t next(std::size_t i) const { return next_[i]; }
   [[nodiscard]] std::size_t previous(std::size_t i) const { return previous_[i]; }
 
-  /// The ear of the shortest diagonal, or the number of corners when there is none.
+  /// The ear with the shortest diagonal, or the number of corners when there is no ear.
   [[nodiscard]] std::size_t best_ear() const {
     std::size_t best = corners_.size();
     double shortest = std::numeric_limits<double>::infinity();
@@ -93,7 +93,7 @@ class Ring {
       i = next_[i];
     } while (i != start_);
   }
-  /// A corner on the straight line of its neighbours: cutting it takes no area away.
+  /// A corner collinear with its neighbours, which can be cut off without changing the area.
   [[nodiscard]] std::size_t flat_corner() const {
     std::size_t i = start_;
     do {

@@ -89,7 +89,7 @@ Scene make(std::string_view name, std::uint32_t size, bool whole) {
   return name == "teapot" ? spd::make_teapot(size, whole) : spd::make_large();
 }
 
-/// `text` up to the next colon, which is taken off `rest` as well.
+/// The part of the text up to the next colon; removes it from `rest`.
 std::string_view next_part(std::string_view& rest) {
   const std::size_t colon = rest.find(':');
   const std::string_view part = rest.substr(0, colon);

@@ -11,7 +11,7 @@
 
 namespace marti::scenes {
 
-/// What follows the size in a name, as `pot` in "teapot:12:pot".
+/// The part of a name after the size, as `pot` in "teapot:12:pot".
 struct ProceduralVariant {
   std::string_view name;
   std::string_view meaning;
@@ -22,16 +22,16 @@ struct ProceduralScene {
   std::uint32_t minimum_size;
   std::uint32_t maximum_size;
   std::uint32_t default_size;
-  std::string_view meaning;  ///< what it shows and what the size n does
+  std::string_view meaning;  ///< what the scene shows, and the effect of the size n
   std::span<const ProceduralVariant> variants;
 };
 
 /// Every procedural scene, in alphabetical order.
 [[nodiscard]] std::span<const ProceduralScene> procedural_scenes();
 
-/// Makes the scene of `spec` = name[:size[:variant]], for example "teapot", "gears:4", "teapot:12:pot".
-/// The same spec gives the same bytes. Throws UserError for an unknown name or variant (naming the nearest
-/// valid one) and for a size that is no whole number or outside its range.
+/// Makes the scene of `spec` = name[:size[:variant]], for example "teapot", "gears:4", "teapot:12:pot". The
+/// same spec gives the same bytes. Throws UserError for an unknown name or variant (naming the nearest valid
+/// one) and for a size that is not a whole number or out of range.
 [[nodiscard]] Scene make_procedural(std::string_view spec);
 
 }  // namespace marti::scenes

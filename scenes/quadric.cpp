@@ -68,8 +68,8 @@ Bounds bounds_of(const Quadric& quadric) {
   }
   const glm::dvec3 axis = quadric.tip - quadric.base;
   const double height = std::hypot(axis.x, axis.y, axis.z);
-  // How far a disc of radius 1 across the axis reaches along each coordinate: the sine of the angle between
-  // the two, from the other two components because 1 - cos^2 would cancel.
+  // How far a disc of radius 1 across the axis extends along each coordinate: the sine of the angle between
+  // the coordinate and the disc's axis, from the other two components, because 1 - cos^2 would cancel.
   const glm::dvec3 reach(std::hypot(axis.y, axis.z) / height, std::hypot(axis.z, axis.x) / height,
                          std::hypot(axis.x, axis.y) / height);
   bounds.include(quadric.base - quadric.radius * reach);

@@ -12,12 +12,12 @@ namespace marti::scenes {
 /// truncated, or end in a point.
 enum class QuadricKind : std::uint8_t { sphere, cylinder, cone };
 
-/// One curved primitive. In a scene of T triangles the primitive id of Scene::quadrics[i] is T + i. It
-/// carries no texture coordinates: a material's texture does not show on it.
+/// One curved primitive. In a scene of T triangles the primitive id of Scene::quadrics[i] is T + i. It has no
+/// texture coordinates, so a material's texture does not show on it.
 ///
-/// Valid (check_quadric) is what has
+/// A quadric is valid (check_quadric) if it has
 ///  - numbers of magnitude up to 2^300;
-///  - a radius (the larger one of a cone) from 2^-300 to 2^300, and no negative one;
+/// - a radius (for a cone, the larger one) from 2^-300 to 2^300, and no negative radius;
 ///  - two ends that lie apart: by at least 2^-20 of the larger radius (a flatter cone is a disc) and at most
 ///    2^40 radii (a thinner cylinder is a line).
 struct Quadric {
@@ -27,9 +27,9 @@ struct Quadric {
   double radius = 1.0;         ///< of a sphere or cylinder; a cone's at `base`
   double tip_radius = 0.0;     ///< a cone's at `tip`; not used by the others
   std::uint32_t material = 0;  ///< index into Scene::materials
-  std::uint32_t source = 0;    ///< the source's curved primitive it stands for, counted from 0
+  std::uint32_t source = 0;    ///< number of the curved primitive in the source, from 0
 
-  /// The radius at `tip` whatever the kind.
+  /// The radius at `tip`, for any kind.
   [[nodiscard]] double end_radius() const { return kind == QuadricKind::cone ? tip_radius : radius; }
 };
 

@@ -1,6 +1,6 @@
-// The scene database: what every loader and generator produces and everything else reads.
-// World space, right-handed, lengths in the scene's own unit, colours linear RGB.
-// A Scene that left a loader is valid: finite positions, indices in range, materials that exist.
+// The scene database: the result of every loader and generator, and the input of everything else. World
+// space, right-handed, lengths in the scene's own unit, colours linear RGB. A Scene from a loader is valid:
+// positions are finite, indices in range, materials exist.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ inline constexpr std::uint32_t no_texture = 0xffffffffU;
 struct Triangle {
   std::array<std::uint32_t, 3> vertex{};  ///< indices into Scene::positions (and normals, uvs)
   std::uint32_t material = 0;             ///< index into Scene::materials
-  std::uint32_t polygon = 0;              ///< the source polygon it was cut from, counted from 0
+  std::uint32_t polygon = 0;              ///< number of the source polygon it was cut from, from 0
 };
 
 /// Whitted's material with the weights of the Standard Procedural Databases.
@@ -32,7 +32,7 @@ struct Triangle {
 /// (n.h)^shininess) * light + reflection * reflected ray + transmission * refracted ray.
 struct Material {
   std::string name;
-  glm::dvec3 color{0.8};           ///< linear, 0 to 1; multiplied by the texture where there is one
+  glm::dvec3 color{0.8};           ///< linear, 0 to 1; multiplied by the texture if there is one
   glm::dvec3 specular_color{1.0};  ///< tint of highlight and reflection (white for dielectrics)
   glm::dvec3 emission{0.0};
   double diffuse = 1.0;       ///< Kd, 0 to 1
@@ -44,7 +44,7 @@ struct Material {
   std::uint32_t texture = no_texture;
 };
 
-/// 8-bit RGBA texels as decoded, rows from the top; `srgb` says whether sampling linearises them.
+/// Decoded 8-bit RGBA texels, rows from the top; `srgb` says whether sampling converts them to linear values.
 struct Texture {
   std::string name;
   std::uint32_t width = 0;
@@ -52,8 +52,8 @@ struct Texture {
   bool srgb = true;
   bool repeat_u = true;
   bool repeat_v = true;
-  /// width * height of them, or none where they are not decoded: then every sample is white, and `file` may
-  /// hold the image that they would come from.
+  /// width * height texels, or none if they are not decoded: every sample is then white, and `file` may hold
+  /// the encoded image.
   std::vector<std::array<std::uint8_t, 4>> texels;
   std::shared_ptr<const std::vector<std::byte>> file;
 
@@ -65,23 +65,23 @@ enum class LightKind : std::uint8_t { point, directional, spot };
 struct Light {
   LightKind kind = LightKind::point;
   glm::dvec3 position{0.0};
-  glm::dvec3 direction{0.0, 0.0, -1.0};  ///< the way the light shines, unit length (directional, spot)
+  glm::dvec3 direction{0.0, 0.0, -1.0};  ///< in which the light shines, unit length (directional, spot)
   glm::dvec3 color{1.0};                 ///< colour times intensity
-  bool inverse_square = false;           ///< glTF punctual lights fall off; the SPD's do not
+  bool inverse_square = false;           ///< glTF's punctual lights fall off; those of the SPD do not
   double range = 0.0;                    ///< 0: unlimited
   double cos_inner_cone = 1.0;
   double cos_outer_cone = 0.70710678118654752;
 };
 
-/// Everything a frame needs. `normals` and `uvs` are empty or as long as `positions`; a zero normal
-/// means "use the triangle's own".
+/// Everything that a frame needs. `normals` and `uvs` are empty or as long as `positions`; a zero normal
+/// means that the triangle's own is used.
 struct Scene {
   std::string name;
   std::vector<glm::dvec3> positions;
   std::vector<glm::dvec3> normals;
   std::vector<glm::dvec2> uvs;
   std::vector<Triangle> triangles;
-  std::vector<Quadric> quadrics;  ///< primitive ids from triangles.size() on; each valid as quadric.h says
+  std::vector<Quadric> quadrics;  ///< primitive ids from triangles.size() on; each valid as in quadric.h
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Light> lights;

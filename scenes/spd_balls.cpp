@@ -15,7 +15,7 @@ constexpr glm::dvec3 up{0.0, 0.0, 1.0};
 
 using Directions = std::array<glm::dvec3, 9>;
 
-/// Where a ball's nine children sit when its own axis points up.
+/// The directions of a ball's nine children when its own axis points up.
 Directions directions_of_children() {
   const double d = 1.0 / std::numbers::sqrt2;
   const std::array<glm::dvec3, 3> trio = {glm::dvec3{d, d, 0.0}, glm::dvec3{d, 0.0, -d},
@@ -30,7 +30,7 @@ Directions directions_of_children() {
   return directions;
 }
 
-/// Turns a vector as the turn that takes up to `axis` does.
+/// Rotates a vector as the rotation from "up" to `axis` does.
 glm::dvec3 aligned(const glm::dvec3& v, const glm::dvec3& axis) {
   if (axis.z >= 0.9999) {
     return v;

@@ -16,7 +16,7 @@ namespace marti::scenes::spd {
 namespace {
 
 constexpr int teeth = 36;
-constexpr double edge = 0.1;  // how deep the teeth are, in gear radii
+constexpr double edge = 0.1;  // depth of the teeth, in gear radii
 
 struct GearPlace {
   glm::dvec2 center;
@@ -56,7 +56,7 @@ class GearBuilder {
         scene_.positions.emplace_back(p.x, p.y, z);
       }
     }
-    // One cut serves both faces, so that top and bottom match.
+    // The same triangulation is used for both faces, so that top and bottom match.
     const auto cut = triangulate(outline);
     for (const auto& [a, b, c] : cut) {
       add_triangle(first + a, first + b, first + c, material);

@@ -10,7 +10,7 @@ namespace marti::scenes::spd {
 
 namespace {
 
-/// The whole is turned: first about x, then about y.
+/// Rotates the whole scene: first about x, then about y.
 glm::dvec3 placed(const glm::dvec3& v) {
   constexpr double radians = std::numbers::pi / 180.0;
   return turned(turned(v, {1.0, 0.0, 0.0}, -30.0 * radians), {0.0, 1.0, 0.0}, -20.0 * radians);

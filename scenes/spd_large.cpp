@@ -13,14 +13,14 @@ namespace marti::scenes::spd {
 
 namespace {
 
-/// Adds a scene's triangles and materials, turned about z, made smaller and moved.
+/// Adds a scene's triangles and materials, rotated about z, scaled and moved.
 void add_scene(Scene& scene, const Scene& other, double degrees, double scale, const glm::dvec3& place) {
   const auto first_vertex = static_cast<std::uint32_t>(scene.positions.size());
   const auto first_material = static_cast<std::uint32_t>(scene.materials.size());
   const auto turn = [degrees](const glm::dvec3& v) {
     return turned(v, {0.0, 0.0, 1.0}, degrees * 0.017453292519943295);
   };
-  // A zero normal stands for the triangle's own.
+  // A zero normal means the triangle's own.
   scene.normals.resize(scene.positions.size(), glm::dvec3(0.0));
   for (std::size_t i = 0; i < other.positions.size(); ++i) {
     scene.positions.push_back(place + scale * turn(other.positions[i]));

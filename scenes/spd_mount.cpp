@@ -1,6 +1,6 @@
 // SPD mount(n): a fractal mountain of 2 * 4^n triangles under four glass balls.
 //
-// The square is split at its middle n times, and each new height is the mean of its neighbours and a normal
+// The square is split at its middle n times; each new height is the mean of its neighbours plus a normal
 // deviate from a generator seeded by the place alone, so that neighbouring cells agree.
 #include <array>
 #include <cmath>
@@ -50,8 +50,8 @@ class Mountain {
     return gauss(21 + (((a << (23 - n_)) + (b << (15 - n_)) + (a << (7 - n_))) & 0xffffU));
   }
 
-  /// The square cell of `width` whose lower left corner is (a, b). Neighbours compute their common edge's
-  /// middle twice, with the same result.
+  /// Splits the square cell of `width` whose lower left corner is (a, b). Neighbours compute the middle of
+  /// their common edge twice, with the same result.
   void split(std::uint32_t a, std::uint32_t b, std::uint32_t width) {
     if (width == 1) {
       add_cell(a, b);

@@ -31,7 +31,7 @@ glm::dvec3 blend(const std::array<double, 4>& weight, const std::array<glm::dvec
   return (weight[0] * point[0] + weight[3] * point[3]) + (weight[1] * point[1] + weight[2] * point[2]);
 }
 
-/// A point of the curve. Where the four agree in a coordinate so does the curve, without rounding: the
+/// A point of the curve. If the four points agree in a coordinate, so does the curve, without rounding: the
 /// points of a degenerate edge stay one point, and a level rim stays level.
 glm::dvec3 curve_at(const std::array<double, 4>& weight, const std::array<glm::dvec3, 4>& point) {
   glm::dvec3 result = blend(weight, point);
@@ -57,7 +57,7 @@ glm::dvec3 blend(const std::array<double, 4>& rows, const std::array<double, 4>&
 
 bool on_axis(const glm::dvec3& p) { return std::abs(p.x) < 1e-4 && std::abs(p.y) < 1e-4; }
 
-/// At the lid's tip and the bottom's centre the patch is degenerate; the normal there is the axis.
+/// The normal; at the lid's tip and the bottom's centre, where the patch is degenerate, it is the axis.
 glm::dvec3 normal_at(const Basis& s, const Basis& t, const Patch& patch, const glm::dvec3& position) {
   const glm::dvec3 normal = glm::cross(blend(s.value, t.slope, patch), blend(s.slope, t.value, patch));
   if (on_axis(position) || !(glm::length(normal) > 0.0)) {

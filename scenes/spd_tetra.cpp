@@ -12,7 +12,7 @@ constexpr std::array<glm::dvec3, 4> corners = {glm::dvec3{-1, -1, 1}, glm::dvec3
                                                glm::dvec3{1, -1, -1}, glm::dvec3{1, 1, 1}};
 constexpr std::array<std::array<std::size_t, 3>, 4> faces = {{{0, 1, 2}, {3, 2, 1}, {2, 3, 0}, {1, 0, 3}}};
 
-/// Depth n <= 12 bounds the recursion. All coordinates are multiples of 2^-n: exact.
+/// Depth n <= 12 bounds the recursion. All coordinates are multiples of 2^-n, hence exact.
 void add_tetrahedra(Scene& scene, VertexWelder& vertices, std::uint32_t n, const glm::dvec3& center,
                     double half_width) {
   if (n > 1) {

@@ -13,7 +13,7 @@ namespace {
 constexpr double radians = std::numbers::pi / 180.0;
 constexpr double taper = 0.67;
 
-/// How a branch leaves its parent.
+/// The position and size of a branch relative to its parent.
 struct Fork {
   double bend;
   double turn;
@@ -21,7 +21,7 @@ struct Fork {
 };
 constexpr std::array<Fork, 2> forks = {Fork{40.0, 90.0, 0.65}, Fork{25.0, 230.0, 0.70}};
 
-/// A branch's own frame in the world: where it begins and its three axes.
+/// A branch's own frame in the world: its origin and its three axes.
 struct Frame {
   glm::dvec3 origin{0.0};
   glm::dvec3 x{1.0, 0.0, 0.0};
@@ -30,7 +30,7 @@ struct Frame {
 
   [[nodiscard]] glm::dvec3 vector(const glm::dvec3& v) const { return v.x * x + v.y * y + v.z * z; }
 
-  /// The frame of a branch that begins at this one's tip: bent about x, turned about z, made smaller.
+  /// The frame of a branch that begins at this one's tip: bent about x, rotated about z, scaled.
   [[nodiscard]] Frame forked(const Fork& fork) const {
     const auto axis = [&](const glm::dvec3& v) {
       const glm::dvec3 bent = turned(v, {1.0, 0.0, 0.0}, fork.bend * radians);

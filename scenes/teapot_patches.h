@@ -1,4 +1,4 @@
-// The Utah teapot: 32 bicubic Bezier patches, the figures published by M. Newell (1975), in the numbering
+// The Utah teapot: 32 bicubic Bezier patches, with the data published by M. Newell (1975), in the numbering
 // of the model's common copies.
 #pragma once
 

@@ -38,7 +38,7 @@ class Tessellator {
  public:
   explicit Tessellator(Scene& scene) : scene_(scene) {
     if (scene_.normals.empty()) {
-      // A zero normal stands for the triangle's own.
+      // A zero normal means the triangle's own.
       scene_.normals.resize(scene_.positions.size(), glm::dvec3(0.0));
     }
   }
@@ -70,8 +70,8 @@ class Tessellator {
     scene_.triangles.push_back({{a, b, c}, quadric_->material, static_cast<std::uint32_t>(scene_.polygons)});
   }
 
-  /// Triangles between two rings of corners, the upper one farther along the axis; a ring of one corner
-  /// repeated is a tip.
+  /// Adds triangles between two rings of corners, the upper one farther along the axis; a ring whose corners
+  /// all lie at one point is a tip.
   void join(const std::array<std::uint32_t, sides>& lower, const std::array<std::uint32_t, sides>& upper,
             bool lower_is_tip, bool upper_is_tip) {
     for (std::uint32_t i = 0; i < sides; ++i) {
@@ -112,7 +112,7 @@ class Tessellator {
     const double slope = (quadric_->end_radius() - quadric_->radius) / height;
     const auto ring_at = [&](const glm::dvec3& center, double radius) {
       std::array<std::uint32_t, sides> ring{};
-      // A tip, too, has a corner for each side: each has the normal of its side.
+      // A tip too has a corner for each side, with the normal of that side.
       for (std::uint32_t i = 0; i < sides; ++i) {
         const glm::dvec3 out = frame.around(i);
         ring[i] = vertex(center + radius * out, glm::normalize(out - slope * frame.axis));

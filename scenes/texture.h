@@ -1,5 +1,5 @@
-// Making and sampling textures. Files are decoded by the caller: this library links no image codec, it
-// takes a callback instead.
+// Makes and samples textures. Files are decoded by the caller: this library links no image codec but takes a
+// callback.
 #pragma once
 
 #include <cstddef>
@@ -16,24 +16,24 @@
 
 namespace marti::scenes {
 
-/// Decodes an image file held in memory (PNG, JPEG, ...). `name` is for messages only. Throws UserError
-/// when it cannot; only the size and the texels of what it returns are used.
+/// Decodes an image file held in memory (PNG, JPEG, ...). `name` is for messages only. Throws UserError if
+/// that fails; only the size and the texels of the result are used.
 using ImageDecoder = std::function<Texture(std::span<const std::byte> file, std::string_view name)>;
 
-/// The size in texels of an image file that is not decoded.
+/// The size of an image in texels.
 struct ImageSize {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
 };
 
-/// Finds it out, from the file's head alone. Throws UserError when it cannot.
+/// Finds the size of an image file from its head alone. Throws UserError if that fails.
 using ImageSizer = std::function<ImageSize(std::span<const std::byte> file, std::string_view name)>;
 
-/// Decodes the texels of a texture that has a file and no texels, and lets the file go. Throws UserError when
-/// the decoder cannot or when the image has another size than the texture.
+/// Decodes the texels of a texture that has a file and no texels, and frees the file. Throws UserError when
+/// the decoder fails or when the image's size is not the texture's.
 void decode_texels(Texture& texture, const ImageDecoder& decode);
 
-/// Encodes a texture as a PNG file in memory, without loss.
+/// Encodes a texture as a PNG file in memory, losslessly.
 using ImageEncoder = std::function<std::vector<std::byte>(const Texture& texture)>;
 
 /// A texture of 8-bit samples with any number of channels, interleaved, rows from the top: 1 is grey,
@@ -44,13 +44,13 @@ using ImageEncoder = std::function<std::vector<std::byte>(const Texture& texture
 
 struct TextureSample {
   glm::dvec3 color{0.0};    ///< linear, 0 to 1
-  std::uint32_t texel = 0;  ///< which texel was read: row * width + column
+  std::uint32_t texel = 0;  ///< the texel that was read: row * width + column
 };
 
-/// The texel nearest to `uv`. (0, 0) is the upper left corner of the image, u to the right, v downwards;
-/// outside 0..1 the texture repeats or its edge goes on, as it says. A uv that is not finite reads as 0.
-/// The texture must have a size; without texels the sample is white. One sample reads one texel, so that the
-/// log of a ray holds one reference.
+/// The texel nearest to `uv`. (0, 0) is the upper left corner of the image, u goes to the right, v downwards;
+/// outside 0..1 the texture repeats or its edge continues, as its wrap modes say. A uv that is not finite
+/// counts as 0. The texture must have a size; without texels the sample is white. One sample reads one texel,
+/// so the log has one reference for it.
 [[nodiscard]] TextureSample sample_nearest(const Texture& texture, const glm::dvec2& uv);
 
 /// The linear value of an sRGB-encoded byte (IEC 61966-2-1).

@@ -42,7 +42,7 @@ decltype(auto) placed(const Config& config, const Work& work) {
   }
 }
 
-/// The same for the values that a configuration read from `file` had.
+/// Calls `work`; places errors from it in the configuration of `file` that had these values.
 template <class Work>
 decltype(auto) placed(std::span<const EffectiveValue> values, std::string_view file, const Work& work) {
   try {

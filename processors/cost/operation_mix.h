@@ -43,7 +43,7 @@ struct OperationMix {
 ///           layout. Pushed points: finding the face by which the leaf is left, and the point beyond it.
 ///           Grid: the step to the next cell
 ///   lookup  comparing a mailbox with the ray's number
-///   test    one run of the intersection kernel for triangles; sphere_test and cone_test the same for spheres
+///   test    one run of the kernel for triangles; sphere_test and cone_test: one of the kernels for spheres
 ///           and for cylinders and cones
 ///   shade   the surface point, its normals, ambient light, and finding that a light cannot matter
 ///   light   one light's contribution

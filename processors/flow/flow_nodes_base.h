@@ -60,7 +60,7 @@ class FlowNodesBase : public FlowNodes {
     add_service(statistics_[node].time, service);
   }
 
-  // Tells the observer, if there is one, that the node was in `state` since the last time told, until `to`.
+  // Tells the observer, if there is one, that the node was in `state` from the last time told until `to`.
   void watch(std::uint32_t node, NodeState state, sim::Ticks to, PixelPlace place = {}) {
     if (input_.observer != nullptr && watched_[node].until != to) {
       input_.observer->spent(node, state, watched_[node].until, to, place);

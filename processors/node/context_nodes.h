@@ -121,8 +121,8 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
 
   static bool for_pixel(const Cursor& /*cursor*/) { return true; }
 
-  // What a context waits for: nothing, its own miss, a line that another transaction brings, the start of its
-  // packet, or nothing ever again.
+  // What a context waits for: none: it is ready; miss: its own miss; line: a line that another transaction
+  // brings; host: the start of its packet; done: its last packet is done.
   enum class Wait : std::uint8_t { none, miss, line, host, done };
 
   struct Context {

@@ -29,10 +29,10 @@ struct LeftOut {
 [[nodiscard]] std::uint64_t lines_of(const memory::Layout& layout, std::uint32_t line_bytes);
 
 /// Why tags must be looked up on this machine; null when they need not. Only nodes of the image scheme with
-/// one context, a given tree and a unified cache, which nobody counts in detail, can do without.
+/// one context, a given tree and a unified cache, without detailed counts, can do without.
 [[nodiscard]] const char* why_lookups(const MachineConfig& config, const memory::Layout& layout);
 
-/// Why reads must be events on this machine; null when they need not. The same nodes can do without.
+/// Why reads must be events on this machine; null when they need not. Only such nodes can do without.
 [[nodiscard]] const char* why_read_events(const MachineConfig& config);
 
 }  // namespace marti::processors
