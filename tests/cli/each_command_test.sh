@@ -31,11 +31,11 @@ marti report -- run
 marti report -- sweep
 marti study operations -- "${small[@]}"
 marti study paper -- "$source/configs/paper.toml" --set image.width=8 --set image.height=6 -o paper
-marti study frames -- "$source/configs/animation.toml" --set image.width=16 --set image.height=12
-marti study schemes -- "$source/configs/schemes.toml" --set image.width=16 --set image.height=12
+marti study frames -- "$source/configs/animation.toml" --set image.width=16 --set image.height=12 -o frames
+marti study schemes -- "$source/configs/schemes.toml" --set image.width=16 --set image.height=12 -o schemes
 marti study error -- "$source/configs/error.toml" --set image.width=9 --set image.height=9 --set error.repeats=1 \
-  --set 'error.scenes=["tetra:3"]' --set 'error.nodes=[1,4]' --set 'error.cache_sizes=["2 KiB"]'
-marti study stability -- --set stability.rays=20 --set stability.nodes=8
+  --set 'error.scenes=["tetra:3"]' --set 'error.nodes=[1,4]' --set 'error.cache_sizes=["2 KiB"]' -o error
+marti study stability -- --set stability.rays=100 --set stability.nodes=64 -o stability
 marti scene list --
 marti scene info -- tetra:3
 marti scene export -- tetra:3 -o tetra.glb

@@ -1,6 +1,7 @@
 // How much memory a piece of work takes, measured from outside of it.
 #pragma once
 
+#include <malloc.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -39,6 +40,7 @@ inline std::uint64_t peak_bytes(const std::function<void()>& work) {
   }
   const pid_t child = fork();
   if (child == 0) {
+    malloc_trim(0);  // memory that earlier work has freed must not hide what this work takes
     std::ofstream("/proc/self/clear_refs") << "5";  // the peak begins anew (proc(5))
     const std::uint64_t before = own_bytes("VmRSS");
     work();
