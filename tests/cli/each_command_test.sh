@@ -30,15 +30,22 @@ marti sweep -- "$source/configs/sweep-small.toml" "${small[@]}" -o sweep --plan
 marti report -- run
 marti report -- sweep
 marti study operations -- "${small[@]}"
-marti study paper -- "$source/configs/paper.toml" --set image.width=8 --set image.height=6 -o paper
-marti study frames -- "$source/configs/animation.toml" --set image.width=16 --set image.height=12 -o frames
-marti study schemes -- "$source/configs/schemes.toml" --set image.width=16 --set image.height=12 -o schemes
+marti study paper -- "$source/configs/paper.toml" --set image.width=8 --set image.height=6 \
+  --set 'paper.scenes=["tetra:2"]' --set 'paper.run_scenes=["teapot:2:pot","teapot:2:pot"]' \
+  --set 'paper.run_depths=[2,4]' --set 'paper.levels=[1,3]' --set paper.host_repetitions=1 -o paper
+marti study frames -- "$source/configs/animation.toml" --set image.width=16 --set image.height=12 \
+  --set frames.count=2 --set frames.rate=2 -o frames
+marti study schemes -- "$source/configs/schemes.toml" "${small[@]}" --set 'schemes.nodes=[1,4]' \
+  --set 'schemes.cell_levels=[2,4]' --set schemes.stage_nodes=6 -o schemes
 marti study error -- "$source/configs/error.toml" --set image.width=9 --set image.height=9 --set error.repeats=1 \
+  --set scene.source=gears:1 --set error.rendering.side=12 --set 'error.rendering.samples=[1,2]' \
+  --set error.rendering.reference_samples=32 --set error.rendering.repeats=1 \
   --set 'error.scenes=["tetra:3"]' --set 'error.nodes=[1,4]' --set 'error.cache_sizes=["2 KiB"]' -o error
-marti study stability -- --set stability.rays=100 --set stability.nodes=64 -o stability
+marti study stability -- --set stability.rays=100 --set stability.nodes=64 \
+  --set 'stability.only=["leaks-at-1e6","zero-latencies"]' -o stability
 marti scene list --
 marti scene info -- tetra:3
-marti scene export -- tetra:3 -o tetra.glb
+marti scene export -- tetra:3 tetra.glb
 marti config --
 marti completion bash --
 marti completion zsh --

@@ -158,8 +158,8 @@ def check_command(command, runner, checker, report):
         report.fault(missing[0], f"stale: not in the output of {text}\n  {missing[1]}\nwhich is\n{output}")
 
 
-def check(arguments):
-    path = arguments.document.resolve()
+def check(arguments, path):
+    path = path.resolve()
     source = arguments.source.resolve()
     name = str(path.relative_to(source)) if path.is_relative_to(source) else path.name
     report = Report(name)
@@ -192,17 +192,21 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=pathlib.Path, required=True)
     parser.add_argument("--source", type=pathlib.Path, required=True)
-    parser.add_argument("document", type=pathlib.Path)
+    parser.add_argument("documents", type=pathlib.Path, nargs="+")
     arguments = parser.parse_args()
-    try:
-        report = check(arguments)
-    except document.DocumentError as error:
-        print(f"{arguments.document}: {error}")
-        return 1
-    for fault in report.faults:
-        print(fault)
-    print(report)
-    return 1 if report.faults else 0
+    status = 0
+    for path in arguments.documents:
+        try:
+            report = check(arguments, path)
+        except document.DocumentError as error:
+            print(f"{path}: {error}")
+            status = 1
+            continue
+        for fault in report.faults:
+            print(fault)
+            status = 1
+        print(report)
+    return status
 
 
 if __name__ == "__main__":
