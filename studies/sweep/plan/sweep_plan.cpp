@@ -66,11 +66,11 @@ class Planner {
     name_axes();
     const std::vector<std::uint64_t> passing = filter();
     find_strides_of_bases();
-    if (const std::string excess = read_memory(config_).excess(plan_bytes(passing.size(), plan_.axes.size()));
-        !excess.empty()) {
-      throw sim::UserError(config_.name() + ": sweep: the plan of " + std::to_string(passing.size()) +
-                           " points takes" + excess + ": raise the limit, or split the sweep");
-    }
+    sim::placed(config_, [&] {
+      read_memory(config_).require(plan_bytes(passing.size(), plan_.axes.size()),
+                                   "the plan of " + std::to_string(passing.size()) + " points takes",
+                                   "split the sweep");
+    });
     plan_.points.reserve(passing.size());
     found_.reserve(passing.size() + 1);
     for (std::size_t begin = 0; begin < passing.size(); begin += points_at_once) {
