@@ -186,8 +186,8 @@ class Check {
     const std::span<const Field> fields = fields_of(kind);
     for (const auto& [name, each] : value.items()) {
       const std::string inner = path.empty() ? name : path + "." + name;
-      const auto field =
-          std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; });
+      const auto field = std::find_if(fields.begin(), fields.end(),
+                                      [&wanted = name](const Field& f) { return f.name == wanted; });
       if (field == fields.end()) {
         refuse("has \"" + inner.substr(0, 200) + "\", which a chart of marti has not");
       }
