@@ -1,12 +1,17 @@
 // How fast machines are timed: exact replay of one frame on one host core, beside the native render of the
 // same frame by the same tracer.
 //   bench_replay [SIZE [REPEATS]] [--json FILE]     default: 512 7
+#include <tbb/global_control.h>
+
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <memory>
+#include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "accel/structure.h"
@@ -14,6 +19,7 @@
 #include "processors/cost/cost_model.h"
 #include "processors/program/render.h"
 #include "processors/replay/replay.h"
+#include "processors/walk/stripped_log.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
 
@@ -43,11 +49,15 @@ struct Timing {
   std::size_t bytes_per_node = 0;
 };
 
-Timing time_replay(const processors::WorkLog& log, const processors::MachineConfig& machine, int repeats) {
+// Timed with the stripped log if there is one.
+Timing time_replay(const processors::WorkLog& log, const processors::MachineConfig& machine, int repeats,
+                   const processors::StrippedLog* stripped = nullptr) {
+  processors::ReplayOptions options;
+  options.stripped = stripped;
   Timing best;
   for (int repeat = 0; repeat <= repeats; ++repeat) {
     const double start = now();
-    const processors::MachineResult result = processors::replay(log, machine);
+    const processors::MachineResult result = processors::replay(log, machine, options);
     const double took = now() - start;
     if (repeat == 1 || (repeat > 1 && took < best.seconds)) {
       best.seconds = took;
@@ -72,6 +82,59 @@ void print(const char* name, const Timing& t, double render, double per_referenc
     std::printf(" %6.2f x 64", nanoseconds / per_reference_of_64);
   }
   std::printf("\n");
+}
+
+// The least time of stripping `log` on one thread for each of `ways`, and the logs.
+double time_stripping(const processors::WorkLog& log, const processors::MachineConfig& machine,
+                      std::span<const std::uint32_t> ways, int repeats,
+                      std::vector<std::shared_ptr<const processors::StrippedLog>>& stripped) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  double least = 1e300;
+  for (int repeat = 0; repeat <= repeats; ++repeat) {
+    stripped.clear();
+    const double start = now();
+    stripped = processors::StrippedLog::make(log, machine, ways);
+    least = repeat == 0 ? least : std::min(least, now() - start);
+  }
+  return least;
+}
+
+// Machines that share stripped logs, beside the native render.
+void run_stripped(bench::Report& report, const processors::WorkLog& log, double render, int repeats) {
+  constexpr std::array<std::uint32_t, 4> ways = {1, 2, 4, 8};
+  std::vector<std::shared_ptr<const processors::StrippedLog>> stripped;
+  processors::MachineConfig machine = machine_of(64, 8);
+  const auto add = [&](const char* name, double seconds, double aim) {
+    report.add(
+        bench::against(name, "ms", 1e3 * seconds, "native render", 1e3 * render, bench::Aim{aim, false}));
+  };
+  const double all = time_stripping(log, machine, ways, repeats, stripped);
+  std::printf("stripping for 1, 2, 4 and 8 ways on one thread %8.1f ms %7.3f x render\n", 1e3 * all,
+              all / render);
+  add("stripping for 1, 2, 4 and 8 ways, one thread", all, 1.0);
+  const double one = time_stripping(log, machine, std::span(ways).subspan(2, 1), repeats, stripped);
+  std::printf("stripping for 4 ways on one thread %8.1f ms %7.3f x render; %.1f MB, 1 of %.1f references\n",
+              1e3 * one, one / render, static_cast<double>(stripped[0]->bytes_of_words()) / 1e6,
+              static_cast<double>(processors::replay(log, machine).references().references()) /
+                  static_cast<double>(stripped[0]->references()));
+  add("stripping for 4 ways, one thread", one, 1.0);
+  for (const auto& [name, nodes, aim] :
+       {std::tuple{"1 node, stripped log", 1U, 0.11}, std::tuple{"64 nodes, stripped log", 64U, 0.30},
+        std::tuple{"1,024 nodes, stripped log", 1024U, 0.5}}) {
+    machine.nodes = nodes;
+    const Timing timing = time_replay(log, machine, repeats, stripped[0].get());
+    print(name, timing, render, 0.0);
+    add(name, timing.seconds, aim);
+  }
+  processors::MachineConfig small = machine_of(64, 8);
+  small.cache.cache.size = 4096;
+  small.cache.cache.ways = 1;
+  const double making = time_stripping(log, small, std::span(ways).subspan(0, 1), repeats, stripped);
+  const Timing timing = time_replay(log, small, repeats, stripped[0].get());
+  print("64 nodes, 4 KiB, 1 way", time_replay(log, small, repeats), render, 0.0);
+  print("the same, stripped log", timing, render, 0.0);
+  std::printf("  stripped in %.1f ms, %.3f x render\n", 1e3 * making, making / render);
+  add("64 nodes, 4 KiB, 1 way, stripped log", timing.seconds, 3.0);
 }
 
 void run(bench::Report& report, std::uint32_t size, int repeats) {
@@ -133,6 +196,7 @@ void run(bench::Report& report, std::uint32_t size, int repeats) {
   report.add(bench::against("a reference of 65,536 nodes", "ns", 1e9 * many.seconds / many.references,
                             "of 64, same packets", 1e9 * same.seconds / same.references));
   report.add({"a simulated node beside its tags", "B", static_cast<double>(many.bytes_per_node)});
+  run_stripped(report, *frame.log, render, repeats);
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     Base::watch_idle();
   }
 
-  SecondLevelResult second_level() const override { return walker_.second_level().result(); }
+  SecondLevelResult second_level() const override { return walker_.behind().second_level().result(); }
 
   ContextResult context_result() const override { return {walker_.caches().counts()}; }
 
@@ -195,7 +195,7 @@ class ContextNodes final : public PacketNodes<ContextNodes<Caches>, Cursor> {
     const Stop stop = input_.step_by_step ? walker_.template advance<false>(node, cursor, statistics)
                                           : walker_.template advance<true>(node, cursor, statistics);
     if (stop == Stop::end) {
-      walker_.finish_pixel(cursor, statistics);
+      walker_.finish_pixel(node, cursor, statistics);
     }
     watch(node, NodeState::working, from);
     cores_[node].due = stop == Stop::due;

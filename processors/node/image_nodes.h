@@ -90,7 +90,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
     }
   }
 
-  SecondLevelResult second_level() const override { return walker_.second_level().result(); }
+  SecondLevelResult second_level() const override { return walker_.behind().second_level().result(); }
 
   CacheCountResult cache_counts() const override {
     if constexpr (requires { Caches::counted; }) {
@@ -104,46 +104,27 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
 
  private:
   void count_own_reads() {
-    if constexpr (requires { walker_.own_read_bytes(0); }) {
-      for (std::uint32_t cluster = 0; cluster < input_.config.clusters; ++cluster) {
-        const std::uint32_t first = cluster * input_.config.nodes;
-        std::int64_t reads = 0;
-        for (std::uint32_t node = first; node < first + input_.config.nodes; ++node) {
-          reads += statistics_[node].references.all_misses();
-        }
-        interconnect_of(first).count_reads(reads, walker_.own_read_bytes(cluster));
+    for (std::uint32_t cluster = 0; cluster < input_.config.clusters; ++cluster) {
+      const std::uint32_t first = cluster * input_.config.nodes;
+      std::int64_t reads = 0;
+      for (std::uint32_t node = first; node < first + input_.config.nodes; ++node) {
+        reads += statistics_[node].references.all_misses();
       }
+      interconnect_of(first).count_reads(reads, walker_.behind().own_read_bytes(cluster));
     }
   }
 
   static bool for_pixel(const Cursor& /*cursor*/) { return true; }
 
-  [[nodiscard]] std::span<const std::uint32_t> words_of(std::uint32_t x, std::uint32_t y) const {
-    return walker_.words_of(x, y);
-  }
+  void begin_pixel(Cursor& cursor) const { walker_.begin_pixel(cursor); }
 
-  // Takes the node's caches through the packets left out before its next one: no time passes, nothing is
-  // counted and memory is not accessed.
+  // Takes the node's caches through the packets left out before its next one.
   void warm_up(std::uint32_t node, std::uint64_t packet) {
-    if constexpr (Walker::steps_singly) {
-      const std::uint64_t next = input_.sample->chosen()[packet];
-      NodeStatistics unused;
-      input_.sample->for_each_warmed(begun_[node], next, begun_.size(), [&](std::uint64_t left_out) {
-        const Packet area = (*input_.all_packets)[left_out];
-        for (std::uint32_t y = area.y0; y < area.y1; ++y) {
-          for (std::uint32_t x = area.x0; x < area.x1; ++x) {
-            const std::span<const std::uint32_t> words = words_of(x, y);
-            Cursor cursor;
-            cursor.word = words.data();
-            cursor.word_end = words.data() + words.size();
-            while (walker_.template advance<true>(node, cursor, unused) != Stop::end) {
-              walker_.pass(cursor);
-            }
-          }
-        }
-      });
-      begun_[node] = next + 1;
-    }
+    const std::uint64_t next = input_.sample->chosen()[packet];
+    input_.sample->for_each_warmed(begun_[node], next, begun_.size(), [&](std::uint64_t left_out) {
+      walker_.warm_up(node, (*input_.all_packets)[left_out]);
+    });
+    begun_[node] = next + 1;
   }
 
   Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
@@ -162,7 +143,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
     const sim::Ticks from = cursor.time;
     const Stop stop = advance(node, cursor, statistics);
     if (stop == Stop::end) {
-      walker_.finish_pixel(cursor, statistics);
+      walker_.finish_pixel(node, cursor, statistics);
     }
     watch(node, NodeState::working, from);
     constexpr std::array classes = {EventClass::step, EventClass::read, EventClass::write};

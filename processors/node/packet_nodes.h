@@ -112,13 +112,9 @@ class PacketNodes : public NodeArray {
 
   [[nodiscard]] PixelPlace place_of(std::uint32_t node) const { return {cursors_[node].x, cursors_[node].y}; }
 
-  // The words that the node walks for a pixel. Derived may replace it.
-  [[nodiscard]] std::span<const std::uint32_t> words_of(std::uint32_t x, std::uint32_t y) const {
-    return input_.log.pixel(x, y);
-  }
-
-  void begin_pixel(Cursor& cursor) {
-    const std::span<const std::uint32_t> words = derived().words_of(cursor.x, cursor.y);
+  // Puts the cursor before the first step of its pixel. Derived may replace it.
+  void begin_pixel(Cursor& cursor) const {
+    const std::span<const std::uint32_t> words = input_.log.pixel(cursor.x, cursor.y);
     cursor.word = words.data();
     cursor.word_end = words.data() + words.size();
   }
@@ -152,7 +148,7 @@ class PacketNodes : public NodeArray {
     cursor.packet = input_.packets[grant->packet];
     cursor.y = cursor.packet.y0;
     cursor.x = cursor.packet.x0;
-    begin_pixel(cursor);
+    derived().begin_pixel(cursor);
     derived().run(node);
   }
 
@@ -200,7 +196,7 @@ class PacketNodes : public NodeArray {
         return;
       }
     }
-    begin_pixel(cursor);
+    derived().begin_pixel(cursor);
     derived().run(node);
   }
 

@@ -12,6 +12,10 @@ using StrippedNodes = ImageNodes<Caches, StrippedWalker<Caches>>;
 }  // namespace
 
 std::unique_ptr<NodeArray> make_stripped_nodes(const ReplayInput& input, sim::Engine& engine, Host& host) {
+  if (input.line_set != 0) {
+    return std::make_unique<StrippedNodes<RoomyCaches>>(input, engine, host,
+                                                        RoomyCaches(input.config, input.line_set));
+  }
   return make_nodes<StrippedNodes>(input, engine, host);
 }
 

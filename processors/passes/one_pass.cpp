@@ -119,7 +119,7 @@ OnePass one_pass(const WorkLog& log, const MachineConfig& config, std::span<cons
     for_each_pixel(input, numbers, [&](Cursor& cursor, std::uint32_t, std::uint32_t) {
       pass.words += static_cast<std::uint64_t>(cursor.word_end - cursor.word);
       (void)walker.template advance<true>(0, cursor, statistics);
-      walker.finish_pixel(cursor, statistics);
+      walker.finish_pixel(0, cursor, statistics);
     });
   }
   pass.steps = statistics.steps;

@@ -43,7 +43,7 @@ std::optional<TreePlan> plan_of(const WorkLog& log, const MachineConfig& config,
 // Decides what the replay leaves out, and sets `input` accordingly.
 LeftOut leave_out(const ReplayOptions& options, ReplayInput& input) {
   LeftOut left;
-  if (options.step_by_step || options.with_contexts || options.stripped != nullptr) {
+  if (options.step_by_step || options.with_contexts) {
     return left;
   }
   const MachineConfig& config = input.config;
@@ -145,7 +145,8 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   const LeftOut left_out = leave_out(options, input);
   if (options.stripped != nullptr) {
     sim::ensure(options.stripped->fits(log) && !options.step_by_step && !options.with_contexts &&
-                    options.sample == nullptr && options.stripped->key() == StrippedLog::key_of(config),
+                    options.stripped->key() == StrippedLog::key_of(config) &&
+                    options.stripped->ways() == StrippedLog::ways_of(config),
                 "a stripped log is walked by a machine that it was not made for");
   }
   if (options.observer != nullptr) {

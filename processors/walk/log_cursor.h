@@ -18,7 +18,8 @@ struct Cursor {
   sim::Ticks time = 0;
   const std::uint32_t* word = nullptr;
   const std::uint32_t* word_end = nullptr;
-  const std::uint32_t* line = nullptr;  ///< next line of the planned visit
+  const std::uint64_t* stripped = nullptr;  ///< next word of the packet's stripped log, where that is walked
+  const std::uint32_t* line = nullptr;      ///< next line of the planned visit
   const std::uint32_t* line_end = nullptr;
   memory::Address at = 0;   ///< next byte of the current record
   memory::Address end = 0;  ///< one past its last byte

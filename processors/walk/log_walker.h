@@ -6,25 +6,24 @@
 #include <bit>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "processors/cost/accounting.h"
 #include "processors/cost/step_time.h"
 #include "processors/machine/packets.h"
 #include "processors/program/work_log.h"
+#include "processors/walk/behind_cache.h"
 #include "processors/walk/cache_counting.h"
 #include "processors/walk/lines_under_way.h"
-#include "processors/walk/local_memory.h"
 #include "processors/walk/log_cursor.h"
 #include "processors/walk/node_caches.h"
 #include "processors/walk/replay_input.h"
-#include "processors/walk/second_level.h"
 #include "processors/walk/visit_plan.h"
 
 namespace marti::processors {
 
-/// `Caches` is a class of node_caches.h, one of these guarded (guarded_caches.h), or one that counts
-/// (counted_caches.h).
+/// `Caches` is a class of node_caches.h, one of these guarded (guarded_caches.h), one that counts
+/// (counted_caches.h), or one that records its misses (stripped_log.cpp): its member record(time, kind, line)
+/// is called at each miss, which serves it and returns when.
 template <class Caches>
 class LogWalker {
  public:
@@ -41,11 +40,8 @@ class LogWalker {
         line_bytes_(input.config.reference_bytes()),
         unit_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
         ticks_(step_ticks(input.config, input.log)),
-        local_(input.config.local),
-        local_database_(input.config.placement == Placement::replicated),
-        second_level_(input.config),
-        passes_misses_on_((!local_database_ && !input.own_reads) || second_level_.present()),
-        own_read_bytes_(input.own_reads ? input.config.clusters : 0) {
+        behind_(input),
+        passes_misses_on_(!behind_.only_reads()) {
     if (Caches::present && !counted && !guarded && !input.step_by_step) {
       plan_ = plan_visits(input.log, input.layout, input.node_rank, unit_shift_, ticks_);
       plan_limit_ = plan_.empty() ? 0 : 2U << operand_bits;
@@ -53,12 +49,30 @@ class LogWalker {
   }
 
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
-  [[nodiscard]] const PrivateSecondLevel& second_level() const { return second_level_; }
+  [[nodiscard]] const BehindCache& behind() const { return behind_; }
   [[nodiscard]] Caches& caches() { return caches_; }
   [[nodiscard]] const Caches& caches() const { return caches_; }
 
-  [[nodiscard]] std::span<const std::uint32_t> words_of(std::uint32_t x, std::uint32_t y) const {
-    return input_.log.pixel(x, y);
+  /// Puts the cursor before the first step of its pixel.
+  void begin_pixel(Cursor& cursor) const {
+    const std::span<const std::uint32_t> words = input_.log.pixel(cursor.x, cursor.y);
+    cursor.word = words.data();
+    cursor.word_end = words.data() + words.size();
+  }
+
+  /// Takes the node's caches through a packet that it does not trace: no time passes, nothing is counted, and
+  /// memory is not accessed.
+  void warm_up(std::uint32_t node, const Packet& packet) {
+    NodeStatistics unused;
+    Cursor cursor;
+    for (cursor.y = packet.y0; cursor.y < packet.y1; ++cursor.y) {
+      for (cursor.x = packet.x0; cursor.x < packet.x1; ++cursor.x) {
+        begin_pixel(cursor);
+        while (advance<true>(node, cursor, unused) != Stop::end) {
+          pass(cursor);
+        }
+      }
+    }
   }
 
   /// Continues `node` from its cursor. Without RunAhead it stops after every reference.
@@ -68,22 +82,18 @@ class LogWalker {
     Stop stop = Stop::hit;
     do {
       stop = walk<RunAhead>(caches_.view(node), cursor, statistics, tally);
-      if (stop != Stop::miss || !second_level_.present() || !serve(node, cursor, statistics)) {
+      if (stop != Stop::miss || !behind_.second_level().present() || !serve(node, cursor, statistics)) {
         break;
       }
       stop = Stop::hit;
     } while (RunAhead);
     flush(tally, statistics);
-    if (!own_read_bytes_.empty()) {
-      own_read_bytes_[node / input_.config.nodes] += std::exchange(read_bytes_, 0);
-    }
+    behind_.count_bytes(node);
     return stop;
   }
 
-  /// Bytes of the reads that the nodes of a cluster have made without the interconnect.
-  [[nodiscard]] std::int64_t own_read_bytes(std::uint32_t cluster) const { return own_read_bytes_[cluster]; }
   /// Ends a pixel whose steps are done: what is left is to convert and store it.
-  void finish_pixel(Cursor& cursor, NodeStatistics& statistics) const {
+  void finish_pixel(std::uint32_t /*node*/, Cursor& cursor, NodeStatistics& statistics) const {
     ++statistics.steps.pixels;
     spend(cursor, ticks_.pixel, 1);
   }
@@ -125,6 +135,7 @@ class LogWalker {
   using View = typename Caches::View;
   static constexpr bool guarded = requires { Caches::guarded; };
   static constexpr bool counted = requires { Caches::counted; };
+  static constexpr bool records = requires { Caches::records; };
 
   static bool in_visit(const Cursor& cursor) { return cursor.line != cursor.line_end; }
 
@@ -250,6 +261,11 @@ class LogWalker {
   bool miss(Cursor& cursor, NodeStatistics& statistics, const std::uint32_t* line, Stop& stop) {
     const std::uint32_t label = label_of(line);
     settle_visit(ticks_, cursor, line, tests_of_label(label));
+    if constexpr (records) {
+      cursor.time = caches_.record(cursor.time, kind_of_label(label), *line);
+      ++cursor.line;
+      return true;
+    }
     --hits_of(statistics, kind_of_label(label));
     ++misses_of(statistics, kind_of_label(label));
     if (passes_misses_on_) {
@@ -300,6 +316,10 @@ class LogWalker {
       if (access(cache, cursor, static_cast<std::uint32_t>(unit))) {
         ++hits_of(statistics, kind);
         spend(cursor, ticks_.hit, 1);
+        cursor.at = (unit + 1) << unit_shift_;
+      } else if constexpr (records) {
+        ++misses_of(statistics, kind);
+        cursor.time = caches_.record(cursor.time, kind, static_cast<std::uint32_t>(unit));
         cursor.at = (unit + 1) << unit_shift_;
       } else {
         ++misses_of(statistics, kind);
@@ -449,8 +469,8 @@ class LogWalker {
   // Serves a miss of a machine with a second level. False when it needs the interconnect.
   bool serve(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
     const auto line = static_cast<std::uint32_t>(missed_address(cursor) >> unit_shift_);
-    if (!second_level_.access(node, line, cursor.time, statistics.time)) {
-      if (!local_database_) {
+    if (!behind_.second_level_holds(node, line, cursor.time, statistics.time)) {
+      if (!behind_.reads_alone()) {
         return false;
       }
       read_alone(cursor, statistics, line_bytes_);
@@ -461,17 +481,9 @@ class LogWalker {
     return true;
   }
 
-  // A read without the interconnect: of the node's own memory, or one that always takes the same time.
+  // A read without the interconnect.
   void read_alone(Cursor& cursor, NodeStatistics& statistics, std::uint32_t bytes) {
-    const memory::Service service =
-        own_read_bytes_.empty()
-            ? local_.read(bytes, cursor.time)
-            : memory::Service{sim::add_ticks(cursor.time, *input_.own_reads), 0, *input_.own_reads, 0, 0};
-    read_bytes_ += bytes;
-    statistics.time[static_cast<std::size_t>(Activity::transfer)] += service.transfer;
-    statistics.time[static_cast<std::size_t>(Activity::bank_access)] += service.bank;
-    cursor.time = service.done;
-    note_wait(cursor, service);
+    note_wait(cursor, behind_.read(bytes, cursor.time, statistics.time));
   }
 
   ReplayInput input_;
@@ -489,12 +501,8 @@ class LogWalker {
   std::uint32_t line_bytes_;
   unsigned unit_shift_;
   StepTicks ticks_;
-  LocalMemory local_;
-  bool local_database_;
-  PrivateSecondLevel second_level_;
-  bool passes_misses_on_;                     ///< to the second level or the interconnect
-  std::vector<std::int64_t> own_read_bytes_;  // of each cluster; empty where the interconnect is asked
-  std::int64_t read_bytes_ = 0;               // since advance() was called
+  BehindCache behind_;
+  bool passes_misses_on_;  ///< to the second level or the interconnect
 };
 
 }  // namespace marti::processors

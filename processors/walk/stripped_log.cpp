@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "memory/set_tags.h"
+#include "memory/recency_lists.h"
 #include "processors/machine/packets.h"
 #include "processors/walk/log_walker.h"
 #include "processors/walk/node_caches.h"
@@ -18,53 +18,142 @@
 
 namespace marti::processors {
 
-namespace {
+// Writes a row of packets of the stripped log for caches of so many ways.
+class StrippedLog::BandWriter {
+ public:
+  BandWriter(std::uint32_t ways, Band& band) : ways_(ways), band_(&band) {}
 
-// The line that each set of each cache of one node was last asked for since the packet began.
-class Filter {
+  [[nodiscard]] std::uint32_t ways() const { return ways_; }
+
+  void begin_pixel() { since_ = 0; }
+  /// A reference at `time`, which takes until `end`. Since its line was asked for last, or since the packet
+  /// began, the packet has asked for `others` lines of its set; `again`: it has asked for this line before.
+  [[gnu::always_inline]] void refer(sim::Ticks time, sim::Ticks end, std::uint32_t what, std::uint32_t others,
+                                    bool again) {
+    if (ways_ == 0) {
+      put(time - since_, what);
+    } else if (others >= ways_) {
+      put(time - since_, what | sure_miss);
+    } else if (!again) {
+      put(time - since_, what);
+    } else {
+      return;
+    }
+    since_ = end;
+  }
+  void end_pixel(sim::Ticks time) { put(time - since_, end_of_pixel); }
+
+  void ask_at_end(std::uint32_t what) { band_->at_end.push_back(what); }
+  void end_packet() {
+    excess_ |= (std::uint64_t{band_->words.size()} | band_->at_end.size()) >> 32U;
+    band_->places.push_back(
+        {static_cast<std::uint32_t>(band_->words.size()), static_cast<std::uint32_t>(band_->at_end.size())});
+  }
+
+  /// Bytes written since the last call.
+  [[nodiscard]] std::int64_t take_bytes() {
+    const std::size_t bytes =
+        band_->words.size() * sizeof(band_->words[0]) + band_->at_end.size() * sizeof(band_->at_end[0]);
+    return static_cast<std::int64_t>(bytes - std::exchange(bytes_, bytes));
+  }
+  void end_band(bool fits) {
+    band_->fits = fits && excess_ == 0;
+    band_->words.shrink_to_fit();
+    band_->at_end.shrink_to_fit();
+  }
+
+ private:
+  [[gnu::always_inline]] void put(sim::Ticks cycles, std::uint32_t what) {
+    excess_ |= static_cast<std::uint64_t>(cycles) >> 32U;
+    band_->words.push_back(std::uint64_t{what} << 32U | static_cast<std::uint32_t>(cycles));
+  }
+
+  std::uint32_t ways_;
+  Band* band_;
+  sim::Ticks since_ = 0;      // the end of the last reference that was kept
+  std::uint64_t excess_ = 0;  // not 0 once something has not fitted into 32 bits
+  std::size_t bytes_ = 0;
+};
+
+// In place of one node's caches: the lines that each set was asked for last since the packet began, at least
+// as many as the caches with the most ways hold. References that stay in a stripped log go to its writer.
+template <std::uint32_t Depth, bool Split>
+class StrippedLog::PacketCaches {
  public:
   static constexpr bool present = true;
-  static constexpr bool by_kind = true;
+  static constexpr bool by_kind = Split;
+  static constexpr bool records = true;
 
-  explicit Filter(const MachineConfig& config)
-      : split_(config.cache.organisation == CacheOrganisation::split) {
+  /// References to the first `taken_out` lines of a set's list are taken out of all stripped logs.
+  PacketCaches(const MachineConfig& config, std::uint32_t taken_out)
+      : taken_out_(taken_out), hit_(config.cache.hit_cycles) {
     memory::CacheConfig cache = config.cache.cache;
-    for (std::size_t i = 0; i < (split_ ? split_caches : 1); ++i) {
-      cache.size = split_ ? config.cache.split_sizes[i] : cache.size;
-      const std::uint32_t sets = memory::shape_of(cache).sets;
-      sets_.emplace_back(sets);
-      last_.emplace_back(sets);
+    for (std::size_t i = 0; i < caches; ++i) {
+      cache.size = Split ? config.cache.split_sizes[i] : cache.size;
+      lists_.emplace_back(memory::shape_of(cache).sets);
     }
   }
 
   class View {
    public:
-    explicit View(Filter& filter) : filter_(filter) {}
-    bool access(memory::RecordKind kind, std::uint32_t line) const { return filter_.access(kind, line); }
+    explicit View(PacketCaches& all) : all_(all) {}
+    [[gnu::always_inline]] bool access(memory::RecordKind kind, std::uint32_t line) const {
+      all_.last_ = all_.lists_[number_of(kind)].touch(line);
+      return all_.last_ < all_.taken_out_;
+    }
 
    private:
-    Filter& filter_;
+    PacketCaches& all_;
   };
   [[nodiscard]] View view(std::uint32_t /*node*/) { return View(*this); }
 
-  void begin_packet() { ++packet_; }
-
- private:
-  bool access(memory::RecordKind kind, std::uint32_t line) {
-    const std::size_t cache = split_ ? split_cache_of[static_cast<std::size_t>(kind)] : 0;
-    std::uint64_t& last = last_[cache][sets_[cache](line)];
-    // The packet's number distinguishes lines of earlier packets.
-    const std::uint64_t now = packet_ << 32U | line;
-    return std::exchange(last, now) == now;
+  /// Writes the reference for which access() has just returned false; returns its end.
+  [[gnu::always_inline]] sim::Ticks record(sim::Ticks time, memory::RecordKind kind, std::uint32_t line) {
+    const bool again = last_ < Depth;
+    const std::uint32_t others = again ? last_ : lists_[number_of(kind)].lines_before();
+    const sim::Ticks end = sim::add_ticks(time, hit_);
+    for (BandWriter& writer : writers) {
+      writer.refer(time, end, line << what_bits | static_cast<std::uint32_t>(kind), others, again);
+    }
+    return end;
   }
 
-  bool split_;
-  std::uint64_t packet_ = 0;
-  std::vector<memory::SetIndex> sets_;
-  std::vector<std::vector<std::uint64_t>> last_;
-};
+  /// Look-ups have left each set's lines in the order of their first references, without the lines of sure
+  /// misses. Where a set has several, the lines that the caches hold are asked for again, in the order of
+  /// their last references.
+  void end_packet() {
+    for (std::size_t number = 0; number < caches; ++number) {
+      const auto* const kind = std::find(split_cache_of.begin(), split_cache_of.end(), number);
+      const auto what = static_cast<std::uint32_t>(kind - split_cache_of.begin());
+      lists_[number].for_each_touched(
+          [&](const std::uint32_t* lines, std::uint32_t held, std::uint32_t inserted) {
+            for (BandWriter& writer : writers) {
+              for (std::uint32_t place = inserted == 1 ? 0 : std::min(held, writer.ways()); place-- > 0;) {
+                writer.ask_at_end(lines[place] << what_bits | what);
+              }
+            }
+          });
+      lists_[number].clear();
+    }
+    for (BandWriter& writer : writers) {
+      writer.end_packet();
+    }
+  }
 
-}  // namespace
+  std::vector<BandWriter> writers;  ///< of the band that is being stripped, one for each stripped log
+
+ private:
+  static constexpr std::size_t caches = Split ? split_caches : 1;
+
+  static std::size_t number_of(memory::RecordKind kind) {
+    return Split ? split_cache_of[static_cast<std::size_t>(kind)] : 0;
+  }
+
+  std::uint32_t taken_out_;
+  sim::Ticks hit_;
+  std::uint32_t last_ = 0;  // place of the last reference's line in its set's list
+  std::vector<memory::RecencyLists<Depth>> lists_;
+};
 
 std::string StrippedLog::key_of(const MachineConfig& config) {
   if (config.scheme != Scheme::image || config.build.sharing != Sharing::given ||
@@ -100,89 +189,87 @@ std::string StrippedLog::key_of(const MachineConfig& config) {
   return key;
 }
 
-// Walks packets with the filter in place of the caches. Each host thread has one.
+std::uint32_t StrippedLog::ways_of(const MachineConfig& config) {
+  const memory::CacheConfig& cache = config.cache.cache;
+  if (cache.ways == memory::full_ways || cache.ways > most_ways) {
+    return 0;
+  }
+  // With one way all replacements do the same.
+  return cache.replacement == memory::Replacement::lru || cache.ways == 1 ? cache.ways : 0;
+}
+
+// Walks packets with PacketCaches in place of a node's caches. Each host thread has one.
+template <class Caches>
 class StrippedLog::Stripper {
  public:
   /// `left`: bytes that all threads together may still write.
-  Stripper(const ReplayInput& input, std::atomic<std::int64_t>& left)
+  Stripper(const ReplayInput& input, std::uint32_t taken_out, std::atomic<std::int64_t>& left)
       : log_(input.log),
         packets_(input.config.packets),
-        line_shift_(static_cast<unsigned>(std::countr_zero(input.config.cache.cache.line))),
-        walker_(input, Filter(input.config)),
+        walker_(input, Caches(input.config, taken_out)),
         left_(left) {}
 
-  void strip(std::uint32_t number, Band& band) {
+  /// Strips row `number` of packets.
+  void strip(std::uint32_t number, std::vector<BandWriter> writers, std::vector<PacketTotals>& totals) {
+    Caches& caches = walker_.caches();
+    caches.writers = std::move(writers);
     const std::uint32_t y0 = number * packets_.height;
-    const std::uint32_t y1 = std::min(log_.height, y0 + std::min(packets_.height, log_.height - y0));
-    band.begin.resize(std::size_t{y1 - y0} * log_.width);
-    for (std::uint32_t x0 = 0; x0 < log_.width && band.fits;) {
+    const std::uint32_t y1 = y0 + std::min(packets_.height, log_.height - y0);
+    bool fits = true;
+    for (std::uint32_t x0 = 0; x0 < log_.width && fits;) {
       const std::uint32_t x1 = x0 + std::min(packets_.width, log_.width - x0);
       NodeStatistics statistics;
-      walker_.caches().begin_packet();
-      for (std::uint32_t y = y0; y < y1; ++y) {
-        for (std::uint32_t x = x0; x < x1; ++x) {
-          band.begin[std::size_t{y - y0} * log_.width + x] = static_cast<std::uint32_t>(band.words.size());
-          strip(log_.pixel(x, y), statistics, band);
+      Cursor cursor;
+      for (cursor.y = y0; cursor.y < y1 && fits; ++cursor.y) {
+        for (cursor.x = x0; cursor.x < x1 && fits; ++cursor.x) {
+          fits = strip_pixel(caches, cursor, statistics);
         }
       }
-      PacketTotals& totals = band.totals.emplace_back();
-      totals.steps = statistics.steps;
+      PacketTotals& sum = totals.emplace_back();
+      sum.steps = statistics.steps;
       for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
-        totals.references[kind] = statistics.references.hits[kind] + statistics.references.misses[kind];
+        sum.references[kind] = statistics.references.hits[kind] + statistics.references.misses[kind];
       }
+      caches.end_packet();
       x0 = x1;
     }
-    band.words.shrink_to_fit();
+    for (BandWriter& writer : caches.writers) {
+      writer.end_band(fits);
+    }
   }
 
  private:
-  void strip(std::span<const std::uint32_t> words, NodeStatistics& statistics, Band& band) {
-    Cursor cursor;
-    cursor.word = words.data();
-    cursor.word_end = words.data() + words.size();
-    sim::Ticks since = 0;
-    Stop stop = Stop::miss;
-    while (band.fits && (stop = walker_.advance<true>(0, cursor, statistics)) == Stop::miss) {
-      const memory::Address line = walker_.missed_address(cursor) >> line_shift_;
-      put(cursor.time - since, line,
-          static_cast<std::uint32_t>(line) << kind_bits |
-              static_cast<std::uint32_t>(walker_.missed_kind(cursor)),
-          band);
-      walker_.pass(cursor);
-      spend(cursor, walker_.ticks().hit, 1);
-      since = cursor.time;
+  // False when the memory is used up.
+  bool strip_pixel(Caches& caches, Cursor& cursor, NodeStatistics& statistics) {
+    for (BandWriter& writer : caches.writers) {
+      writer.begin_pixel();
     }
-    put(cursor.time - since, 0, end_of_pixel, band);
-  }
-
-  void put(sim::Ticks cycles, memory::Address line, std::uint32_t what, Band& band) {
-    constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-    band.fits = band.fits && static_cast<std::uint64_t>(cycles) <= most && line < most_lines &&
-                band.words.size() + 2 <= most;
-    band.words.push_back(static_cast<std::uint32_t>(cycles));
-    band.words.push_back(what);
-    // Once `left_` is negative it stays negative, so the order of the bands does not matter.
-    if (band.words.size() % counted_words == 0) {
-      left_ -= counted_words * sizeof(std::uint32_t);
-      band.fits = band.fits && left_ >= 0;
+    cursor.time = 0;
+    walker_.begin_pixel(cursor);
+    (void)walker_.template advance<true>(0, cursor, statistics);
+    std::int64_t bytes = 0;
+    for (BandWriter& writer : caches.writers) {
+      writer.end_pixel(cursor.time);
+      bytes += writer.take_bytes();
     }
+    // Once it is negative it stays so: the order of the bands does not matter.
+    return (left_ -= bytes) >= 0;
   }
-
-  // The words of a band are subtracted from `left_` in portions of this size.
-  static constexpr std::size_t counted_words = 1U << 14U;
 
   const WorkLog& log_;
   PacketConfig packets_;
-  unsigned line_shift_;
-  LogWalker<Filter> walker_;
+  LogWalker<Caches> walker_;
   std::atomic<std::int64_t>& left_;
 };
 
-std::unique_ptr<const StrippedLog> StrippedLog::make(const WorkLog& log, const MachineConfig& config,
-                                                     std::uint64_t most_bytes) {
-  std::string key = key_of(config);
+std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const WorkLog& log,
+                                                                  const MachineConfig& config,
+                                                                  std::span<const std::uint32_t> ways,
+                                                                  std::uint64_t most_bytes) {
+  std::vector<std::shared_ptr<const StrippedLog>> made(ways.size());
+  const std::string key = key_of(config);
   if (key.empty()) {
-    return nullptr;
+    return made;
   }
   // Times are in cycles, and there is nothing behind the caches.
   MachineConfig plain = config;
@@ -193,39 +280,82 @@ std::unique_ptr<const StrippedLog> StrippedLog::make(const WorkLog& log, const M
   try {
     const memory::Layout layout = layout_of(log, plain, given);
     const PacketList packets(log.width, log.height, plain.packets);
+    if (layout.end() / plain.cache.cache.line >= most_lines) {
+      return made;
+    }
     const std::vector<std::uint32_t> rank = node_ranks(log, plain);
     const ReplayInput input = {log, plain, layout, packets, rank};
-    std::unique_ptr<StrippedLog> stripped(new StrippedLog(log, std::move(key), plain.packets));
-    stripped->bands_.resize(log.height / plain.packets.height +
-                            (log.height % plain.packets.height != 0 ? 1 : 0));
+    const std::size_t bands =
+        log.height / plain.packets.height + (log.height % plain.packets.height != 0 ? 1 : 0);
+    std::vector<std::shared_ptr<StrippedLog>> logs;
+    for (const std::uint32_t each : ways) {
+      logs.emplace_back(new StrippedLog(log, key, each, plain.packets))->bands_.resize(bands);
+    }
+    const auto totals = std::make_shared<Totals>(bands);
     std::atomic<std::int64_t> left = static_cast<std::int64_t>(
         std::min<std::uint64_t>(most_bytes, std::numeric_limits<std::int64_t>::max()));
-    tbb::enumerable_thread_specific<Stripper> strippers([&] { return Stripper(input, left); });
-    tbb::parallel_for(std::size_t{0}, stripped->bands_.size(), [&](std::size_t number) {
-      Band& band = stripped->bands_[number];
-      band.fits = left >= 0;
-      if (band.fits) {
-        strippers.local().strip(static_cast<std::uint32_t>(number), band);
-      }
-    });
-    const bool fits = std::all_of(stripped->bands_.begin(), stripped->bands_.end(),
-                                  [](const Band& band) { return band.fits; });
-    return fits && stripped->bytes_of_words() <= most_bytes ? std::move(stripped) : nullptr;
+    const std::uint32_t taken_out = std::max(1U, *std::min_element(ways.begin(), ways.end()));
+    const auto strip_with = [&]<class Caches>() {
+      tbb::enumerable_thread_specific<Stripper<Caches>> strippers(
+          [&] { return Stripper<Caches>(input, taken_out, left); });
+      tbb::parallel_for(std::size_t{0}, bands, [&](std::size_t number) {
+        std::vector<BandWriter> writers;
+        for (const std::shared_ptr<StrippedLog>& each : logs) {
+          each->bands_[number].fits = left >= 0;
+          writers.emplace_back(each->ways_, each->bands_[number]);
+        }
+        if (left >= 0) {
+          strippers.local().strip(static_cast<std::uint32_t>(number), std::move(writers), (*totals)[number]);
+        }
+      });
+    };
+    const std::uint32_t deepest = *std::max_element(ways.begin(), ways.end());
+    if (config.cache.organisation == CacheOrganisation::split) {
+      strip_with.operator()<PacketCaches<most_ways, true>>();
+    } else if (deepest <= 4) {
+      strip_with.operator()<PacketCaches<4, false>>();
+    } else if (deepest <= 8) {
+      strip_with.operator()<PacketCaches<8, false>>();
+    } else {
+      strip_with.operator()<PacketCaches<most_ways, false>>();
+    }
+    std::uint64_t bytes = 0;
+    bool fits = true;
+    for (const std::shared_ptr<StrippedLog>& each : logs) {
+      bytes += each->bytes_of_words();
+      fits = fits && std::all_of(each->bands_.begin(), each->bands_.end(),
+                                 [](const Band& band) { return band.fits; });
+      each->totals_ = totals;
+    }
+    if (fits && bytes <= most_bytes) {
+      std::copy(logs.begin(), logs.end(), made.begin());
+    }
   } catch (const sim::UserError&) {
-    return nullptr;  // a time overflows; the replay itself reports that, with the machine's clock
+    // A time overflows; the replay itself reports that, with the machine's clock.
   }
+  return made;
+}
+
+std::shared_ptr<const StrippedLog> StrippedLog::make(const WorkLog& log, const MachineConfig& config,
+                                                     std::uint64_t most_bytes) {
+  const std::uint32_t ways = ways_of(config);
+  return make(log, config, std::span(&ways, 1), most_bytes).front();
 }
 
 std::uint64_t StrippedLog::bytes_of_words() const {
+  std::uint64_t bytes = 0;
+  for (const Band& band : bands_) {
+    bytes += band.words.size() * sizeof(band.words[0]) + band.at_end.size() * sizeof(band.at_end[0]);
+  }
+  return bytes;
+}
+
+std::uint64_t StrippedLog::references() const {
   std::uint64_t words = 0;
   for (const Band& band : bands_) {
     words += band.words.size();
   }
-  return words * sizeof(std::uint32_t);
-}
-
-std::uint64_t StrippedLog::references() const {
-  return bytes_of_words() / (2 * sizeof(std::uint32_t)) - std::uint64_t{width_} * height_;
+  return words - std::uint64_t{width_} * height_;
 }
 
 }  // namespace marti::processors

@@ -1,13 +1,29 @@
-// A work log without the references that are sure to hit, for many replays with the same caches.
+// A work log without the references whose outcome is known, for replays of machines with the same caches.
 //
-// A reference to the line that its set was asked for last always hits, whatever the rest of the set holds,
-// and changes nothing there under LRU, FIFO, random replacement and tree-PLRU: the line is still there, and
-// it is already the newest. Such references are found with a direct-mapped filter of as many sets as the
-// cache has (Puzak, "Analysis of cache replacement algorithms", thesis, University of Massachusetts, 1985;
-// Wang and Baer, "Efficient trace-driven simulation methods for cache performance analysis", SIGMETRICS
-// 1990). Here the filter is emptied before each packet, so that every reference taken out is a hit at
-// whichever node and at whatever time the packet is traced. What is left are references with the cycles
-// between them; machines that differ in nodes, ways, replacement, clocks, memory or interconnect share them.
+// What a packet finds in a cache depends on the packets that its node traced before it, but most outcomes do
+// not. For a set-associative LRU cache of `ways` ways, walk one packet from an empty cache, and for a
+// reference let d be the number of distinct other lines of its set that the packet has asked for since it
+// last asked for this line, or, when it has not asked for it before, since the packet began.
+//
+//   the line was asked for before, d < ways   a hit, whatever the cache held when the packet began
+//   d >= ways                                  a miss, whatever it held
+//   not asked for before, d < ways             depends on what it held: the reference must be looked up
+//
+// Proof: LRU holds the `ways` lines of a set that were asked for last (Mattson, Gecsei, Slutz, Traiger,
+// Evaluation techniques for storage hierarchies, IBM Systems Journal 9(2), 1970). In the first two cases the
+// packet alone decides how many lines were asked for since. So sure hits are taken out, sure misses stay
+// without a look-up, and only first references are looked up. A look-up moves its line to the front of the
+// set. While only first references with d < ways have moved lines, the set holds in front the packet's d
+// lines of it, in some order, and behind them the older lines in the order in which they were asked for; so
+// the place of an older line is LRU's number of distinct lines since its last use, and the look-up has LRU's
+// outcome. After a sure miss of a set all its first references are sure misses too, and it is not looked up
+// again. When the packet ends, its last `ways` lines of each set are put in front in their order, after which
+// the set is LRU's own. Which node traces the packet, and when, is not used.
+//
+// With other replacements only references to the line that its set was asked for last are taken out: they
+// always hit and change nothing under FIFO, random replacement and tree-PLRU (Puzak, Analysis of cache
+// replacement algorithms, thesis, University of Massachusetts, 1985; Wang and Baer, Efficient trace-driven
+// simulation methods for cache performance analysis, SIGMETRICS 1990). All others are looked up.
 #pragma once
 
 #include <array>
@@ -33,34 +49,57 @@ struct PacketTotals {
 
 class StrippedLog {
  public:
-  /// The properties of a machine that decide what is taken out: machines of equal keys share a stripped log.
-  /// Empty for a machine that cannot use one: with another scheme than image, without caches, with a tree
-  /// that is built, with contexts, prefetching, or counting of more than hits and misses.
+  /// The properties of a machine that decide which lines it asks for, in which sets, and the cycles between:
+  /// stripped logs for machines of equal keys are made in one pass. Empty for a machine that cannot use one:
+  /// with another scheme than image, without caches, with a tree that is built, with contexts, prefetching,
+  /// or counting of more than hits and misses.
   [[nodiscard]] static std::string key_of(const MachineConfig& config);
+  /// The ways of the LRU caches for which a log must be stripped to suit the machine; 0 where only references
+  /// to the newest line may be taken out. Machines of equal keys and ways share a stripped log.
+  [[nodiscard]] static std::uint32_t ways_of(const MachineConfig& config);
+  /// The most ways for which outcomes are worked out; with more, ways_of() is 0.
+  static constexpr std::uint32_t most_ways = 16;
 
-  /// Strips `log` on all host threads; the same at any number of them. Null when a line number or a number of
-  /// cycles does not fit, when the words would take more than `most_bytes`, or for a machine without key.
-  [[nodiscard]] static std::unique_ptr<const StrippedLog> make(
+  /// Strips `log` for the key of `config` and for each of `ways`, in one pass on all host threads; the same
+  /// at any number of them. An entry is null when a line number or a number of cycles does not fit, or when
+  /// the words of all would take more than `most_bytes`; all are null for a machine without key.
+  [[nodiscard]] static std::vector<std::shared_ptr<const StrippedLog>> make(
+      const WorkLog& log, const MachineConfig& config, std::span<const std::uint32_t> ways,
+      std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
+  /// The stripped log for `config` alone.
+  [[nodiscard]] static std::shared_ptr<const StrippedLog> make(
       const WorkLog& log, const MachineConfig& config,
       std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
-  // Two words for each reference: the cycles since the end of the reference before, or since the beginning of
-  // the pixel; then its line and its record kind. A pixel ends with the cycles to the end of its steps and
-  // end_of_pixel.
-  static constexpr unsigned kind_bits = 3;
-  static constexpr std::uint32_t most_lines = 1U << (32U - kind_bits);
-  static constexpr std::uint32_t end_of_pixel = (1U << kind_bits) - 1U;
+  // A word for each reference: the cycles since the end of the reference before, or since the beginning of
+  // the pixel, in its lower half; above them the reference's record kind, whether it is a sure miss, and its
+  // line. A pixel ends with the cycles to the end of its steps and end_of_pixel.
+  static constexpr unsigned what_bits = 4;
+  static constexpr std::uint32_t kind_mask = 7;
+  static constexpr std::uint32_t sure_miss = 8;
+  static constexpr std::uint32_t end_of_pixel = 15;
+  static constexpr std::uint32_t what_mask = 15;
+  static constexpr std::uint32_t most_lines = 1U << (32U - what_bits);
 
-  /// The words of a pixel, followed by words of later pixels.
-  [[nodiscard]] std::span<const std::uint32_t> pixel(std::uint32_t x, std::uint32_t y) const {
+  struct StrippedPacket {
+    std::span<const std::uint64_t> words;  ///< of its pixels, row by row
+    /// Lines, with their record kinds, that are asked for when the packet ends, without time and uncounted.
+    std::span<const std::uint32_t> at_end;
+    const PacketTotals& totals;
+  };
+  /// The packet that pixel (x, y) belongs to.
+  [[nodiscard]] StrippedPacket packet(std::uint32_t x, std::uint32_t y) const {
     const Band& band = bands_[y / packet_height_];
-    return std::span(band.words).subspan(band.begin[std::size_t{y % packet_height_} * width_ + x]);
+    const std::size_t number = x / packet_width_;
+    const Place& place = band.places[number];
+    const Place& next = band.places[number + 1];
+    return {std::span(band.words).subspan(place.word, next.word - place.word),
+            std::span(band.at_end).subspan(place.at_end, next.at_end - place.at_end),
+            (*totals_)[y / packet_height_][number]};
   }
-  /// The totals of the packet that pixel (x, y) belongs to.
-  [[nodiscard]] const PacketTotals& totals(std::uint32_t x, std::uint32_t y) const {
-    return bands_[y / packet_height_].totals[x / packet_width_];
-  }
+
   [[nodiscard]] const std::string& key() const { return key_; }
+  [[nodiscard]] std::uint32_t ways() const { return ways_; }
   /// Whether this may be the stripped form of `log`: image and tree have the same size.
   [[nodiscard]] bool fits(const WorkLog& log) const {
     return width_ == log.width && height_ == log.height && nodes_ == log.topology.nodes.size();
@@ -71,17 +110,27 @@ class StrippedLog {
   [[nodiscard]] std::uint64_t bytes_of_words() const;
 
  private:
+  struct Place {
+    std::uint32_t word = 0;
+    std::uint32_t at_end = 0;
+  };
   // One row of packets.
   struct Band {
-    std::vector<std::uint32_t> words;
-    std::vector<std::uint32_t> begin;  // of each pixel, row by row
-    std::vector<PacketTotals> totals;  // of each packet, from left to right
+    std::vector<std::uint64_t> words;
+    std::vector<std::uint32_t> at_end;
+    std::vector<Place> places = std::vector<Place>(1);  // where each packet begins, and one past the last
     bool fits = true;
   };
+  using Totals = std::vector<std::vector<PacketTotals>>;  // of each packet, row by row
+  class BandWriter;
+  template <std::uint32_t Depth, bool Split>
+  class PacketCaches;
+  template <class Caches>
   class Stripper;
 
-  StrippedLog(const WorkLog& log, std::string key, const PacketConfig& packets)
+  StrippedLog(const WorkLog& log, std::string key, std::uint32_t ways, const PacketConfig& packets)
       : key_(std::move(key)),
+        ways_(ways),
         width_(log.width),
         height_(log.height),
         nodes_(log.topology.nodes.size()),
@@ -89,12 +138,14 @@ class StrippedLog {
         packet_height_(packets.height) {}
 
   std::string key_;
+  std::uint32_t ways_;
   std::uint32_t width_;
   std::uint32_t height_;
   std::size_t nodes_;
   std::uint32_t packet_width_;
   std::uint32_t packet_height_;
   std::vector<Band> bands_;
+  std::shared_ptr<const Totals> totals_;
 };
 
 }  // namespace marti::processors

@@ -2,14 +2,12 @@
 #pragma once
 
 #include <bit>
-#include <span>
 #include <utility>
 
 #include "processors/cost/step_time.h"
-#include "processors/walk/local_memory.h"
+#include "processors/walk/behind_cache.h"
 #include "processors/walk/log_cursor.h"
 #include "processors/walk/replay_input.h"
-#include "processors/walk/second_level.h"
 #include "processors/walk/stripped_log.h"
 
 namespace marti::processors {
@@ -27,15 +25,28 @@ class StrippedWalker {
         line_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
         clock_(input.config.clock),
         ticks_(step_ticks(input.config, input.log)),
-        local_(input.config.local),
-        local_database_(input.config.placement == Placement::replicated),
-        second_level_(input.config) {}
+        behind_(input) {}
 
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
-  [[nodiscard]] const PrivateSecondLevel& second_level() const { return second_level_; }
+  [[nodiscard]] const BehindCache& behind() const { return behind_; }
 
-  [[nodiscard]] std::span<const std::uint32_t> words_of(std::uint32_t x, std::uint32_t y) const {
-    return stripped_.pixel(x, y);
+  /// A packet's words come in the order of its pixels, so only the first pixel has to be looked for.
+  void begin_pixel(Cursor& cursor) const {
+    if (cursor.x == cursor.packet.x0 && cursor.y == cursor.packet.y0) {
+      cursor.stripped = stripped_.packet(cursor.x, cursor.y).words.data();
+    }
+  }
+
+  /// As LogWalker::warm_up.
+  void warm_up(std::uint32_t node, const Packet& packet) {
+    const StrippedLog::StrippedPacket stripped = stripped_.packet(packet.x0, packet.y0);
+    const auto cache = caches_.view(node);
+    for (const std::uint64_t word : stripped.words) {
+      if (const auto what = static_cast<std::uint32_t>(word >> 32U); (what & StrippedLog::sure_miss) == 0) {
+        (void)look_up(cache, what);
+      }
+    }
+    end_packet(cache, stripped);
   }
 
   /// Continues `node` from its cursor to its next miss or the end of its pixel. Hits are counted with the
@@ -43,46 +54,23 @@ class StrippedWalker {
   template <bool RunAhead>
   Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
     static_assert(RunAhead);
-    const auto cache = caches_.view(node);
-    const std::uint32_t* word = cursor.word;
-    sim::Ticks time = cursor.time;
-    for (;;) {
-      time = sim::add_ticks(time, clock_.cycles(word[0]));
-      const std::uint32_t what = word[1];
-      if (what == StrippedLog::end_of_pixel) {
-        cursor.word = word;
-        cursor.time = time;
-        return Stop::end;
-      }
-      word += 2;
-      const auto kind = static_cast<memory::RecordKind>(what & StrippedLog::end_of_pixel);
-      const std::uint32_t line = what >> StrippedLog::kind_bits;
-      if (cache.access(kind, line)) [[likely]] {
-        time = sim::add_ticks(time, ticks_.hit);
-        continue;
-      }
-      --hits_of(statistics, kind);
-      ++misses_of(statistics, kind);
-      cursor.time = time;
-      if (!serve(node, line, cursor, statistics)) {
-        cursor.word = word;
-        cursor.at = memory::Address{line} << line_shift_;
-        return Stop::miss;
-      }
-      time = cursor.time;
-    }
+    const Stop stop = walk(node, cursor, statistics);
+    behind_.count_bytes(node);
+    return stop;
   }
 
-  void finish_pixel(Cursor& cursor, NodeStatistics& statistics) const {
+  void finish_pixel(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
     ++statistics.steps.pixels;
     spend(cursor, ticks_.pixel, 1);
-    if (cursor.x + 1 == cursor.packet.x1 && cursor.y + 1 == cursor.packet.y1) {
-      const PacketTotals& totals = stripped_.totals(cursor.x, cursor.y);
-      sim::merge(statistics.steps, totals.steps);
-      for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
-        statistics.references.hits[kind] += totals.references[kind];
-      }
+    if (cursor.x + 1 != cursor.packet.x1 || cursor.y + 1 != cursor.packet.y1) {
+      return;
     }
+    const StrippedLog::StrippedPacket stripped = stripped_.packet(cursor.x, cursor.y);
+    sim::merge(statistics.steps, stripped.totals.steps);
+    for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
+      statistics.references.hits[kind] += stripped.totals.references[kind];
+    }
+    end_packet(caches_.view(node), stripped);
   }
 
   [[nodiscard]] static memory::Address missed_address(const Cursor& cursor) { return cursor.at; }
@@ -91,18 +79,55 @@ class StrippedWalker {
   static void pass(Cursor& /*cursor*/) {}
 
  private:
-  // Serves a miss that does not need the interconnect.
-  bool serve(std::uint32_t node, std::uint32_t line, Cursor& cursor, NodeStatistics& statistics) {
-    if (second_level_.access(node, line, cursor.time, statistics.time)) {
-      return true;
+  using View = typename Caches::View;
+
+  static memory::RecordKind kind_of(std::uint32_t what) {
+    return static_cast<memory::RecordKind>(what & StrippedLog::kind_mask);
+  }
+
+  [[gnu::always_inline]] static bool look_up(const View& cache, std::uint32_t what) {
+    return cache.access(kind_of(what), what >> StrippedLog::what_bits);
+  }
+
+  static void end_packet(const View& cache, const StrippedLog::StrippedPacket& packet) {
+    for (const std::uint32_t what : packet.at_end) {
+      (void)look_up(cache, what);
     }
-    if (!local_database_) {
-      return false;
+  }
+
+  Stop walk(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
+    const View cache = caches_.view(node);
+    const std::uint64_t* word = cursor.stripped;
+    sim::Ticks time = cursor.time;
+    for (;;) {
+      time = sim::add_ticks(time, clock_.cycles(static_cast<std::uint32_t>(*word)));
+      const auto what = static_cast<std::uint32_t>(*word >> 32U);
+      ++word;
+      if ((what & StrippedLog::sure_miss) == 0) {
+        if (look_up(cache, what)) [[likely]] {
+          time = sim::add_ticks(time, ticks_.hit);
+          continue;
+        }
+      } else if ((what & StrippedLog::what_mask) == StrippedLog::end_of_pixel) {
+        cursor.stripped = word;
+        cursor.time = time;
+        return Stop::end;
+      }
+      const memory::RecordKind kind = kind_of(what);
+      const std::uint32_t line = what >> StrippedLog::what_bits;
+      --hits_of(statistics, kind);
+      ++misses_of(statistics, kind);
+      if (behind_.second_level_holds(node, line, time, statistics.time)) {
+        continue;
+      }
+      if (!behind_.reads_alone()) {
+        cursor.stripped = word;
+        cursor.time = time;
+        cursor.at = memory::Address{line} << line_shift_;
+        return Stop::miss;
+      }
+      (void)behind_.read(line_bytes_, time, statistics.time);
     }
-    const memory::Service service = local_.read(line_bytes_, cursor.time);
-    add_service(statistics.time, service);
-    cursor.time = service.done;
-    return true;
   }
 
   const StrippedLog& stripped_;
@@ -111,9 +136,7 @@ class StrippedWalker {
   unsigned line_shift_;
   sim::Clock clock_;
   StepTicks ticks_;
-  LocalMemory local_;
-  bool local_database_;
-  PrivateSecondLevel second_level_;
+  BehindCache behind_;
 };
 
 }  // namespace marti::processors

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "processors/replay/host_bytes.h"
+#include "processors/walk/stripped_log.h"
 #include "sim/config_errors.h"
 #include "studies/keys/key_parts.h"
 #include "studies/keys/machine_keys.h"
@@ -50,7 +51,7 @@ void refuse_maps_beyond_memory(const sim::Config& config, const RecordConfig& re
 
 // Times the machine with the observers that are asked for, then evaluates what they have seen.
 processors::MachineResult watched_replay(const RecordConfig& record, const std::filesystem::path& directory,
-                                         RunResult& result) {
+                                         const processors::StrippedLog* stripped, RunResult& result) {
   Observers observers;
   if (record.timeline) {
     result.timeline = std::make_unique<Timeline>(directory / "timeline.json", record.timeline_options);
@@ -66,6 +67,7 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
   }
   processors::ReplayOptions options;
   options.observer = observers.empty() ? nullptr : &observers;
+  options.stripped = stripped;
   const KeptItems& kept = result.frame_config.keep;
   keep(kept, options);
   const processors::WorkLog& log = *result.functional.frame.log;
@@ -80,17 +82,36 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
   return timed;
 }
 
+// The log stripped for `machine` and `other`, which both walk it; null where that would not be faster or
+// would take more than half of the memory that is left.
+std::shared_ptr<const processors::StrippedLog> strip_for_both(const FrameConfig& frame,
+                                                              const processors::WorkLog& log,
+                                                              const processors::MachineConfig& machine,
+                                                              const processors::MachineConfig& other) {
+  using processors::StrippedLog;
+  // Stripping takes less time than the two save, but not where little is taken out.
+  const bool pays = StrippedLog::ways_of(machine) != 0 &&
+                    StrippedLog::ways_of(machine) == StrippedLog::ways_of(other) &&
+                    StrippedLog::key_of(machine) == StrippedLog::key_of(other);
+  return pays ? StrippedLog::make(log, machine, frame.memory.left() / 2) : nullptr;
+}
+
 // Times the frame on the machine and on one node, and derives all other figures.
 void time_frame(const RecordConfig& record, const std::filesystem::path& directory, RunResult& result) {
   result.plan = result.functional.plan;
   const processors::WorkLog& log = *result.functional.frame.log;
-  result.timed = watched_replay(record, directory, result);
   if (result.machine.all_nodes() == 1 && result.machine.scheme == processors::Scheme::image) {
+    result.timed = watched_replay(record, directory, nullptr, result);
     result.one_node = result.timed;
   } else {
+    const processors::MachineConfig one_node = processors::one_node_of(result.machine);
+    const std::shared_ptr<const processors::StrippedLog> stripped =
+        strip_for_both(result.frame_config, log, result.machine, one_node);
+    result.timed = watched_replay(record, directory, stripped.get(), result);
     processors::ReplayOptions options;
     keep(result.frame_config.keep, options);
-    result.one_node = processors::replay(log, processors::one_node_of(result.machine), options);
+    options.stripped = stripped.get();
+    result.one_node = processors::replay(log, one_node, options);
   }
   result.scaling = scaling_of(result.one_node.end, result.timed.end, result.machine.all_nodes());
   result.loss = loss_of(result.one_node, result.timed);

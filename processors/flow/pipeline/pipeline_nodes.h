@@ -44,7 +44,7 @@ class PipelineNodes final : public PipelineCore {
     }
   }
 
-  SecondLevelResult second_level() const override { return walker_.second_level().result(); }
+  SecondLevelResult second_level() const override { return walker_.behind().second_level().result(); }
 
   std::size_t bytes_per_node() const override {
     return sizeof(Cursor) + sizeof(Node) + sizeof(NodeStatistics) + sizeof(FlowCounts) +

@@ -102,7 +102,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     result.sampling_work = plan_.sampling_work;
   }
 
-  SecondLevelResult second_level() const override { return walker_.second_level().result(); }
+  SecondLevelResult second_level() const override { return walker_.behind().second_level().result(); }
 
   std::size_t bytes_per_node() const override {
     return sizeof(Node) + sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(FlowCounts) + sizeof(sim::Event) +

@@ -17,6 +17,10 @@ std::string encode(const SweepMessage& message) {
   out.number(static_cast<std::uint8_t>(message.task.kind));
   out.number(std::uint64_t{message.task.frame});
   out.number(std::uint64_t{message.task.sharing});
+  out.number(std::uint64_t{message.task.ways.size()});
+  for (const std::uint32_t ways : message.task.ways) {
+    out.number(ways);
+  }
   out.number(std::uint64_t{message.task.machines.size()});
   for (const std::size_t machine : message.task.machines) {
     out.number(std::uint64_t{machine});
@@ -36,6 +40,10 @@ SweepMessage decode_sweep_message(std::string_view bytes) {
     const auto task = in.number<std::uint8_t>();
     message.task.frame = in.number<std::uint64_t>();
     message.task.sharing = in.number<std::uint64_t>();
+    message.task.ways.resize(in.count(sizeof(std::uint32_t)));
+    for (std::uint32_t& ways : message.task.ways) {
+      ways = in.number<std::uint32_t>();
+    }
     message.task.machines.resize(in.count(sizeof(std::uint64_t)));
     for (std::size_t& machine : message.task.machines) {
       machine = in.number<std::uint64_t>();

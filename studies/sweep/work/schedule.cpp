@@ -25,6 +25,11 @@ Schedule::Schedule(const SweepPlan& plan, const std::vector<bool>& machines_done
     }
     Batch& batch = batches_[entry->second];
     batch.machines.push_back(machine);
+    const std::uint32_t ways = processors::StrippedLog::ways_of(plan.machines[machine].config);
+    const auto place = std::lower_bound(batch.ways.begin(), batch.ways.end(), ways);
+    if (place == batch.ways.end() || *place != ways) {
+      batch.ways.insert(place, ways);
+    }
     ++batch.size;
     batch_of_[machine] = entry->second;
     ++frames_[frame].left;
@@ -100,16 +105,16 @@ SweepTask Schedule::next(std::size_t place, std::int64_t nanoseconds) {
   const std::size_t number = choose_batch(place);
   if (waiting != frames_.size() && (ahead == 0 || (ahead == 1 && number == batches_.size()))) {
     frames_[waiting].trace = Trace::under_way;
-    return {SweepTask::Kind::trace, waiting, {}, 0};
+    return {SweepTask::Kind::trace, waiting};
   }
   if (number == batches_.size()) {
-    return {finished() ? SweepTask::Kind::end : SweepTask::Kind::wait, 0, {}, 0};
+    return {finished() ? SweepTask::Kind::end : SweepTask::Kind::wait};
   }
   Batch& batch = batches_[number];
   if (batch.place == no_place) {
     batch.place = place;
   }
-  SweepTask task{SweepTask::Kind::time, batch.frame, {}, batch.size};
+  SweepTask task{SweepTask::Kind::time, batch.frame, {}, batch.size, batch.ways};
   const std::int64_t each = std::max<std::int64_t>(1, cost_of(batch));
   std::int64_t given = 0;
   do {

@@ -21,9 +21,11 @@ struct SweepTask {
   };
   Kind kind = Kind::end;
   std::size_t frame = 0;
-  std::vector<std::size_t> machines;  ///< indices into SweepPlan::machines
-  /// How many machines share these machines' stripped log (processors/walk/stripped_log.h) in this sweep.
+  std::vector<std::size_t> machines{};  ///< indices into SweepPlan::machines
+  /// How many machines of this sweep share the pass that strips these machines' log
+  /// (processors/walk/stripped_log.h), and for which ways, ascending, it strips the log.
   std::size_t sharing = 0;
+  std::vector<std::uint32_t> ways{};
 };
 
 /// Machines of a frame that can share a stripped log form a batch. A place (a process, with all its threads)
@@ -60,6 +62,7 @@ class Schedule {
   struct Batch {
     std::size_t frame = 0;
     std::vector<std::size_t> machines;  // to be handed out, the last first
+    std::vector<std::uint32_t> ways;    // of the stripped logs of all its machines, ascending
     std::size_t size = 0;               // with those handed out
     std::size_t place = no_place;       // the place that has it
     std::int64_t spent = 0;

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 
+#include "sim/error.h"
+
 namespace marti::studies {
 
 std::shared_ptr<const processors::StrippedLog> StripShelf::get(
     std::size_t frame, const std::shared_ptr<const processors::WorkLog>& log,
-    const processors::MachineConfig& machine, std::size_t sharing) {
+    const processors::MachineConfig& machine, std::size_t sharing, std::span<const std::uint32_t> ways) {
   const std::string key = processors::StrippedLog::key_of(machine);
-  if (key.empty() || sharing < fewest_machines) {
+  const bool lru = !ways.empty() && ways.back() != 0;
+  if (key.empty() || sharing < (lru ? fewest_machines : fewest_without_lru)) {
     return nullptr;
   }
   std::shared_ptr<Entry> entry;
@@ -31,10 +34,12 @@ std::shared_ptr<const processors::StrippedLog> StripShelf::get(
   }
   const std::lock_guard making(entry->making);
   if (!entry->made) {
-    entry->log = processors::StrippedLog::make(*log, machine, most_bytes_ / most_kept);
+    entry->logs = processors::StrippedLog::make(*log, machine, ways, most_bytes_ / most_kept);
     entry->made = true;
   }
-  return entry->log;
+  const auto wanted = std::find(ways.begin(), ways.end(), processors::StrippedLog::ways_of(machine));
+  sim::ensure(wanted != ways.end(), "a log is not stripped for a machine of its batch");
+  return entry->logs[static_cast<std::size_t>(wanted - ways.begin())];
 }
 
 void StripShelf::drop(std::size_t frame) {

@@ -6,7 +6,9 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "processors/walk/stripped_log.h"
 
@@ -19,17 +21,20 @@ class StripShelf {
   explicit StripShelf(std::uint64_t most_bytes) : most_bytes_(most_bytes) {}
 
   /// The log stripped for the machine; null where that is impossible, takes too much memory, or does not pay
-  /// because only `sharing` machines use it. Other threads that ask for the same one wait.
+  /// because only `sharing` machines use the pass that strips it. The first that asks makes it together with
+  /// those for `ways`, which must include the machine's; other threads that ask for one of them wait.
   [[nodiscard]] std::shared_ptr<const processors::StrippedLog> get(
       std::size_t frame, const std::shared_ptr<const processors::WorkLog>& log,
-      const processors::MachineConfig& machine, std::size_t sharing);
+      const processors::MachineConfig& machine, std::size_t sharing, std::span<const std::uint32_t> ways);
 
   /// Says that nobody will ask for this frame's stripped logs again.
   void drop(std::size_t frame);
 
-  /// Stripping a log takes about as long as it saves for this many machines.
-  static constexpr std::size_t fewest_machines = 4;
-  /// This many are kept, each of at most its part of the memory.
+  /// Stripping a log takes less time than it saves for this many machines, some of them with LRU caches.
+  static constexpr std::size_t fewest_machines = 2;
+  /// The same where only references to the newest line can be taken out.
+  static constexpr std::size_t fewest_without_lru = 4;
+  /// This many passes are kept, their logs together of at most their part of the memory.
   static constexpr std::size_t most_kept = 2;
 
  private:
@@ -38,7 +43,7 @@ class StripShelf {
     std::string key;
     std::mutex making;
     bool made = false;
-    std::shared_ptr<const processors::StrippedLog> log;
+    std::vector<std::shared_ptr<const processors::StrippedLog>> logs;
   };
 
   std::uint64_t most_bytes_;

@@ -74,7 +74,7 @@ void do_time(const SweepSite& site, TaskSource& source, const SweepTask& task) {
     SweepRow row;
     try {
       const std::shared_ptr<const processors::StrippedLog> stripped =
-          site.strips.get(task.frame, log->log, machine.config, task.sharing);
+          site.strips.get(task.frame, log->log, machine.config, task.sharing, task.ways);
       const MemoryGate::Pass pass(site.machines, processors::host_bytes(machine.config));
       processors::ReplayOptions options;
       options.stripped = stripped.get();

@@ -40,6 +40,8 @@ MachineConfig with_line(std::uint32_t line) {
   return machine;
 }
 
+constexpr std::array<std::uint32_t, 1> four_ways = {4};
+
 template <class Work>
 void on_threads(unsigned count, const Work& work) {
   std::vector<std::jthread> threads;
@@ -55,7 +57,7 @@ TEST(StripShelf, OneIsMadeForAllThatAsk) {
   on_threads(8, [&](unsigned thread) {
     MachineConfig machine = with_line(32);
     machine.nodes = 1 + thread;  // machines of other sizes share it
-    found.at(thread) = shelf.get(0, log, machine, 8);
+    found.at(thread) = shelf.get(0, log, machine, 8, four_ways);
   });
   ASSERT_NE(found[0], nullptr);
   EXPECT_TRUE(found[0]->fits(*log));
@@ -63,33 +65,33 @@ TEST(StripShelf, OneIsMadeForAllThatAsk) {
   for (const auto& other : found) {
     EXPECT_EQ(other, found[0]);
   }
-  EXPECT_NE(shelf.get(0, log, with_line(64), 8), found[0]);
-  EXPECT_NE(shelf.get(1, log, with_line(32), 8), found[0]) << "another frame's";
+  EXPECT_NE(shelf.get(0, log, with_line(64), 8, four_ways), found[0]);
+  EXPECT_NE(shelf.get(1, log, with_line(32), 8, four_ways), found[0]) << "another frame's";
 }
 
 TEST(StripShelf, NoneWhereItDoesNotPayOrFit) {
   const std::shared_ptr<const WorkLog> log = some_log(2);
   StripShelf shelf(plenty);
-  EXPECT_EQ(shelf.get(0, log, with_line(32), enough - 1), nullptr);
+  EXPECT_EQ(shelf.get(0, log, with_line(32), enough - 1, four_ways), nullptr);
   MachineConfig without = with_line(32);
   without.cache.organisation = processors::CacheOrganisation::none;
-  EXPECT_EQ(shelf.get(0, log, without, 100), nullptr);
-  const auto made = shelf.get(0, log, with_line(32), enough);
+  EXPECT_EQ(shelf.get(0, log, without, 100, four_ways), nullptr);
+  const auto made = shelf.get(0, log, with_line(32), enough, four_ways);
   ASSERT_NE(made, nullptr);
   // Room for one and a half: each may take its part of it only.
   StripShelf small(made->bytes_of_words() * 3 / 2);
-  EXPECT_EQ(small.get(0, log, with_line(32), enough), nullptr);
-  EXPECT_EQ(small.get(0, log, with_line(32), enough), nullptr) << "the same the second time";
+  EXPECT_EQ(small.get(0, log, with_line(32), enough, four_ways), nullptr);
+  EXPECT_EQ(small.get(0, log, with_line(32), enough, four_ways), nullptr) << "the same the second time";
 }
 
 TEST(StripShelf, KeepsThoseUsedLast) {
   const std::shared_ptr<const WorkLog> log = some_log(3);
   StripShelf shelf(plenty);
   static_assert(StripShelf::most_kept == 2);
-  std::weak_ptr<const StrippedLog> first = shelf.get(0, log, with_line(16), enough);
-  const std::weak_ptr<const StrippedLog> second = shelf.get(0, log, with_line(32), enough);
-  EXPECT_EQ(shelf.get(0, log, with_line(16), enough), first.lock());
-  std::shared_ptr<const StrippedLog> third = shelf.get(0, log, with_line(64), enough);
+  std::weak_ptr<const StrippedLog> first = shelf.get(0, log, with_line(16), enough, four_ways);
+  const std::weak_ptr<const StrippedLog> second = shelf.get(0, log, with_line(32), enough, four_ways);
+  EXPECT_EQ(shelf.get(0, log, with_line(16), enough, four_ways), first.lock());
+  std::shared_ptr<const StrippedLog> third = shelf.get(0, log, with_line(64), enough, four_ways);
   EXPECT_FALSE(first.expired()) << "used later than the second";
   EXPECT_TRUE(second.expired());
   shelf.drop(1);
@@ -111,7 +113,7 @@ TEST(StripShelf, ThreadsOfManyBatches) {
     test::Random random(thread);
     for (int round = 0; round < 20; ++round) {
       const std::size_t which = random() % references.size();
-      const auto found = shelf.get(0, log, with_line(16U << which), enough);
+      const auto found = shelf.get(0, log, with_line(16U << which), enough, four_ways);
       ASSERT_NE(found, nullptr);
       EXPECT_EQ(found->references(), references.at(which));
       if (random() % 8 == 0) {
