@@ -14,25 +14,27 @@ namespace marti::processors {
 
 /// Where a node is in its packet: the pixel, the word of the pixel's log, and within a step either a line of
 /// a planned visit, or a byte of a record and, for a leaf, the objects still to be tested.
-struct Cursor {
+struct alignas(64) Cursor {
+  // What a walk of a stripped log uses, in one cache line of the host.
   sim::Ticks time = 0;
+  const std::uint64_t* stripped = nullptr;  ///< next word of the packet's stripped log, where that is walked
+  memory::Address at = 0;                   ///< next byte of the current record
+  std::uint32_t writes = 0;                 ///< where the next pixel write goes in the write buffer
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  Packet packet;
+
   const std::uint32_t* word = nullptr;
   const std::uint32_t* word_end = nullptr;
-  const std::uint64_t* stripped = nullptr;  ///< next word of the packet's stripped log, where that is walked
-  const std::uint32_t* line = nullptr;      ///< next line of the planned visit
+  const std::uint32_t* line = nullptr;  ///< next line of the planned visit
   const std::uint32_t* line_end = nullptr;
-  memory::Address at = 0;   ///< next byte of the current record
-  memory::Address end = 0;  ///< one past its last byte
+  memory::Address end = 0;  ///< one past the last byte of the current record
   const std::uint32_t* entry = nullptr;
   const std::uint32_t* entry_end = nullptr;
   const std::uint32_t* tested = nullptr;  ///< of a mailed leaf: a bit for each entry; null: all are tested
   std::uint32_t entry_number = 0;         ///< of `entry` in the mailed leaf's list
   std::uint32_t list_count = 0;   ///< entries of the current leaf's list, as long as it is still to be read
   std::uint32_t tests_begun = 0;  ///< of the planned visit, by kind as in tests_of_kind
-  std::uint32_t writes = 0;       ///< where the next pixel write goes in the write buffer
-  std::uint32_t x = 0;
-  std::uint32_t y = 0;
-  Packet packet;
   memory::RecordKind kind = memory::RecordKind::node;
   Origin origin;  ///< of the current record; kept only where it is counted
   /// Guarded caches only: the branch whose record was visited last and whose children may be prefetched.
