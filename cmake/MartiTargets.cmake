@@ -18,6 +18,10 @@ if(MARTI_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" CCACHE_NOHASHDIR=1 "${MARTI_CCACHE}")
 endif()
 
+# Where the programs of the build tree find what they load while they run (studies/CMakeLists.txt).
+set(MARTI_MODULES "${PROJECT_BINARY_DIR}/modules")
+list(APPEND CMAKE_BUILD_RPATH "${MARTI_MODULES}")
+
 # Warnings and floating-point rules. -ffp-contract=off: a fused multiply-add in an edge function changes
 # the sign of near-zero areas, and watertightness rests on those signs.
 add_library(marti_options INTERFACE)
@@ -39,6 +43,9 @@ if(MARTI_SANITIZE)
   # sanitizer ends the program at a null pointer all the same.
   target_compile_options(marti_options INTERFACE -fno-sanitize=null,alignment,object-size,vptr)
   target_link_options(marti_options INTERFACE -fsanitize=address,undefined)
+  # dlopen() looks where the library that calls it says. The sanitizers' dlopen() calls it for the program, whose paths
+  # count for its libraries too only in the older of the two forms.
+  target_link_options(marti_options INTERFACE LINKER:--disable-new-dtags)
 endif()
 if(MARTI_FUZZ)
   target_compile_options(marti_options INTERFACE -fsanitize=fuzzer-no-link)

@@ -1,6 +1,6 @@
-// What the program says when an exception meets nobody who could catch it: libraries start threads while they
-// are loaded, before main() (OpenImageIO brings log4cplus, which does), and inside of functions that must not
-// throw.
+// What the program says when an exception meets nobody who could catch it: libraries start threads inside of
+// functions that must not throw, and while they are loaded (log4cplus, which studies/host/image_file.cpp
+// loads with OpenImageIO).
 #include <unistd.h>
 
 #include <cerrno>
@@ -17,9 +17,12 @@ namespace {
   _exit(2);  // as for any wrong input
 }
 
-std::terminate_handler usual = nullptr;
+[[noreturn]] void say_why();
 
-[[noreturn]] void say_why() {
+// Set before main() begins.
+const std::terminate_handler usual = std::set_terminate(say_why);
+
+void say_why() {
   if (const std::exception_ptr error = std::current_exception()) {
     try {
       std::rethrow_exception(error);
@@ -36,12 +39,5 @@ std::terminate_handler usual = nullptr;
   usual();
   std::abort();
 }
-
-// Functions of .preinit_array run before the constructors of shared libraries (System V ABI, "Initialization
-// and Termination Functions").
-using Function = void (*)();
-[[gnu::used, gnu::section(".preinit_array")]] const Function before_all_libraries = [] {
-  usual = std::set_terminate(say_why);
-};
 
 }  // namespace

@@ -104,6 +104,7 @@ void run_command(const RunArguments& arguments) {
   }
   if (!arguments.directory.empty()) {
     studies::prepare_output(arguments.directory);
+    studies::load_image_library();
   }
   const studies::RunResult result = studies::run(config, arguments.directory, keep);
   const studies::PlanVerdict verdict =
@@ -149,6 +150,7 @@ void run_study(const StudyArguments& arguments, const sim::Schema& schema, const
                            : sim::Config::from_file(schema, arguments.config, arguments.assignments);
   if (!arguments.directory.empty()) {
     studies::prepare_output(arguments.directory);
+    studies::load_image_library();
   }
   const studies::StudyOutput output = sim::placed(config, [&] { return study(config); });
   std::string text = output.report;

@@ -1,43 +1,48 @@
 #include "studies/host/image_file.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include <dlfcn.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <string>
+#include <thread>
 
 #include "scenes/texture.h"
 #include "sim/error.h"
+#include "studies/host/image_codec.h"
 
 namespace marti::studies {
 
 namespace {
 
-constexpr int most_pixels_a_side = 65536;
-constexpr std::int64_t most_pixels = std::int64_t{1} << 28U;  // 1 GiB of RGBA
-
-// A name whose extension leads OpenImageIO to the codec: the images inside a glTF file often have no name,
-// and are PNG or JPEG by the format's rules.
-std::string codec_name(std::span<const std::byte> file) {
-  const bool jpeg = file.size() > 2 && file[0] == std::byte{0xff} && file[1] == std::byte{0xd8};
-  return jpeg ? "texture.jpg" : "texture.png";
+const ImageCodec& load_codec() {
+  void* function = nullptr;
+  std::string why;
+  // Some of those libraries start threads while they are loaded and throw when they get none; to unwind their
+  // half-made pool of threads would wait for ever. A thread of its own has no catch, so nothing is unwound,
+  // and the program ends with the message of studies/cli/last_words.cpp.
+  std::thread([&] {
+    // Found by the program's RUNPATH (studies/CMakeLists.txt). It stays loaded: OpenImageIO keeps threads.
+    void* const library = dlopen("marti_image_codec.so", RTLD_LAZY);
+    function = library == nullptr ? nullptr : dlsym(library, "marti_image_codec");
+    if (function == nullptr) {
+      const char* const reason = dlerror();
+      why = reason == nullptr ? "marti_image_codec.so" : reason;
+    }
+  }).join();
+  if (function == nullptr) {
+    throw sim::UserError("image files can be neither read nor written, because a library cannot be loaded: " +
+                         why);
+  }
+  return *reinterpret_cast<decltype(&marti_image_codec)>(function)();
 }
 
-void write(const std::filesystem::path& file, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
-           const void* pixels) {
-  // OpenEXR compresses in this thread: a pool of its own would be more threads than the system may give.
-  static const bool no_pool = OIIO::attribute("exr_threads", -1);
-  static_cast<void>(no_pool);
-  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(file.string());
-  if (!out) {
-    throw sim::UserError(file.string() + ": " + OIIO::geterror());
-  }
-  if (!out->open(file.string(), spec) || !out->write_image(type, pixels) || !out->close()) {
-    throw sim::UserError(file.string() + ": cannot be written: " + out->geterror());
-  }
+// Loaded at the first use; after a failure the next use tries again.
+const ImageCodec& codec() {
+  static const ImageCodec& loaded = load_codec();
+  return loaded;
 }
 
 // IEC 61966-2-1, to the nearest byte.
@@ -50,6 +55,8 @@ std::uint8_t srgb_byte(float linear) {
 
 }  // namespace
 
+void load_image_library() { static_cast<void>(codec()); }
+
 std::string note_of_infinities(const processors::Image& image) {
   const auto count = std::count_if(image.pixels.begin(), image.pixels.end(), [](const glm::vec3& pixel) {
     return !std::isfinite(pixel.x) || !std::isfinite(pixel.y) || !std::isfinite(pixel.z);
@@ -61,103 +68,46 @@ std::string note_of_infinities(const processors::Image& image) {
 }
 
 void write_exr(const processors::Image& image, const std::filesystem::path& file) {
-  OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 3,
-                       OIIO::TypeDesc::FLOAT);
-  spec.attribute("compression", "zip");
-  // Without a date the library writes that of today, and equal images would be different files.
-  spec.attribute("DateTime", "1970:01:01 00:00:00");
-  write(file, spec, OIIO::TypeDesc::FLOAT, image.pixels.data());
+  const std::array<std::string, 3> names = {"R", "G", "B"};
+  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+  const std::span samples(reinterpret_cast<const float*>(image.pixels.data()),
+                          image.pixels.size() * names.size());
+  codec().write_exr(file.string(), {image.width, image.height}, names, samples);
 }
 
 void write_channels(std::uint32_t width, std::uint32_t height, std::span<const std::string> names,
                     std::span<const std::vector<float>> channels, const std::filesystem::path& file) {
-  OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels.size()),
-                       OIIO::TypeDesc::FLOAT);
-  spec.channelnames.assign(names.begin(), names.end());
-  spec.attribute("compression", "zip");
-  spec.attribute("DateTime", "1970:01:01 00:00:00");
-  std::vector<float> pixels;
-  pixels.reserve(std::size_t{width} * height * channels.size());
+  std::vector<float> samples;
+  samples.reserve(std::size_t{width} * height * channels.size());
   for (std::size_t pixel = 0; pixel < std::size_t{width} * height; ++pixel) {
     for (const std::vector<float>& channel : channels) {
-      pixels.push_back(channel[pixel]);
+      samples.push_back(channel[pixel]);
     }
   }
-  write(file, spec, OIIO::TypeDesc::FLOAT, pixels.data());
+  codec().write_exr(file.string(), {width, height}, names, samples);
 }
 
 void write_png(const processors::Image& image, const std::filesystem::path& file) {
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(image.pixels.size() * 3);
+  std::vector<std::uint8_t> samples;
+  samples.reserve(image.pixels.size() * 3);
   for (const glm::vec3& pixel : image.pixels) {
     for (int channel = 0; channel < 3; ++channel) {
-      bytes.push_back(srgb_byte(pixel[channel]));
+      samples.push_back(srgb_byte(pixel[channel]));
     }
   }
-  OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 3,
-                       OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  write(file, spec, OIIO::TypeDesc::UINT8, bytes.data());
+  codec().write_png(file.string(), {image.width, image.height}, samples);
 }
 
-namespace {
-
-// An image file in memory, opened; its header has been read and is that of a possible texture.
-struct OpenImage {
-  OpenImage(std::span<const std::byte> file, std::string_view name)
-      : memory(file.data(), file.size()), label(name) {
-    in = OIIO::ImageInput::open(codec_name(file), nullptr, &memory);
-    if (!in) {
-      throw sim::UserError(label + ": not an image that can be read: " + OIIO::geterror());
-    }
-    const OIIO::ImageSpec& spec = in->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.nchannels > 16 ||
-        spec.width > most_pixels_a_side || spec.height > most_pixels_a_side ||
-        std::int64_t{spec.width} * spec.height > most_pixels) {
-      throw sim::UserError(label + ": an image of " + std::to_string(spec.width) + " x " +
-                           std::to_string(spec.height) + " pixels and " + std::to_string(spec.nchannels) +
-                           " channels cannot be a texture");
-    }
-    size = {static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height)};
-  }
-
-  OIIO::Filesystem::IOMemReader memory;
-  std::string label;
-  std::unique_ptr<OIIO::ImageInput> in;
-  scenes::ImageSize size;
-};
-
-}  // namespace
-
 scenes::Texture decode_image(std::span<const std::byte> file, std::string_view name) {
-  const OpenImage image(file, name);
-  const int channels = image.in->spec().nchannels;
-  std::vector<std::uint8_t> samples(std::size_t{image.size.width} * image.size.height *
-                                    static_cast<std::size_t>(channels));
-  if (!image.in->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, samples.data())) {
-    throw sim::UserError(image.label + ": cannot be decoded: " + image.in->geterror());
-  }
-  return scenes::texture_from_samples(name, image.size.width, image.size.height,
-                                      static_cast<std::uint32_t>(channels), samples);
+  const DecodedImage image = codec().decode(file, name);
+  return scenes::texture_from_samples(name, image.size.width, image.size.height, image.channels,
+                                      image.samples);
 }
 
 scenes::ImageSize size_of_image(std::span<const std::byte> file, std::string_view name) {
-  return OpenImage(file, name).size;
+  return codec().size_of(file, name);
 }
 
-std::vector<std::byte> encode_png(const scenes::Texture& texture) {
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create("texture.png", &memory);
-  const OIIO::ImageSpec spec(static_cast<int>(texture.width), static_cast<int>(texture.height), 4,
-                             OIIO::TypeDesc::UINT8);
-  if (!out || !out->open("texture.png", spec) ||
-      !out->write_image(OIIO::TypeDesc::UINT8, texture.texels.data()) || !out->close()) {
-    throw sim::UserError("the texture " + texture.name + " cannot be encoded as PNG");
-  }
-  std::vector<std::byte> result(bytes.size());
-  std::transform(bytes.begin(), bytes.end(), result.begin(), [](unsigned char b) { return std::byte{b}; });
-  return result;
-}
+std::vector<std::byte> encode_png(const scenes::Texture& texture) { return codec().encode_png(texture); }
 
 }  // namespace marti::studies

@@ -1,4 +1,4 @@
-// Image files, through OpenImageIO: the only place that touches an image codec.
+// Image files. OpenImageIO, which reads and writes them, is loaded when it is first needed: image_codec.h.
 #pragma once
 
 #include <cstddef>
@@ -14,6 +14,10 @@
 #include "scenes/texture.h"
 
 namespace marti::studies {
+
+/// Loads OpenImageIO now, so that a long run that will write images fails at its begin if that cannot be
+/// loaded. Throws UserError.
+void load_image_library();
 
 /// Writes 32-bit float linear RGB as OpenEXR, without a date that means anything: equal images are equal
 /// files. Throws UserError when the file cannot be written.

@@ -58,6 +58,29 @@ TEST(Command, WalksAndMailboxesChangeTimesAndNoImage) {
   EXPECT_EQ(matched["structure"]["notes"].size(), 1U);
 }
 
+// OpenImageIO's libraries are most of a short run's time, so only what writes or reads an image loads them.
+TEST(Command, OnlyImagesLoadOpenImageIO) {
+  const TemporaryDirectory directory;
+  const fs::path config = directory.path() / "a.toml";
+  write(config, "");
+  const auto libraries = [&](const std::string& name, const std::string& arguments) {
+    const Outcome outcome = shell("LD_DEBUG=files LD_DEBUG_OUTPUT=" + quoted(directory.path() / name) + " " +
+                                  quoted(MARTI_PROGRAM) + " " + arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    std::string text;
+    for (const auto& entry : fs::directory_iterator(directory.path())) {
+      text += entry.path().stem() == name ? read(entry.path()) : "";
+    }
+    EXPECT_NE(text.find("libtbb"), std::string::npos) << text;
+    return text;
+  };
+  const std::string run = "run " + quoted(config) + small_teapot;
+  EXPECT_EQ(libraries("version", "--version").find("OpenImageIO"), std::string::npos);
+  EXPECT_EQ(libraries("run", run).find("OpenImageIO"), std::string::npos);
+  const std::string images = libraries("images", run + " -o " + quoted(directory.path() / "out"));
+  EXPECT_NE(images.find("OpenImageIO"), std::string::npos);
+}
+
 TEST(Command, EveryShippedConfigurationRuns) {
   int configurations = 0;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(MARTI_SOURCE) / "configs")) {

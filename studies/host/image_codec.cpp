@@ -1,0 +1,127 @@
+// The library marti_image_codec.so: the only place that includes OpenImageIO.
+#include "studies/host/image_codec.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "sim/error.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr int most_pixels_a_side = 65536;
+constexpr std::int64_t most_pixels = std::int64_t{1} << 28U;  // 1 GiB of RGBA
+
+// A name whose extension leads OpenImageIO to the codec: the images inside a glTF file often have no name,
+// and are PNG or JPEG by the format's rules.
+std::string codec_name(std::span<const std::byte> file) {
+  const bool jpeg = file.size() > 2 && file[0] == std::byte{0xff} && file[1] == std::byte{0xd8};
+  return jpeg ? "texture.jpg" : "texture.png";
+}
+
+OIIO::ImageSpec spec_of(scenes::ImageSize size, std::size_t channels, const OIIO::TypeDesc& type) {
+  return OIIO::ImageSpec(static_cast<int>(size.width), static_cast<int>(size.height),
+                         static_cast<int>(channels), type);
+}
+
+void write(const std::string& file, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
+           const void* pixels) {
+  // OpenEXR compresses in this thread: a pool of its own would be more threads than the system may give.
+  static const bool no_pool = OIIO::attribute("exr_threads", -1);
+  static_cast<void>(no_pool);
+  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(file);
+  if (!out) {
+    throw sim::UserError(file + ": " + OIIO::geterror());
+  }
+  if (!out->open(file, spec) || !out->write_image(type, pixels) || !out->close()) {
+    throw sim::UserError(file + ": cannot be written: " + out->geterror());
+  }
+}
+
+// An image file in memory, opened; its header has been read and is that of a possible texture.
+struct OpenImage {
+  OpenImage(std::span<const std::byte> file, std::string_view name)
+      : memory(file.data(), file.size()), label(name) {
+    in = OIIO::ImageInput::open(codec_name(file), nullptr, &memory);
+    if (!in) {
+      throw sim::UserError(label + ": not an image that can be read: " + OIIO::geterror());
+    }
+    const OIIO::ImageSpec& spec = in->spec();
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.nchannels > 16 ||
+        spec.width > most_pixels_a_side || spec.height > most_pixels_a_side ||
+        std::int64_t{spec.width} * spec.height > most_pixels) {
+      throw sim::UserError(label + ": an image of " + std::to_string(spec.width) + " x " +
+                           std::to_string(spec.height) + " pixels and " + std::to_string(spec.nchannels) +
+                           " channels cannot be a texture");
+    }
+    size = {static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height)};
+  }
+
+  OIIO::Filesystem::IOMemReader memory;
+  std::string label;
+  std::unique_ptr<OIIO::ImageInput> in;
+  scenes::ImageSize size;
+};
+
+class OpenImageIO final : public ImageCodec {
+ public:
+  void write_exr(const std::string& file, scenes::ImageSize size, std::span<const std::string> channels,
+                 std::span<const float> samples) const override {
+    OIIO::ImageSpec spec = spec_of(size, channels.size(), OIIO::TypeDesc::FLOAT);
+    spec.channelnames.assign(channels.begin(), channels.end());
+    spec.attribute("compression", "zip");
+    // Without a date the library writes that of today, and equal images would be different files.
+    spec.attribute("DateTime", "1970:01:01 00:00:00");
+    write(file, spec, OIIO::TypeDesc::FLOAT, samples.data());
+  }
+
+  void write_png(const std::string& file, scenes::ImageSize size,
+                 std::span<const std::uint8_t> samples) const override {
+    OIIO::ImageSpec spec = spec_of(size, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    write(file, spec, OIIO::TypeDesc::UINT8, samples.data());
+  }
+
+  [[nodiscard]] DecodedImage decode(std::span<const std::byte> file, std::string_view name) const override {
+    const OpenImage image(file, name);
+    const int channels = image.in->spec().nchannels;
+    DecodedImage decoded{image.size, static_cast<std::uint32_t>(channels), {}};
+    decoded.samples.resize(std::size_t{image.size.width} * image.size.height * decoded.channels);
+    if (!image.in->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, decoded.samples.data())) {
+      throw sim::UserError(image.label + ": cannot be decoded: " + image.in->geterror());
+    }
+    return decoded;
+  }
+
+  [[nodiscard]] scenes::ImageSize size_of(std::span<const std::byte> file,
+                                          std::string_view name) const override {
+    return OpenImage(file, name).size;
+  }
+
+  [[nodiscard]] std::vector<std::byte> encode_png(const scenes::Texture& texture) const override {
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create("texture.png", &memory);
+    const OIIO::ImageSpec spec = spec_of({texture.width, texture.height}, 4, OIIO::TypeDesc::UINT8);
+    if (!out || !out->open("texture.png", spec) ||
+        !out->write_image(OIIO::TypeDesc::UINT8, texture.texels.data()) || !out->close()) {
+      throw sim::UserError("the texture " + texture.name + " cannot be encoded as PNG");
+    }
+    std::vector<std::byte> result(bytes.size());
+    std::transform(bytes.begin(), bytes.end(), result.begin(), [](unsigned char b) { return std::byte{b}; });
+    return result;
+  }
+};
+
+}  // namespace
+
+}  // namespace marti::studies
+
+const marti::studies::ImageCodec* marti_image_codec() {
+  static const marti::studies::OpenImageIO codec;
+  return &codec;
+}

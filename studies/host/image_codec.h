@@ -1,0 +1,54 @@
+// What the program asks of OpenImageIO. The functions are in a shared library of their own,
+// marti_image_codec.so, which image_file.cpp loads when the first image is read or written: OpenImageIO
+// brings more than two hundred libraries, and most commands touch no image.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenes/texture.h"
+
+namespace marti::studies {
+
+/// The pixels of an image file: 8-bit samples, interleaved, rows from the top.
+struct DecodedImage {
+  scenes::ImageSize size;
+  std::uint32_t channels = 0;
+  std::vector<std::uint8_t> samples;
+};
+
+/// Every function throws UserError with a complete message when the file cannot be read or written.
+class ImageCodec {
+ public:
+  ImageCodec() = default;
+  virtual ~ImageCodec() = default;
+  ImageCodec(const ImageCodec&) = delete;
+  ImageCodec& operator=(const ImageCodec&) = delete;
+
+  /// An OpenEXR file of 32-bit floats, one for each channel of each pixel.
+  virtual void write_exr(const std::string& file, scenes::ImageSize size,
+                         std::span<const std::string> channels, std::span<const float> samples) const = 0;
+
+  /// A PNG file of sRGB-encoded bytes: red, green, blue of each pixel.
+  virtual void write_png(const std::string& file, scenes::ImageSize size,
+                         std::span<const std::uint8_t> samples) const = 0;
+
+  /// A PNG or JPEG file in memory; `name` is for messages.
+  [[nodiscard]] virtual DecodedImage decode(std::span<const std::byte> file, std::string_view name) const = 0;
+
+  /// The size of a PNG or JPEG file in memory, from its head alone.
+  [[nodiscard]] virtual scenes::ImageSize size_of(std::span<const std::byte> file,
+                                                  std::string_view name) const = 0;
+
+  /// The texels as a PNG file in memory.
+  [[nodiscard]] virtual std::vector<std::byte> encode_png(const scenes::Texture& texture) const = 0;
+};
+
+}  // namespace marti::studies
+
+/// The one function that marti_image_codec.so exports.
+extern "C" const marti::studies::ImageCodec* marti_image_codec();
