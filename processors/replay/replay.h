@@ -74,15 +74,16 @@ struct ReplayOptions {
   std::vector<BranchStart> starts{};
   bool report_built = false;     ///< fill BuildResult::built, unless the tree is given
   Observer* observer = nullptr;  ///< see processors/walk/observer.h; same result
-  /// Walked in place of `log`, from which it was made for a machine of the same key_of; same result.
+  /// Walked in place of `log`, from which it was made for a machine of the same key_of and ways_of; same
+  /// result.
   const StrippedLog* stripped = nullptr;
   /// Look up tags, and post an event for each read, even where left_out.h says that the outcome is known;
   /// same result except for `events` and `left_out`.
   bool keep_lookups = false;
   bool keep_read_events = false;
   /// Only these packets are handed out; the result is that of a frame which has no others. For the image
-  /// scheme with a given tree, dynamic assignment, one context, and no second level of caches, `stripped` or
-  /// counting of more than hits and misses (check_sampled).
+  /// scheme with a given tree, dynamic assignment, one context, and no second level of caches or counting of
+  /// more than hits and misses (check_sampled).
   const PacketSample* sample = nullptr;
   /// Not exact (sim::Engine::relax): where first come is first served, requests of one quantum may be served
   /// in another order. For machines that pass check_relaxed(). 0 or 1: exact.

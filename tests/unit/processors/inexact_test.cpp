@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "processors/replay/replay.h"
+#include "processors/walk/stripped_log.h"
 #include "sim/error.h"
 #include "tests/support/equal_results.h"
 #include "tests/support/random_machine.h"
@@ -39,6 +40,27 @@ std::vector<std::uint64_t> everything(std::uint64_t packets) {
   std::vector<std::uint64_t> all(packets);
   std::iota(all.begin(), all.end(), 0);
   return all;
+}
+
+RC_GTEST_PROP(Inexact, AStrippedLogGivesTheSameSample, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = small_log(random);
+  const MachineConfig machine = random_sampled(random);
+  const auto stripped = StrippedLog::make(log, machine);
+  if (stripped == nullptr) {
+    return;
+  }
+  const std::uint64_t packets = PacketList(log.width, log.height, machine.packets).size();
+  std::vector<std::uint64_t> some = everything(packets);
+  std::erase_if(some, [&](std::uint64_t packet) { return packet != 0 && test::pick(random, 0, 2) != 0; });
+  for (const std::uint64_t warm_up : {std::uint64_t{0}, std::uint64_t{1}, PacketSample::all_before}) {
+    const PacketSample sample(some, packets, warm_up);
+    const MachineResult whole = replay(log, machine, {.sample = &sample});
+    const MachineResult less = replay(log, machine, {.stripped = stripped.get(), .sample = &sample});
+    expect_equal(whole, less);
+    RC_ASSERT(!::testing::Test::HasFatalFailure());
+    RC_ASSERT(whole.packet_figures == less.packet_figures);
+  }
 }
 
 RC_GTEST_PROP(Inexact, ASampleOfAllPacketsIsExact, (std::uint64_t seed)) {

@@ -9,9 +9,11 @@
 #include <array>
 #include <memory>
 #include <set>
+#include <vector>
 
 #include "memory/layout.h"
 #include "processors/cost/step_time.h"
+#include "processors/walk/observer.h"
 #include "processors/walk/stripped_log.h"
 #include "sim/error.h"
 #include "tests/support/equal_results.h"
@@ -77,6 +79,42 @@ RC_GTEST_PROP(Replay, AStrippedLogGivesTheSameResult, (std::uint64_t seed)) {
     test::expect_equal(replay(log, other), replay(log, other, {.stripped = both[1].get()}));
     RC_ASSERT(!::testing::Test::HasFatalFailure());
   }
+}
+
+// Everything that an observer is told.
+class Told : public Observer {
+ public:
+  void spent(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to, PixelPlace pixel) override {
+    told.push_back({0, node, static_cast<std::int64_t>(state), from, to, pixel.x, pixel.y});
+  }
+  void missed(std::uint32_t node, std::int64_t misses, PixelPlace pixel) override {
+    told.push_back({1, node, misses, 0, 0, pixel.x, pixel.y});
+  }
+  void began_packet(std::uint32_t node, std::uint64_t packet, sim::Ticks start) override {
+    told.push_back({2, node, static_cast<std::int64_t>(packet), start, 0, 0, 0});
+  }
+  std::vector<std::array<std::int64_t, 7>> told;
+};
+
+RC_GTEST_PROP(Replay, ObserversAreToldAsMuchOfAStrippedLog, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 12)),
+                                       static_cast<std::uint32_t>(test::pick(random, 1, 12)));
+  MachineConfig machine = test::random_machine(random);
+  machine.build.sharing = Sharing::given;
+  machine.contexts = 1;
+  machine.prefetch = {};
+  machine.count = {};
+  const auto stripped = StrippedLog::make(log, machine);
+  if (stripped == nullptr) {
+    return;
+  }
+  Told whole;
+  Told less;
+  (void)replay(log, machine, {.observer = &whole});
+  (void)replay(log, machine, {.observer = &less, .stripped = stripped.get()});
+  RC_ASSERT(!whole.told.empty());
+  RC_ASSERT(whole.told == less.told);
 }
 
 RC_GTEST_PROP(Replay, TheOrderOfTheFirstEventsDoesNotMatter, (std::uint64_t seed)) {
