@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "sim/error.h"
@@ -143,30 +142,11 @@ void take_text(const fs::path& file, ReportData& report) {
 }
 
 // What a study has found, claim by claim (studies/tables/claim.h): its answer.
-void take_claims(const Table& table, ReportData& report) {
-  constexpr std::size_t most = 12;
-  const auto index_of = [&](std::string_view name) {
-    const auto columns = table.columns();
-    const auto at = std::find_if(columns.begin(), columns.end(),
-                                 [&](const Column& column) { return column.name == name; });
-    return at == columns.end() || at->type != ColumnType::text
-               ? std::nullopt
-               : std::optional(static_cast<std::size_t>(at - columns.begin()));
-  };
-  const auto subject = index_of("subject");
-  const auto here = index_of("here");
-  const auto verdict = index_of("verdict");
-  if (!subject || !here || !verdict) {
-    return;
-  }
-  for (const std::vector<Cell>& row : table.rows()) {
-    const auto text = [&](std::size_t i) {
-      const auto* found = std::get_if<std::string>(&row[i]);
-      return found == nullptr ? std::string("?") : *found;
-    };
-    if (report.answer.size() < most) {
-      report.answer.push_back(fmt::format("{}: {} ({}).", text(*subject), text(*here), text(*verdict)));
-    }
+void take_claims(SqliteConnection& connection, ReportData& report) {
+  SqliteStatement rows(connection,
+                       "SELECT subject, coalesce(here, '?'), verdict FROM claims ORDER BY rowid LIMIT 12");
+  while (rows.next()) {
+    report.answer.push_back(fmt::format("{}: {} ({}).", rows.text(0), rows.text(1), rows.text(2)));
   }
 }
 
@@ -187,7 +167,9 @@ ReportData read_study_report(const fs::path& directory) {
       take_settings(table, report);
       continue;
     }
-    take_claims(table, report);
+    if (name == "claims") {
+      take_claims(connection, report);
+    }
     tables.push_back(std::move(table));
   }
   if (is_there(directory / "report.txt")) {
