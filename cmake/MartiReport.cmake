@@ -1,12 +1,12 @@
 # The npm packages with which `marti report` draws charts, as cmake/npm/package-lock.json pins them. Sets
-#   MARTI_VEGA_BUNDLE   the source that defines studies/report/vega_bundle.h,
+#   MARTI_VEGA_BUNDLE   the source that defines studies/report/plots/vega_bundle.h,
 #   MARTI_VEGA_SCRIPTS  the files that this source embeds, and
 #   MARTI_NODE, MARTI_NODE_MODULES  node and the folder of the packages, with the tests'; empty without npm.
 # All of it happens in the build directory, when cmake configures, so that a machine without npm or without
 # network builds a program that only lacks the report.
 option(MARTI_REPORT "Put the scripts of marti report, which npm fetches, into the program" ON)
 
-set(MARTI_VEGA_BUNDLE "${CMAKE_CURRENT_LIST_DIR}/../studies/report/no_vega_bundle.cpp")
+set(MARTI_VEGA_BUNDLE "${CMAKE_CURRENT_LIST_DIR}/../studies/report/plots/no_vega_bundle.cpp")
 set(MARTI_VEGA_SCRIPTS "")
 set(MARTI_NODE_MODULES "")
 

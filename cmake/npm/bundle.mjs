@@ -1,6 +1,7 @@
 // node bundle.mjs NODE_MODULES DIRECTORY: writes into DIRECTORY the scripts that a page of marti report loads,
 // each with the licences of what it holds before it, and vega_bundle.cpp, which puts them into the program
-// (studies/report/vega_bundle.h). The same packages give the same bytes.
+// (studies/report/plots/vega_bundle.h). The same packages give the same bytes.
+import { createHash } from "node:crypto";
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
@@ -63,12 +64,13 @@ const scripts = [
   { name: "vega-lite", file: "build/vega-lite.min.js", change: (text) => text },
   { name: "vega-interpreter", file: "build/vega-interpreter.js", change: asScript },
 ].map(({ name, file, change }) => {
-  const { folder, description } = folderOf(name);
+  const { folder } = folderOf(name);
   const text = readFileSync(join(folder, file), "utf8").replace(/^\/\/# sourceMappingURL=.*\n?/m, "");
   if (/<\/?script|<!--/i.test(text)) throw new Error(`${name} cannot stand in a page`);
   const path = join(directory, `${name}.js`);
-  writeFileSync(path, notice(name) + change(text).trimEnd() + "\n");
-  return { name, version: description.version, path };
+  const script = notice(name) + change(text).trimEnd() + "\n";
+  writeFileSync(path, script);
+  return { path, hash: createHash("sha256").update(script).digest("base64") };
 });
 
 // The assembler takes the files in; a compiler would need seconds for literals of this size.
@@ -79,12 +81,12 @@ const blocks = scripts.flatMap(({ path }, i) =>
 );
 const names = scripts.map((_, i) => `extern const char marti_script_${i}[];\nextern const char marti_script_${i}_end[];`);
 const entries = scripts.map(
-  ({ name, version }, i) => `      Script{"${name}", "${version}", {marti_script_${i}, marti_script_${i}_end}},`,
+  ({ hash }, i) => `      Script{{marti_script_${i}, marti_script_${i}_end}, "${hash}"},`,
 );
 writeFileSync(
   join(directory, "vega_bundle.cpp"),
   `// Made by cmake/npm/bundle.mjs.
-#include "studies/report/vega_bundle.h"
+#include "studies/report/plots/vega_bundle.h"
 
 #include <array>
 

@@ -11,6 +11,7 @@
 #include "studies/compare/compare_text.h"
 #include "studies/compare/differences.h"
 #include "studies/compare/figures.h"
+#include "studies/tables/result_directory.h"
 
 namespace marti::studies {
 
@@ -29,27 +30,6 @@ constexpr std::string_view expected =
     "expected is a directory of `marti run`, its result.json, the directory of a sweep, or DIR:N for point N "
     "of "
     "a sweep";
-
-bool is_there(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
-
-Target of_directory(const std::string& name) {
-  const fs::path run = fs::path(name) / "result.json";
-  const fs::path sweep = fs::path(name) / "results.sqlite";
-  if (is_there(run) && is_there(sweep)) {
-    throw sim::UserError(name +
-                         ": holds both a run (result.json) and a sweep (results.sqlite); name the file");
-  }
-  if (is_there(run)) {
-    return {Target::Kind::run, run, 0};
-  }
-  if (is_there(sweep)) {
-    return {Target::Kind::sweep, sweep, 0};
-  }
-  throw sim::UserError(name + ": holds neither result.json nor results.sqlite; " + std::string(expected));
-}
 
 // "DIR:N", where DIR is there.
 std::optional<Target> point_of(const std::string& name) {
@@ -72,7 +52,8 @@ std::optional<Target> point_of(const std::string& name) {
 Target target_of(const std::string& name) {
   std::error_code ignored;
   if (fs::is_directory(name, ignored)) {
-    return of_directory(name);
+    const fs::path file = results_in(name, expected);
+    return {file.extension() == ".json" ? Target::Kind::run : Target::Kind::sweep, file, 0};
   }
   if (is_there(name)) {
     const bool sweep = fs::path(name).extension() == ".sqlite";

@@ -12,6 +12,7 @@
 #include "studies/compare/differences.h"
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/json_table.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
@@ -162,8 +163,8 @@ std::string text_of(const std::string& a, const std::string& b, const Sweep& fro
   for (std::size_t i = 0; i < shown; ++i) {
     const CounterDifference& counter = counters[i];
     fmt::format_to(out, "  {:<32}{:>9}  {:>11}  {} to {}, at {} and {}\n", counter.largest.name,
-                   counter.machines, change_of(counter.largest), studies::text_of(counter.largest.a),
-                   studies::text_of(counter.largest.b), counter.point_a, counter.point_b);
+                   counter.machines, change_of(counter.largest), short_text(counter.largest.a, "-"),
+                   short_text(counter.largest.b, "-"), counter.point_a, counter.point_b);
   }
   if (shown < counters.size()) {
     fmt::format_to(out, "  and {} more: --all lists them\n", counters.size() - shown);

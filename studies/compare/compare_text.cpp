@@ -1,11 +1,13 @@
 #include "studies/compare/compare_text.h"
-#include "studies/tables/json_table.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
+
+#include "studies/tables/json_table.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
@@ -44,8 +46,8 @@ std::string lines_of(const std::vector<Difference>& differences, bool all) {
   std::size_t b = 1;
   for (std::size_t i = 0; i < shown; ++i) {
     name = std::max(name, printable(differences[i].name).size());
-    a = std::max(a, text_of(differences[i].a).size());
-    b = std::max(b, text_of(differences[i].b).size());
+    a = std::max(a, short_text(differences[i].a, "-").size());
+    b = std::max(b, short_text(differences[i].b, "-").size());
   }
   std::string text;
   const auto out = std::back_inserter(text);
@@ -53,7 +55,7 @@ std::string lines_of(const std::vector<Difference>& differences, bool all) {
     const Difference& difference = differences[i];
     const std::string change = change_of(difference);
     fmt::format_to(out, "  {:<{}}  {:>{}}  {:>{}}", printable(difference.name), name,
-                   printable(text_of(difference.a)), a, printable(text_of(difference.b)), b);
+                   printable(short_text(difference.a, "-")), a, printable(short_text(difference.b, "-")), b);
     text += change.empty() ? "\n" : fmt::format("  {:>12}\n", change);
   }
   if (shown < differences.size()) {
@@ -76,8 +78,8 @@ std::string differences_text(const ComparedResult& a, const ComparedResult& b, c
   // The frame time comes first, whatever its place in the order.
   for (const Difference& difference : found.numbers) {
     if (difference.name == "machine.frame_time_ps" || difference.name == "end_ps") {
-      fmt::format_to(out, "frame time     {} ps in A, {} ps in B, {}\n", text_of(difference.a),
-                     text_of(difference.b), change_of(difference));
+      fmt::format_to(out, "frame time     {} ps in A, {} ps in B, {}\n", short_text(difference.a, "-"),
+                     short_text(difference.b, "-"), change_of(difference));
     }
   }
   text += lines_of(found.texts, true);
@@ -91,17 +93,6 @@ std::string differences_text(const ComparedResult& a, const ComparedResult& b, c
     text += lines_of(found.equal, true);
   }
   return text;
-}
-
-nlohmann::ordered_json json_of(const Cell& cell) {
-  if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
-    return *integer;
-  }
-  if (const auto* real = std::get_if<double>(&cell)) {
-    return *real;
-  }
-  const auto* text = std::get_if<std::string>(&cell);
-  return text == nullptr ? Json(nullptr) : Json(*text);
 }
 
 nlohmann::ordered_json json_of(const Difference& difference) {

@@ -21,8 +21,6 @@ inline constexpr std::size_t most_lines = 20;
 /// A table of what differs, at most most_lines of it unless `all`. Texts beside numbers have no change.
 [[nodiscard]] std::string lines_of(const std::vector<Difference>& differences, bool all);
 
-/// An integer, a real, a text or null.
-[[nodiscard]] nlohmann::ordered_json json_of(const Cell& cell);
 [[nodiscard]] nlohmann::ordered_json json_of(const Difference& difference);
 
 }  // namespace marti::studies

@@ -43,17 +43,6 @@ std::optional<double> Difference::relative() const {
   return largest > 0.0 ? std::abs(*to - *from) / largest : 0.0;
 }
 
-std::string text_of(const Cell& cell) {
-  if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
-    return std::to_string(*integer);
-  }
-  if (const auto* real = std::get_if<double>(&cell)) {
-    return fmt::format("{:.6g}", *real);
-  }
-  const auto* text = std::get_if<std::string>(&cell);
-  return text == nullptr ? "-" : *text;
-}
-
 std::string change_of(const Difference& difference) {
   const std::optional<double> from = number_of(difference.a);
   const std::optional<double> to = number_of(difference.b);

@@ -31,9 +31,6 @@ struct Differences {
 
 [[nodiscard]] Differences differences_of(const ComparedResult& a, const ComparedResult& b);
 
-/// For people: "-" for no value; reals with six digits.
-[[nodiscard]] std::string text_of(const Cell& cell);
-
 /// The change from a to b for people: "+12.50 %"; "from 0" where a is 0.
 [[nodiscard]] std::string change_of(const Difference& difference);
 

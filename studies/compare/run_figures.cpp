@@ -5,6 +5,7 @@
 
 #include "sim/error.h"
 #include "studies/compare/figures.h"
+#include "studies/tables/json_table.h"
 #include "studies/tables/run_json.h"
 
 namespace marti::studies {
@@ -55,19 +56,6 @@ class Flattener {
   }
 
  private:
-  static Cell cell_of(const Json& value) {
-    if (value.is_number_unsigned() && value.get<std::uint64_t>() > static_cast<std::uint64_t>(INT64_MAX)) {
-      return value.get<double>();
-    }
-    if (value.is_number_integer()) {
-      return value.get<std::int64_t>();
-    }
-    if (value.is_number()) {
-      return value.get<double>();
-    }
-    return value.is_string() ? value.get<std::string>() : value.dump();
-  }
-
   void add_list(const Json& list, const std::string& path, bool in_list) {
     std::size_t index = 0;
     for (const Json& element : list) {

@@ -10,10 +10,10 @@
 #include "sim/error.h"
 #include "sim/files.h"
 #include "studies/host/signals_held.h"
-#include "studies/report/plots.h"
-#include "studies/report/report_charts.h"
-#include "studies/report/report_page.h"
-#include "studies/report/vega_bundle.h"
+#include "studies/report/page/report_page.h"
+#include "studies/report/plots/plots.h"
+#include "studies/report/plots/vega_bundle.h"
+#include "studies/report/read/read_report.h"
 #include "studies/tables/pending_files.h"
 
 namespace marti::studies {
@@ -106,7 +106,7 @@ void report_command(const ReportArguments& arguments, void (*print)(const std::s
   const std::string page = report_page(report, vega_scripts());
   std::vector<Plot> plots;
   if (!arguments.plots.empty()) {
-    plots = draw_plots(report.charts, arguments.plots, arguments.pdf);
+    plots = draw_plots(report, arguments.plots, arguments.pdf);
     check_apart(file, arguments.plots, plots);
   }
   std::string text;

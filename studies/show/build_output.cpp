@@ -5,30 +5,12 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "sim/statistics.h"
 #include "studies/show/json_parts.h"
 
 namespace marti::studies {
 
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-double percent(double part, double whole) { return whole > 0.0 ? 100.0 * part / whole : 0.0; }
-
-}  // namespace
-
 nlohmann::ordered_json build_json(const processors::BuildResult& build, bool per_node) {
-  Json levels = Json::array();
-  for (const processors::BuildLevel& level : build.levels) {
-    levels.push_back(counters_json(level));
-  }
-  Json nodes = nullptr;
-  if (per_node) {
-    nodes = Json::array();
-    for (const processors::BuildCounts& node : build.nodes) {
-      nodes.push_back(counters_json(node));
-    }
-  }
   return {{"sharing", processors::sharing_names[static_cast<std::size_t>(build.sharing)]},
           {"start_up_ps", build.start_up},
           {"start_up_wait_ps", build.start_up_wait},
@@ -37,8 +19,8 @@ nlohmann::ordered_json build_json(const processors::BuildResult& build, bool per
           {"wasted_splits", build.wasted_splits()},
           {"counts", counters_json(build.counts())},
           {"all_levels", counters_json(build.all_levels())},
-          {"levels", levels},
-          {"per_node", nodes}};
+          {"levels", counters_list(build.levels)},
+          {"per_node", counters_list(build.nodes, per_node)}};
 }
 
 std::string build_lines(const processors::MachineResult& result) {
@@ -50,10 +32,10 @@ std::string build_lines(const processors::MachineResult& result) {
   const auto out = std::back_inserter(text);
   const processors::BuildCounts counts = build.counts();
   const processors::BuildLevel all = build.all_levels();
-  fmt::format_to(
-      out, "\nbuilding      {} before the frame, {:.2f} % of its time; {} during it, {} lock waits",
-      counts.start_up_splits, percent(static_cast<double>(build.start_up), static_cast<double>(result.end)),
-      counts.splits, counts.waits);
+  fmt::format_to(out,
+                 "\nbuilding      {} before the frame, {:.2f} % of its time; {} during it, {} lock waits",
+                 counts.start_up_splits, 100.0 * sim::ratio(build.start_up, result.end).value_or(0.0),
+                 counts.splits, counts.waits);
   if (build.wasted_splits() != 0) {
     fmt::format_to(out, ", {} made more than once", build.wasted_splits());
   }

@@ -9,22 +9,11 @@
 
 namespace marti::studies {
 
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-}  // namespace
-
 nlohmann::ordered_json context_json(const processors::MachineConfig& machine,
                                     const processors::ContextResult& result, bool per_node) {
-  Json nodes = nullptr;
-  if (per_node) {
-    nodes = Json::array();
-    for (const processors::ContextCounts& node : result.nodes) {
-      nodes.push_back(counters_json(node));
-    }
-  }
-  return {{"contexts", machine.contexts}, {"counts", counters_json(result.counts())}, {"per_node", nodes}};
+  return {{"contexts", machine.contexts},
+          {"counts", counters_json(result.counts())},
+          {"per_node", counters_list(result.nodes, per_node)}};
 }
 
 std::string context_lines(const processors::MachineConfig& machine, const processors::ContextResult& result) {

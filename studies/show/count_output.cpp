@@ -57,7 +57,7 @@ Json sharing_json(const processors::MachineConfig& machine, const memory::Sharin
 }
 
 double percent(std::int64_t part, std::int64_t whole) {
-  return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+  return 100.0 * sim::ratio(part, whole).value_or(0.0);
 }
 
 // Sums of the rows by what `key` makes of them.

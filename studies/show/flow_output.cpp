@@ -6,6 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "sim/statistics.h"
 #include "studies/figures/flow_figures.h"
 #include "studies/show/json_parts.h"
 #include "studies/tables/text_units.h"
@@ -53,7 +54,7 @@ std::string seconds(double ticks) {
   return s >= 1e-3 ? fmt::format("{:.3f} ms", s * 1e3) : fmt::format("{:.3f} us", s * 1e6);
 }
 
-double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
+double ratio(std::int64_t part, std::int64_t whole) { return sim::ratio(part, whole).value_or(0.0); }
 
 void load_line(std::back_insert_iterator<std::string> out, const StageLoad& load) {
   fmt::format_to(out, "  {:<12}{} node{}, {:.1f} % busy (the busiest {:.1f} %", load.name, load.nodes,
@@ -115,14 +116,13 @@ std::string flow_lines(const MachineConfig& machine, const MachineResult& result
   const FlowFigures figures = flow_figures(machine, result);
   const processors::FlowResult& flow = result.flow;
   const FlowCounts counts = sum_of_nodes(result);
-  const auto rays = static_cast<double>(flow.rays);
+  const auto rays = static_cast<std::int64_t>(flow.rays);
   fmt::format_to(out, "\nrays          {}, at most {} in flight, at most {} set aside at a node\n", flow.rays,
                  flow.most_in_flight, counts.most_set_aside);
   fmt::format_to(out, "  messages    {}, {:.1f} a ray, {} ({:.0f} B a ray)\n", figures.messages,
-                 ratio(static_cast<double>(figures.messages), rays),
-                 bytes(static_cast<double>(figures.bytes)), ratio(static_cast<double>(figures.bytes), rays));
-  fmt::format_to(out, "  queues      mean wait {}\n",
-                 seconds(ratio(static_cast<double>(counts.queued), static_cast<double>(counts.taken))));
+                 ratio(figures.messages, rays), bytes(static_cast<double>(figures.bytes)),
+                 ratio(figures.bytes, rays));
+  fmt::format_to(out, "  queues      mean wait {}\n", seconds(ratio(counts.queued, counts.taken)));
   for (const StageLoad& stage : figures.stages) {
     load_line(out, stage);
   }
@@ -152,8 +152,7 @@ std::string flow_lines(const MachineConfig& machine, const MachineResult& result
       waits.max = std::max(waits.max, network.waits.max);
     }
     fmt::format_to(out, ", links {:.1f} % busy, {:.1f} hops a message, mean wait {}, longest {}",
-                   100.0 * *figures.network, figures.hops_a_message,
-                   seconds(ratio(static_cast<double>(waits.sum), static_cast<double>(waits.count))),
+                   100.0 * *figures.network, figures.hops_a_message, seconds(ratio(waits.sum, waits.count)),
                    seconds(static_cast<double>(waits.max)));
   }
   text += "\n";

@@ -49,4 +49,14 @@ template <class S>
   return object;
 }
 
+/// A list of such objects; null unless it is `wanted`.
+template <class List>
+[[nodiscard]] nlohmann::ordered_json counters_list(const List& all, bool wanted = true) {
+  nlohmann::ordered_json list = wanted ? nlohmann::ordered_json::array() : nlohmann::ordered_json();
+  for (std::size_t i = 0; wanted && i < all.size(); ++i) {
+    list.push_back(counters_json(all[i]));
+  }
+  return list;
+}
+
 }  // namespace marti::studies

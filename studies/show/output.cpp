@@ -9,6 +9,7 @@
 #include "studies/run/record/heat_files.h"
 #include "studies/show/count_output.h"
 #include "studies/show/working_set_output.h"
+#include "studies/tables/chart.h"
 #include "studies/tables/csv.h"
 #include "studies/tables/pending_files.h"
 #include "studies/tables/run_files.h"
@@ -38,7 +39,7 @@ void add_files(const RunResult& result, PendingFiles& files) {
   if (result.working_set) {
     const Table table = working_set_table(*result.working_set);
     files.write("working_set.csv", csv_of(table));
-    files.write("working_set.vl.json", working_set_chart(table));
+    files.write("working_set.vl.json", fill_chart(chart_named(chart_specifications(), table.name()), table));
   }
 }
 

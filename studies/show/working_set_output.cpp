@@ -10,8 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/error.h"
-#include "studies/tables/chart.h"
+#include "sim/statistics.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies {
@@ -31,9 +30,7 @@ std::string_view name_of(const WorkingSet& set, std::size_t cache) {
   return set.caches.size() == 1 ? std::string_view("unified") : processors::split_cache_names[cache];
 }
 
-double ratio(std::int64_t part, std::int64_t whole) {
-  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
-}
+double share_of(std::int64_t part, std::int64_t whole) { return sim::ratio(part, whole).value_or(0.0); }
 
 // The sizes that `keep` wants, from one line to the power of two at which all that is left is compulsory.
 template <class Keep>
@@ -95,8 +92,8 @@ void cache_lines(std::string& text, const WorkingSet& set, std::size_t number) {
   for (const Point& point : powers_of_two(distances)) {
     fmt::format_to(out, "  {:<12}{:>12}{:>12}{:>15}{:>10.3f} %{:>14.2f} x\n", "", point.size,
                    size_text(set, point.size), point.misses,
-                   100.0 * ratio(point.misses, distances.references),
-                   ratio(point.misses, distances.compulsory));
+                   100.0 * share_of(point.misses, distances.references),
+                   share_of(point.misses, distances.compulsory));
   }
   fmt::format_to(out, "  {:<12}2 x compulsory with {} ({} lines), 1.1 x with {} ({}), 1 x with {} ({})\n", "",
                  size_text(set, lines_within(distances, 20)), lines_within(distances, 20),
@@ -109,7 +106,7 @@ void cache_lines(std::string& text, const WorkingSet& set, std::size_t number) {
       if (std::has_single_bit(point.size) || point.size == cache.shape.ways) {
         fmt::format_to(out, "{} {}{}: {:.3f} %", separator, point.size,
                        point.size == cache.shape.ways ? " (the machine's)" : "",
-                       100.0 * ratio(point.misses, cache.ways.references));
+                       100.0 * share_of(point.misses, cache.ways.references));
         separator = ",";
       }
     }
@@ -170,7 +167,7 @@ Table working_set_table(const WorkingSet& set) {
     const auto add = [&](std::uint32_t sets, const Point& point) {
       table.add_row({std::string(name_of(set, i)), std::int64_t{sets}, count_cell(point.size),
                      count_cell(point.size * sets * set.line), point.misses,
-                     ratio(point.misses, cache.distances.references)});
+                     share_of(point.misses, cache.distances.references)});
     };
     for (const Point& point : thinned(cache.distances)) {
       add(1, point);
@@ -180,15 +177,6 @@ Table working_set_table(const WorkingSet& set) {
     }
   }
   return table;
-}
-
-std::string working_set_chart(const Table& table) {
-  const auto charts = chart_specifications();
-  const auto chart = std::find_if(charts.begin(), charts.end(), [&](const ChartSpecification& specification) {
-    return specification.name == table.name();
-  });
-  sim::ensure(chart != charts.end(), "the chart of the working set is built into the program");
-  return fill_chart(*chart, table);
 }
 
 }  // namespace marti::studies

@@ -5,6 +5,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "studies/tables/table.h"
 
@@ -20,11 +22,19 @@ struct ChartSpecification {
 /// All of them, in alphabetical order.
 [[nodiscard]] std::span<const ChartSpecification> chart_specifications();
 
+/// The one of this name. Throws InternalError when there is none.
+[[nodiscard]] const ChartSpecification& chart_named(std::span<const ChartSpecification> charts,
+                                                    std::string_view name);
+
 /// The name of the table that a specification shows. Throws InternalError when it names none.
 [[nodiscard]] std::string table_of(const ChartSpecification& chart);
 
 /// The specification with the table's rows as its data, an object each; a value that is missing, NaN or
 /// infinite is null. Text that is not UTF-8 is shown with replacement characters.
 [[nodiscard]] std::string fill_chart(const ChartSpecification& chart, const Table& table);
+
+/// Each of chart_specifications() whose table is among `tables` and has rows, with that table.
+[[nodiscard]] std::vector<std::pair<const ChartSpecification*, const Table*>> charts_of(
+    std::span<const Table> tables);
 
 }  // namespace marti::studies

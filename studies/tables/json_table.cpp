@@ -10,6 +10,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+}  // namespace
+
 Json json_of(const Cell& cell) {
   if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
     return *integer;
@@ -23,7 +25,19 @@ Json json_of(const Cell& cell) {
   return {};
 }
 
-}  // namespace
+Cell cell_of(const Json& value) {
+  if (value.is_null()) {
+    return {};
+  }
+  if (value.is_number_integer() && !(value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX)) {
+    return value.get<std::int64_t>();
+  }
+  if (value.is_number()) {
+    return value.get<double>();
+  }
+  return value.is_string() ? value.get<std::string>()
+                           : value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
 
 std::string json_text(const Json& json) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -23,13 +23,8 @@ std::vector<fs::path> write_study(const StudyOutput& output, const fs::path& dir
     files.write(table.name() + ".csv", csv_of(table));
   }
   files.write("columns.csv", csv_of(columns));
-  for (const ChartSpecification& chart : chart_specifications()) {
-    const std::string wanted = table_of(chart);
-    for (const Table& table : all) {
-      if (table.name() == wanted && !table.rows().empty()) {
-        files.write(std::string(chart.name) + ".vl.json", fill_chart(chart, table));
-      }
-    }
+  for (const auto& [chart, table] : charts_of(all)) {
+    files.write(std::string(chart->name) + ".vl.json", fill_chart(*chart, *table));
   }
   for (const StudyImage& image : output.images) {
     write_exr(image.image, files.add(image.name + ".exr"));

@@ -47,4 +47,15 @@ std::string grouped(std::int64_t value) {
   return digits;
 }
 
+std::string short_text(const Cell& cell, std::string_view missing) {
+  if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
+    return std::to_string(*integer);
+  }
+  if (const auto* real = std::get_if<double>(&cell)) {
+    return std::isfinite(*real) ? fmt::format("{:.6g}", *real) : std::string(missing);
+  }
+  const auto* text = std::get_if<std::string>(&cell);
+  return text == nullptr ? std::string(missing) : *text;
+}
+
 }  // namespace marti::studies

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "sim/time.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies {
 
@@ -19,5 +21,8 @@ namespace marti::studies {
 
 /// "1.2 MiB", "1.2 KiB", "12 B".
 [[nodiscard]] std::string bytes(double count);
+
+/// A cell in short: reals with six digits, `missing` for what has no value or is not finite.
+[[nodiscard]] std::string short_text(const Cell& cell, std::string_view missing);
 
 }  // namespace marti::studies

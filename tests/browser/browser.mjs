@@ -36,10 +36,29 @@ function allDrawn() {
   return document.readyState === "complete" && charts.length > 0 && charts.every(drawn);
 }
 
+/** Sizes in pixels; on mobile the page itself says how wide it wants to be. */
+export const screen = { width: 1280, height: 900, mobile: false };
+
+/** Gives the page another width, and waits until it has drawn all charts anew. */
+export async function resize(page, size) {
+  const session = await page.context().newCDPSession(page);
+  await page.evaluate(() => {
+    window.watched.before = { ...window.marti.views };
+  });
+  await session.send("Emulation.setDeviceMetricsOverride", { ...size, deviceScaleFactor: 1 });
+  await page.waitForFunction(() => {
+    const { marti, watched } = window;
+    return Object.keys(watched.before).every((name) => marti.views[name] !== watched.before[name]);
+  });
+  await page.evaluate(async () => {
+    for (const view of Object.values(window.marti.views)) await view.runAsync();
+  });
+}
+
 /** The file in a page of its own, with all charts drawn. `options` are those of a Playwright context. */
 export async function openFile(browser, file, options = {}) {
   const url = pathToFileURL(file).href;
-  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
+  const context = await browser.newContext({ viewport: screen, ...options });
   const page = await context.newPage();
   const faults = [];
   await page.route("**/*", (route) => {

@@ -74,7 +74,9 @@ export const unnamed = (page) =>
 
 /** The text of the file that a click on the link gives. */
 export async function download(page, link) {
-  const [file] = await Promise.all([page.waitForEvent("download"), link.click()]);
+  const click = (timeout) => Promise.all([page.waitForEvent("download", { timeout }), link.click()]);
+  // On a busy computer Chromium has been seen to lose one.
+  const [file] = await click(5000).catch(() => click(30000));
   const chunks = [];
   for await (const chunk of await file.createReadStream()) chunks.push(chunk);
   return { name: file.suggestedFilename(), text: Buffer.concat(chunks).toString("utf8") };

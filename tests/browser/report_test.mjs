@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, readdirSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
-import { openFile, startBrowser } from "./browser.mjs";
+import { openFile, resize, screen, startBrowser } from "./browser.mjs";
 import {
   chartNames,
   colours,
@@ -18,9 +18,9 @@ import {
 } from "./inspect.mjs";
 import { makeReports, parseCsv, readCsv, readJson } from "./results.mjs";
 
-const reports = makeReports();
+const reports = await makeReports();
 const pictures = process.env.MARTI_PICTURES;
-const phone = { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true };
+const phone = { width: 360, height: 740, mobile: true };
 
 /** Equal, numbers up to a relative `error`; an empty text is nothing. */
 function assertClose(a, b, what, error) {
@@ -41,27 +41,26 @@ function assertRows(shown, expected, what, error = 1e-9) {
 const saveLink = (page, name, kind) => page.locator(`a[data-save="${kind}"][data-chart="${name}"]`);
 
 let browser;
+const opened = {};
 before(async () => {
   browser = await startBrowser();
   if (pictures) mkdirSync(pictures, { recursive: true });
+  const open = async ([kind, { page }]) => (opened[kind] = await openFile(browser, page, { colorScheme: "dark" }));
+  await Promise.all(Object.entries(reports).map(open));
 });
 after(() => browser?.close());
 
-/** Opens a page, hands it to `use`, and wants it to have done nothing wrong by then. */
-async function withPage(kind, options, use) {
-  const opened = await openFile(browser, reports[kind].page, options);
-  try {
-    await use(opened.page);
-    assert.deepEqual(await opened.faults(), []);
-  } finally {
-    await opened.close();
-  }
+/** Hands a page to `use`, and wants it to have done nothing wrong by then. Opening takes longest, so all tests share
+ *  a page of each kind; each leaves it as wide and as dark as it was. */
+async function withPage(kind, use) {
+  await use(opened[kind].page);
+  assert.deepEqual(await opened[kind].faults(), []);
 }
 
 for (const [kind, report] of Object.entries(reports)) {
   describe(`the page of a ${kind}`, () => {
     it("draws every chart, without fault and without asking for anything", () =>
-      withPage(kind, {}, async (page) => {
+      withPage(kind, async (page) => {
         const names = await chartNames(page);
         assert.ok(names.length > 0);
         for (const name of names) assert.ok((await markCount(page, name)) > 0, `${name} shows nothing`);
@@ -72,7 +71,7 @@ for (const [kind, report] of Object.entries(reports)) {
       }));
 
     it("gives the rows of every chart as CSV", () =>
-      withPage(kind, { acceptDownloads: true }, async (page) => {
+      withPage(kind, async (page) => {
         for (const name of await chartNames(page)) {
           const file = await download(page, saveLink(page, name, "csv"));
           assert.equal(file.name, `${name}.csv`);
@@ -87,7 +86,7 @@ for (const [kind, report] of Object.entries(reports)) {
       }));
 
     it("gives every chart as SVG", () =>
-      withPage(kind, { acceptDownloads: true }, async (page) => {
+      withPage(kind, async (page) => {
         for (const name of await chartNames(page)) {
           const file = await download(page, saveLink(page, name, "svg"));
           assert.equal(file.name, `${name}.svg`);
@@ -96,25 +95,28 @@ for (const [kind, report] of Object.entries(reports)) {
         }
       }));
 
-    it("fits a phone", () =>
-      withPage(kind, phone, async (page) => {
-        assert.deepEqual(await overflow(page), { pixels: 0, elements: [] });
-        if (pictures) await page.screenshot({ path: join(pictures, `${kind}-phone.png`), fullPage: true });
-      }));
-
-    it("follows the reader's wish for dark or light", async () => {
-      const seen = {};
-      for (const colorScheme of ["light", "dark"]) {
-        await withPage(kind, { colorScheme }, async (page) => {
+    it("follows the reader's wish for dark or light", () =>
+      withPage(kind, async (page) => {
+        const seen = { atFirst: await colours(page) };
+        for (const colorScheme of ["light", "dark"]) {
+          await page.emulateMedia({ colorScheme });
           seen[colorScheme] = await colours(page);
           if (pictures) await page.screenshot({ path: join(pictures, `${kind}-${colorScheme}.png`), fullPage: true });
-        });
-      }
-      for (const what of ["page", "text", "label"]) assert.notEqual(seen.light[what], seen.dark[what], what);
-    });
+        }
+        assert.deepEqual(seen.atFirst, seen.dark);
+        for (const what of ["page", "text", "label"]) assert.notEqual(seen.light[what], seen.dark[what], what);
+      }));
+
+    it("fits a phone", () =>
+      withPage(kind, async (page) => {
+        await resize(page, phone);
+        assert.deepEqual(await overflow(page), { pixels: 0, elements: [] });
+        if (pictures) await page.screenshot({ path: join(pictures, `${kind}-phone.png`), fullPage: true });
+        await resize(page, screen);
+      }));
 
     it("prints, dark on white whatever the screen is", () =>
-      withPage(kind, { colorScheme: "dark" }, async (page) => {
+      withPage(kind, async (page) => {
         await page.emulateMedia({ media: "print" });
         const printed = await colours(page);
         assert.deepEqual([printed.page, printed.text, printed.label], ["rgb(255, 255, 255)", "rgb(0, 0, 0)", "rgb(0, 0, 0)"]);
@@ -123,16 +125,17 @@ for (const [kind, report] of Object.entries(reports)) {
         }
         const paper = await page.pdf({ format: "A4", path: pictures && join(pictures, `${kind}-paper.pdf`) });
         assert.equal(paper.subarray(0, 5).toString(), "%PDF-");
+        await page.emulateMedia({ media: null });
       }));
 
     it("has names for those who do not see it", () =>
-      withPage(kind, {}, async (page) => assert.deepEqual(await unnamed(page), [])));
+      withPage(kind, async (page) => assert.deepEqual(await unnamed(page), [])));
   });
 }
 
 describe("the values", () => {
   it("of a run are those of result.json, and the bars are as long as they say", () =>
-    withPage("run", {}, async (page) => {
+    withPage("run", async (page) => {
       const { machine, structure } = readJson(join(reports.run.directory, "result.json"));
       const all = Object.values(machine.time_ps).reduce((sum, ps) => sum + ps, 0);
       const cycles = await rowsOf(page, "run_cycles");
@@ -158,14 +161,14 @@ describe("the values", () => {
     }));
 
   it("of a sweep are those of its store", () =>
-    withPage("sweep", {}, async (page) => {
+    withPage("sweep", async (page) => {
       const expected = points.map(({ ordinal, cost, end }) => ({ ordinal, price: cost, ms: end * 1e-9 }));
       assertRows(await rowsOf(page, "price"), expected, "price", 1e-5);
       assertLine(await rowsOf(page, "speed_up"), await machineOf(page));
     }));
 
   it("of a study are those of its tables", () =>
-    withPage("study", {}, async (page) => {
+    withPage("study", async (page) => {
       const names = await chartNames(page);
       assert.ok(names.length >= 4);
       for (const name of names) {
@@ -207,7 +210,7 @@ describe("the explorer", () => {
   const reading = (page) => page.textContent("#reading");
 
   it("shows another line of the store when a slider is moved by keyboard", () =>
-    withPage("sweep", {}, async (page) => {
+    withPage("sweep", async (page) => {
       const before = await machineOf(page);
       for (const keys of [["Home"], ["ArrowRight"], ["ArrowRight", "ArrowRight"], ["ArrowLeft"]]) {
         await press(page, "cache.size", keys);
@@ -219,7 +222,7 @@ describe("the explorer", () => {
     }));
 
   it("reads the curve where its slider stands, and says where it extrapolates", () =>
-    withPage("sweep", {}, async (page) => {
+    withPage("sweep", async (page) => {
       await press(page, "machine.nodes", ["Home"]);
       assert.match(await reading(page), /^machine.nodes = 1: exact, point \d+: /);
       await press(page, "machine.nodes", ["ArrowRight", "ArrowRight"]);
@@ -232,10 +235,10 @@ describe("the explorer", () => {
     }));
 
   it("goes along another axis", () =>
-    withPage("sweep", {}, async (page) => {
+    withPage("sweep", async (page) => {
       await page.locator("#along").selectOption({ label: "cache.size" });
       await page.waitForFunction(() => document.getElementById("title-speed_up").textContent.includes("cache.size"));
-      await press(page, "machine.nodes", ["End"]);
+      await press(page, "machine.nodes", ["Home"]);
       const exact = (await rowsOf(page, "speed_up")).filter(({ kind }) => kind === "exact");
       assert.ok(exact.length > 1);
       for (const { x, speed_up } of exact) {
@@ -247,7 +250,8 @@ describe("the explorer", () => {
     }));
 
   it("can be reached and worked without a mouse", () =>
-    withPage("sweep", {}, async (page) => {
+    withPage("sweep", async (page) => {
+      await page.locator(".skip").focus();
       const reached = new Set();
       for (let i = 0; i < 40; ++i) {
         await page.keyboard.press("Tab");

@@ -1,16 +1,15 @@
 // Results to look at, made by the program itself: a run, a sweep and a study, each small, and their reports.
-import { execFileSync } from "node:child_process";
+import { execFile } from "node:child_process";
 import { readFileSync, rmSync, mkdirSync } from "node:fs";
 import { join } from "node:path";
+import { promisify } from "node:util";
 
 const program = process.env.MARTI_PROGRAM;
 const configs = join(process.env.MARTI_SOURCE, "configs");
 // The page shows paths: this one has a word that is wider than a phone.
 const work = join(process.env.MARTI_WORK, "results-of-a-directory-with-a-very-long-name-without-a-space");
 
-export function marti(...args) {
-  return execFileSync(program, args, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
-}
+const marti = (...args) => promisify(execFile)(program, args);
 
 const set = (settings) => settings.flatMap((setting) => ["--set", setting]);
 
@@ -25,18 +24,17 @@ const commands = {
 };
 
 /** Maps "run", "sweep" and "study" to the directory of the results, the page and the directory of the plots. */
-export function makeReports() {
+export async function makeReports() {
   rmSync(work, { recursive: true, force: true });
   mkdirSync(work, { recursive: true });
-  const reports = {};
-  for (const [kind, command] of Object.entries(commands)) {
+  const made = Object.entries(commands).map(async ([kind, command]) => {
     const directory = join(work, kind);
     const plots = join(work, `${kind}-plots`);
-    marti(...command, "-o", directory);
-    marti("report", directory, "--plots", plots);
-    reports[kind] = { directory, page: join(directory, "report.html"), plots };
-  }
-  return reports;
+    await marti(...command, "-o", directory);
+    await marti("report", directory, "--plots", plots);
+    return [kind, { directory, page: join(directory, "report.html"), plots }];
+  });
+  return Object.fromEntries(await Promise.all(made));
 }
 
 /** A CSV text (RFC 4180) as objects by column; numbers are numbers, nothing and an empty text are null. */

@@ -50,8 +50,8 @@ TEST_F(PlanCommand, SaysWhatIsLeftOutAndWhatIsKept) {
   EXPECT_EQ(planned["plan"]["structures"]["decision"], "left out");
   EXPECT_EQ(planned["plan"]["structures"]["class"], "proved");
   EXPECT_EQ(planned["plan"]["structures"]["counted"], planned["plan"]["structures"]["estimated"]);
-  EXPECT_EQ(planned["plan"]["rebuild"]["decision"], "no matter");
-  EXPECT_TRUE(planned["plan"]["rebuild"]["counted"].is_null());
+  EXPECT_EQ(planned["plan"]["textures"]["decision"], "not applicable");
+  EXPECT_TRUE(planned["plan"]["textures"]["counted"].is_null());
   const nlohmann::json one = json(scene + "--keep structures");
   EXPECT_EQ(one["plan"]["structures"]["decision"], "kept");
   EXPECT_EQ(one["plan"]["structures"]["estimated"]["operations"], 0);

@@ -61,18 +61,12 @@ marti.explorer = (() => {
     reading.classList.toggle("extrapolated", beyond);
   }
 
-  function exploreRows() {
-    const rows = marti.rows.explore(explorer, state.axis, state.place);
-    rows.push({ kind: "cursor", x: samples()[state.x] });
-    return rows;
-  }
-
   function fill() {
     for (const chart of charts.values()) {
       if (!chart.live) continue;
-      if (chart.live.rows === "explorer") chart.spec.data.values = exploreRows();
-      if (chart.live.rows === "slice") chart.spec.data.values = marti.rows.slice(explorer, chart.live, state.place);
-      if (chart.live.rows === "all") chart.spec.data.values = marti.rows.all(explorer);
+      const rows = marti.rows.of(explorer, chart.live, state.axis, state.place);
+      if (chart.live.rows === "explorer") rows.push({ kind: "cursor", x: samples()[state.x] });
+      chart.spec.data.values = rows;
     }
   }
 
@@ -236,6 +230,10 @@ marti.explorer = (() => {
     });
   }
 
+  if (state.axis === null) {
+    fill();
+    return null;
+  }
   explorer.axes.forEach((_, a) => addControl(a));
   addAxisChoice();
   toSample();

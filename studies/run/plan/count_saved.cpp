@@ -9,7 +9,6 @@ namespace {
 // What a log touches.
 struct Touched {
   std::vector<std::uint64_t> shades;  // points by material; averaged materials beyond the scene's
-  std::vector<bool> nodes;
   std::uint64_t lookups = 0;
   std::uint64_t points = 0;
 };
@@ -17,18 +16,14 @@ struct Touched {
 Touched touched_by(const processors::WorkLog& log) {
   Touched touched;
   touched.shades.resize(log.materials);
-  touched.nodes.resize(log.topology.nodes.size());
   for (const processors::LogRow& row : log.rows) {
     for (std::size_t at = 0; at < row.words.size(); at += processors::step_words(&row.words[at])) {
       const processors::Step step = processors::step_of(row.words[at]);
       const std::uint32_t operand = processors::operand_of(row.words[at]);
-      if (processors::visits_node(step)) {
-        touched.nodes[operand] = true;
-        if (step == processors::Step::leaf) {
-          touched.lookups += log.topology.nodes[operand].count;
-        } else if (step == processors::Step::partial_leaf || step == processors::Step::mailed_leaf) {
-          touched.lookups += row.words[at + 1];
-        }
+      if (step == processors::Step::leaf) {
+        touched.lookups += log.topology.nodes[operand].count;
+      } else if (step == processors::Step::partial_leaf || step == processors::Step::mailed_leaf) {
+        touched.lookups += row.words[at + 1];
       } else if (step == processors::Step::shade) {
         ++touched.shades[operand];
         ++touched.points;
@@ -61,14 +56,6 @@ void count_saved(Plan& plan, const SceneNeeds& needs, const scenes::Scene& scene
   sim::ensure(needs.refraction_rays || traced_of(processors::RayKind::refraction) == 0,
               "the plan left out refracted rays, and one was sent");
   for (PlanEntry& entry : plan.entries) {
-    if (entry.item == PlanItem::deep_levels && entry.decision == PlanDecision::needed) {
-      std::uint64_t visited = 0;
-      for (const bool node : touched.nodes) {
-        visited += node ? 1U : 0U;
-      }
-      entry.fact +=
-          "; this frame visits " + std::to_string(visited) + " of " + std::to_string(touched.nodes.size());
-    }
     if (entry.decision != PlanDecision::left_out) {
       continue;
     }

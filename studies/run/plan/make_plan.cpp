@@ -35,7 +35,7 @@ PlanEntry entry_of(PlanItem item, PlanClass kind, const KeptItems& keep, Choice 
   PlanEntry entry;
   entry.item = item;
   entry.kind = kind;
-  entry.decision = !choice.exists   ? PlanDecision::no_matter
+  entry.decision = !choice.exists   ? PlanDecision::not_applicable
                    : choice.needed  ? PlanDecision::needed
                    : keep.has(item) ? PlanDecision::kept
                                     : PlanDecision::left_out;
@@ -152,22 +152,6 @@ PlanEntry unreachable(const PlanFacts& facts) {
                   "parts of the file", {integer(facts.file.unread_bytes), unused});
 }
 
-PlanEntry off_camera(const PlanFacts& facts) {
-  const SceneNeeds& needs = facts.needs;
-  const std::uint64_t beside = needs.primitives - needs.in_view;
-  Choice choice;
-  choice.exists = beside > 0;
-  choice.needed = beside > 0;
-  choice.fact = of(beside, needs.primitives, "primitives lie beside the view");
-  if (beside > 0) {
-    choice.fact += needs.secondary_rays() ? "; reflected or refracted rays may meet them"
-                   : needs.shadow_rays
-                       ? "; they may cast shadows into it"
-                       : "; no ray can meet them, but they are part of the simulated database";
-  }
-  return entry_of(PlanItem::off_camera, PlanClass::proved, facts.keep, std::move(choice), "primitives", {});
-}
-
 PlanEntry structures(const PlanFacts& facts) {
   const auto kinds = accel::structure_kinds();
   const auto others = std::count_if(kinds.begin(), kinds.end(), [&](std::string_view kind) {
@@ -209,9 +193,6 @@ Plan make_plan(const PlanFacts& facts, std::vector<PlanEntry> further) {
   plan.entries.push_back(coordinates(facts));
   plan.entries.push_back(normals(facts));
   plan.entries.push_back(unreachable(facts));
-  plan.entries.push_back(off_camera(facts));
-  plan.entries.push_back(entry_of(PlanItem::rebuild, PlanClass::proved, facts.keep,
-                                  {false, false, "one frame is rendered"}, "", {}));
   plan.entries.push_back(structures(facts));
   add_entries(plan, std::move(further));
   return plan;
@@ -219,15 +200,6 @@ Plan make_plan(const PlanFacts& facts, std::vector<PlanEntry> further) {
 
 void plan_structure(Plan& plan, const PlanFacts& facts, const accel::Structure& structure) {
   const accel::Topology& topology = structure.topology();
-  Choice levels;
-  levels.exists = structure.kind() == accel::Octree::kind_name;
-  levels.needed = true;
-  levels.fact = levels.exists ? "the work log names nodes of the whole tree, and a machine may ask for any"
-                              : "there is no octree";
-  std::vector<PlanEntry> entries;
-  entries.push_back(
-      entry_of(PlanItem::deep_levels, PlanClass::on_demand, facts.keep, std::move(levels), "nodes", {}));
-
   Choice mailboxes;
   mailboxes.exists = facts.render.mailboxes;
   if (!mailboxes.exists) {
@@ -248,9 +220,8 @@ void plan_structure(Plan& plan, const PlanFacts& facts, const accel::Structure& 
       mailboxes.fact += ", but this walk may come upon a leaf twice";
     }
   }
-  entries.push_back(entry_of(PlanItem::mailboxes, PlanClass::proved, facts.keep, std::move(mailboxes),
-                             "look-ups", {integer(structure.triangles().size()) * mailbox_bytes, 0}));
-  add_entries(plan, std::move(entries));
+  add_entries(plan, {entry_of(PlanItem::mailboxes, PlanClass::proved, facts.keep, std::move(mailboxes),
+                              "look-ups", {integer(structure.triangles().size()) * mailbox_bytes, 0})});
 }
 
 bool is_left_out(const Plan& plan, PlanItem item) {

@@ -47,7 +47,6 @@ class Finder {
       listed[material] = true;
       if (everything_ || view.may_meet(scene_, id)) {
         in_view_[id] = true;
-        ++needs_.in_view;
         seen[material] = true;
       }
     }

@@ -16,7 +16,6 @@ namespace marti::studies {
 /// `primitives` and `lights` count all there are, needed or not.
 struct SceneNeeds {
   std::uint64_t primitives = 0;
-  std::uint64_t in_view = 0;    ///< that a camera ray may meet
   std::vector<bool> materials;  ///< that may be shaded, by index
   std::vector<bool> textures;   ///< whose texels may count in the image, by index
   std::uint64_t lights = 0;
@@ -38,8 +37,6 @@ struct SceneNeeds {
   /// Triangles that may be shaded with the normals of their vertices. They count even if these equal the
   /// triangle's own normal or are not given: interpolating them at a point rounds.
   std::uint64_t smooth = 0;
-
-  [[nodiscard]] bool secondary_rays() const { return reflection_rays || refraction_rays; }
 };
 
 /// With the voxel cut everything is needed: its averages are made of all materials and normals.

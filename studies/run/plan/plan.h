@@ -24,20 +24,17 @@ enum class PlanItem : std::uint8_t {
   texture_coordinates,
   normals,
   unreachable,
-  off_camera,
-  rebuild,
   structures,
-  deep_levels,
   mailboxes,
   contention,
   cache,
 };
-inline constexpr std::size_t plan_items = 14;
+inline constexpr std::size_t plan_items = 11;
 /// As --keep and reports name them.
 inline constexpr std::array<std::string_view, plan_items> plan_item_names = {
-    "shadow-rays", "reflection-rays", "refraction-rays", "textures", "texture-coordinates",
-    "normals",     "unreachable",     "off-camera",      "rebuild",  "structures",
-    "deep-levels", "mailboxes",       "contention",      "cache"};
+    "shadow-rays", "reflection-rays", "refraction-rays", "textures",  "texture-coordinates",
+    "normals",     "unreachable",     "structures",      "mailboxes", "contention",
+    "cache"};
 
 /// How it is known that an item is not needed.
 enum class PlanClass : std::uint8_t {
@@ -49,13 +46,13 @@ inline constexpr std::array<std::string_view, 2> plan_class_names = {"proved", "
 
 enum class PlanDecision : std::uint8_t {
   left_out,
-  needed,    ///< could not be left out
-  kept,      ///< could be left out, but the user wants it kept
-  no_matter  ///< does not occur in this scene or machine
+  needed,         ///< could not be left out
+  kept,           ///< could be left out, but the user wants it kept
+  not_applicable  ///< does not occur in this scene or machine
 };
 
 inline constexpr std::array<std::string_view, 4> plan_decision_names = {"left out", "needed", "kept",
-                                                                        "no matter"};
+                                                                        "not applicable"};
 
 /// What an item costs.
 struct PlanCost {

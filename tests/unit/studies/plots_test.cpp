@@ -1,5 +1,5 @@
 // The charts of a report as files, drawn by node and rsvg-convert; programs that fail in every possible way.
-#include "studies/report/plots.h"
+#include "studies/report/plots/plots.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 
 #include "sim/error.h"
 #include "sim/files.h"
-#include "studies/report/child_process.h"
-#include "studies/report/vega_bundle.h"
+#include "studies/report/plots/child_process.h"
+#include "studies/report/plots/vega_bundle.h"
 
 namespace marti::studies {
 namespace {
@@ -88,8 +88,13 @@ ReportChart chart(const std::string& name) {
                {"encoding",
                 {{"x", {{"field", "nodes"}, {"type", "quantitative"}}},
                  {"y", {{"field", "speedup"}, {"type", "quantitative"}}}}}};
-  made.csv = "nodes,speedup\r\n1,1\r\n64,48.5\r\n";
   return made;
+}
+
+ReportData report_of(const std::vector<ReportChart>& charts) {
+  ReportData report;
+  report.charts = charts;
+  return report;
 }
 
 class Plots : public testing::Test {
@@ -105,7 +110,7 @@ class Plots : public testing::Test {
   void TearDown() override { fs::remove_all(directory_); }
 
   [[nodiscard]] std::string drawing(const std::vector<ReportChart>& charts) const {
-    return refusal([&] { static_cast<void>(draw_plots(charts, directory_, /*pdf=*/false)); });
+    return refusal([&] { static_cast<void>(draw_plots(report_of(charts), directory_, /*pdf=*/false)); });
   }
 
   fs::path directory_;
@@ -113,7 +118,7 @@ class Plots : public testing::Test {
 
 TEST_F(Plots, AreDrawnWithTheirData) {
   const std::vector<Plot> plots =
-      draw_plots(std::vector{chart("speedup"), chart("other")}, directory_, /*pdf=*/true);
+      draw_plots(report_of({chart("speedup"), chart("other")}), directory_, /*pdf=*/true);
   std::vector<std::string> files;
   for (const Plot& plot : plots) {
     files.push_back(plot.file);
@@ -122,14 +127,33 @@ TEST_F(Plots, AreDrawnWithTheirData) {
                                           "other.csv", "other.pdf"));
   EXPECT_THAT(plots[0].content, testing::StartsWith("<svg "));
   EXPECT_THAT(plots[0].content, HasSubstr("nodes: 64; speedup: 48.5"));  // the mark's accessible name
-  EXPECT_EQ(plots[1].content, chart("").csv);
+  EXPECT_EQ(plots[1].content, "nodes,speedup\r\n1,1.0\r\n64,48.5\r\n");
   EXPECT_THAT(plots[2].content, testing::StartsWith("%PDF-"));
   EXPECT_FALSE(fs::exists(directory_));
 }
 
+// Of points on one axis those of the line through the point that the explorer starts at.
+TEST_F(Plots, HaveTheRowsOfTheExplorer) {
+  ReportChart prices = chart("prices");
+  prices.spec["data"]["values"] = nlohmann::ordered_json::array();
+  prices.live = {{"rows", "all"}};
+  ReportChart slice = prices;
+  slice.name = "slice";
+  slice.live = {{"rows", "slice"}, {"axis", 0}, {"fields", {"end"}}};
+  ReportData report = report_of({prices, slice});
+  report.explorer = nlohmann::ordered_json::parse(
+      R"({"axis": 0, "start": 2, "axes": [{"texts": ["1 KiB", "2 KiB"]}, {"texts": ["bus", "ideal"]}],
+          "place": [[0, 1, 0, 1], [0, 0, 1, 1]], "ordinal": [0, 1, 2, 4], "front": [3], "models": {},
+          "columns": {"end": [1.5, 2, null, 4], "price": [1, 2, 3, 4]}})");
+  const std::vector<Plot> plots = draw_plots(report, directory_, /*pdf=*/false);
+  ASSERT_EQ(plots.size(), 4U);
+  EXPECT_EQ(plots[1].content, "ordinal,price,ms,front\r\n0,1,1.5,0\r\n1,2,2,0\r\n2,3,,0\r\n4,4,4,1\r\n");
+  EXPECT_EQ(plots[3].content, "value,end\r\n1 KiB,\r\n2 KiB,4\r\n");
+}
+
 TEST_F(Plots, AreTheSameBytesAgain) {
-  const std::vector<Plot> plots = draw_plots(std::vector{chart("speedup")}, directory_, /*pdf=*/true);
-  const std::vector<Plot> again = draw_plots(std::vector{chart("speedup")}, directory_, /*pdf=*/true);
+  const std::vector<Plot> plots = draw_plots(report_of({chart("speedup")}), directory_, /*pdf=*/true);
+  const std::vector<Plot> again = draw_plots(report_of({chart("speedup")}), directory_, /*pdf=*/true);
   ASSERT_EQ(plots.size(), again.size());
   for (std::size_t i = 0; i < plots.size(); ++i) {
     EXPECT_EQ(plots[i].content, again[i].content) << plots[i].file;

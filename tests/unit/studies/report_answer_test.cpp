@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/figures/scaling.h"
-#include "studies/report/answer_text.h"
-#include "studies/report/run_answer.h"
-#include "studies/report/sweep_answer.h"
+#include "studies/report/model/answer_text.h"
+#include "studies/report/model/run_answer.h"
+#include "studies/report/model/sweep_answer.h"
 #include "tests/support/user_error.h"
 
 namespace marti::studies {

@@ -4,16 +4,21 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "sim/base64.h"
 #include "sim/error.h"
-#include "studies/report/axis_order.h"
-#include "studies/report/chart_library.h"
-#include "studies/report/cycle_groups.h"
-#include "studies/report/html_text.h"
-#include "studies/report/report_files.h"
-#include "studies/report/report_page.h"
-#include "studies/report/rows_csv.h"
-#include "studies/report/run_charts.h"
-#include "studies/report/sweep_answer.h"
+#include "sim/sha256.h"
+#include "studies/report/model/chart_library.h"
+#include "studies/report/model/cycle_groups.h"
+#include "studies/report/model/run_charts.h"
+#include "studies/report/model/sweep_answer.h"
+#include "studies/report/page/html_text.h"
+#include "studies/report/page/page_files.h"
+#include "studies/report/page/report_page.h"
+#include "studies/report/read/axis_order.h"
+#include "studies/report/read/report_files.h"
+#include "studies/tables/chart.h"
+#include "studies/tables/csv.h"
+#include "studies/tables/result_directory.h"
 #include "studies/tables/run_json.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
@@ -63,14 +68,18 @@ TEST(ReportPage, EscapesWhatAResultSays) {
 }
 
 TEST(ReportPage, AllowsItsOwnScriptsOnly) {
-  const Script script{"x", "1", "abc"};
+  const Script script{"abc", "ungWv48Bz+pBQUDeXa4iI7ADYaOWF3qctBD/YfIAFa0="};
   const std::string page = report_page({}, {&script, 1});
-  // printf abc | openssl dgst -sha256 -binary | base64
   EXPECT_NE(page.find("script-src 'sha256-ungWv48Bz+pBQUDeXa4iI7ADYaOWF3qctBD/YfIAFa0='"), std::string::npos);
   EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
   EXPECT_EQ(page.find("unsafe"), std::string::npos);
-  const Script bad{"x", "1", "'</script>'"};
-  EXPECT_THROW((void)report_page({}, {&bad, 1}), sim::InternalError);
+  // The page's own have the hashes of their texts.
+  const auto digest = sim::sha256(report_page_css().text);
+  EXPECT_EQ(report_page_css().sha256, sim::base64(std::string(digest.begin(), digest.end())));
+  for (const Script& each : vega_scripts()) {
+    const auto hash = sim::sha256(each.text);
+    EXPECT_EQ(each.sha256, sim::base64(std::string(hash.begin(), hash.end())));
+  }
 }
 
 TEST(OrderAxes, JoinsKeysThatChangeTogether) {
@@ -120,9 +129,9 @@ TEST(CycleGroups, AddUpToAllActivities) {
   EXPECT_DOUBLE_EQ(sum, all);
 }
 
-TEST(RowsCsv, QuotesWhatItHasTo) {
-  const Json rows = Json::parse(R"([{"a": 1, "b": "x,\"y\""}, {"a": null, "c": ""}])");
-  EXPECT_EQ(csv_of_rows(rows), "a,b,c\r\n1,\"x,\"\"y\"\"\",\r\n,,\"\"\r\n");
+TEST(CsvOfRows, QuotesWhatItHasTo) {
+  const Json rows = Json::parse(R"([{"a": 1, "b": "x,\"y\""}, {"a": null, "c": "", "d": 0.0001}])");
+  EXPECT_EQ(csv_of_rows(rows), "a,b,c,d\r\n1,\"x,\"\"y\"\"\",,\r\n,,\"\",1e-04\r\n");
 }
 
 TEST(ReportCharts, AllSpecificationsAreWhole) {
@@ -138,102 +147,37 @@ TEST(ReportCharts, AllSpecificationsAreWhole) {
   EXPECT_THROW((void)make_chart("none", table), sim::InternalError);
 }
 
-TEST(ReadChart, TakesRowsThatStandInTheFile) {
+TEST(ReadChartRows, TakesRowsOfNumbersAndTextsOnly) {
   const TemporaryDirectory directory;
-  const fs::path file = directory.path() / "some.thing.vl.json";
-  const std::string begin =
-      R"({"$schema": "https://vega.github.io/schema/vega-lite/v6.json", "title": "T", )";
-  write(file, begin + R"("data": {"values": [{"a": 1}]}, "mark": "bar"})");
-  const ReportChart chart = read_chart(file);
-  EXPECT_EQ(chart.name, "some_thing");
-  EXPECT_EQ(chart.title, "T");
-  EXPECT_EQ(chart.csv, "a\r\n1\r\n");
-  for (const char* rest :
-       {R"("mark": "bar"})", R"("data": {"url": "http://x"}})", R"("data": {"values": [1]}})", R"("data": {)",
-        R"("data": {"values": []}, "layer": [{"data": {"url": "x"}}]})",
-        R"("data": {"values": [], "url": "x"}})", R"("data": {"values": [], "format": {"type": "csv"}}})",
-        R"("data": {"values": []}, "layer": [{"data": {"sequence": {"start": 0, "stop": 1e9}}}]})",
-        R"("data": {"values": []}, "layer": [{"data": {"graticule": true}}]})",
-        R"("data": {"values": []}, "layer": [{"data": {"sphere": true}}]})",
-        R"("data": {"values": []}, "layer": [{"data": "x"}]})",
-        R"("data": {"values": []}, "encoding": {"href": {"field": "a"}}})"}) {
-    write(file, begin + rest);
-    const std::string error = user_error_of([&] { (void)read_chart(file); });
-    EXPECT_NE(error.find("some.thing.vl.json"), std::string::npos) << rest << error;
+  const fs::path file = directory.path() / "a.vl.json";
+  write(file, R"({"data": {"url": "x", "values": [{"url": 1, "data": "2"}]}, "params": []})");
+  EXPECT_EQ(read_chart_rows(file), Json::parse(R"([{"url": 1, "data": "2"}])"));
+  for (const std::string& text :
+       {std::string(R"({"data": {)"), std::string("[]"), std::string(R"({"data": []})"),
+        std::string(R"({"data": {"url": "http://x"}})"), std::string(R"({"data": {"values": {}}})"),
+        std::string(R"({"data": {"values": [1]}})"), std::string(R"({"data": {"values": [{"a": {}}]}})"),
+        R"({"data": {"values": [{"a": )" + std::string(10'000, '[') + std::string(10'000, ']') + "}]}}"}) {
+    write(file, text);
+    const std::string error = user_error_of([&] { (void)read_chart_rows(file); });
+    EXPECT_NE(error.find("a.vl.json: has "), std::string::npos) << text << error;
   }
 }
 
-TEST(ReadChart, LetsRowsHaveAnyColumns) {
-  const TemporaryDirectory directory;
-  const fs::path file = directory.path() / "a.vl.json";
-  write(file,
-        R"({"$schema": "vega-lite", "data": {"name": "a", "values": [{"url": 1, "data": 2}]},
-            "layer": [{"data": {"values": [{"href": 3, "bind": 4}]}}, {"data": null}, {"data": {"name": "a"}}]})");
-  EXPECT_EQ(read_chart(file).csv, "url,data\r\n1,2\r\n");
-  write(file, R"({"$schema": "vega-lite", "data": {"values": [{"a": )" + std::string(10'000, '[') +
-                  std::string(10'000, ']') + "}]}}");
-  EXPECT_NE(user_error_of([&] { (void)read_chart(file); }).find("no objects of numbers and texts"),
-            std::string::npos);
+TEST(LiveChart, HasOtherWordsAndNoRows) {
+  const ReportChart chart = live_chart("over_axis", "n", "T", {{"rows", "explorer"}},
+                                       {{"FIGURE", "ms"}, {"TITLE", "frame time, ms"}});
+  EXPECT_EQ(chart.spec["encoding"]["y"]["title"], "frame time, ms");
+  EXPECT_EQ(chart.spec.dump().find("FIGURE"), std::string::npos);
+  EXPECT_TRUE(chart.spec["data"]["values"].empty());
 }
 
-TEST(ReadChart, TakesEveryChartOfAStudy) {
-  const TemporaryDirectory directory;
-  const fs::path file = directory.path() / "a.vl.json";
-  Table table("t", "A title", {{"x", ColumnType::integer, "1", ""}});
-  table.add_row({std::int64_t{1}});
-  for (const ChartSpecification& chart : chart_specifications()) {
-    write(file, fill_chart(chart, table));
-    EXPECT_EQ(user_error_of([&] { (void)read_chart(file); }), "no UserError") << chart.name;
-  }
-}
-
-TEST(ReadChart, RefusesWhatNoChartOfAStudyHas) {
-  const TemporaryDirectory directory;
-  const fs::path file = directory.path() / "a.vl.json";
-  const std::string begin = R"({"$schema": "vega-lite", "data": {"values": [{"a": 1}]}, )";
-  std::string fold = R"("transform": [{"fold": ["a")";
-  for (int i = 0; i < 2000; ++i) {
-    fold += R"(, "a")";
-  }
-  const std::pair<std::string, std::string> cases[] = {
-      {R"x("params": [{"name": "p", "value": 0, "bind": {"element": "body"}}], "mark": "bar")x",
-       "\"params\""},
-      {R"x("layer": [{"mark": "bar"}, {"mark": "bar", "params": [{"bind": {"element": "main"}}]}])x",
-       "\"layer[1].params\""},
-      {R"x("selection": {"s": {"type": "single", "bind": {"element": "#data"}}}, "mark": "bar")x",
-       "\"selection\""},
-      {R"x("config": {"signals": [{"name": "s", "bind": {"element": "body"}}]}, "mark": "bar")x",
-       "\"config\""},
-      {R"x("usermeta": {"embedOptions": {}}, "mark": "bar")x", "\"usermeta\""},
-      {R"x("datasets": {"d": []}, "mark": "bar")x", "\"datasets\""},
-      {R"x("mark": {"type": "image", "url": "x"})x", "\"mark.type\""},
-      {R"x("mark": {"type": "bar", "url": "x"})x", "\"mark.url\""},
-      {R"x("mark": "image")x", "a mark in \"mark\""},
-      {R"x("mark": {"type": "bar", "width": {"expr": "1"}})x", "\"mark.width\""},
-      {R"x("mark": "bar", "encoding": {"x": {"field": {"repeat": "r"}}})x", "\"encoding.x.field.repeat\""},
-      {R"x("mark": "bar", "encoding": {"tooltip": [{"field": "a"}, {"bin": {"maxbins": 1e9}}]})x",
-       "\"encoding.tooltip[1].bin\""},
-      {R"x("mark": "bar", "encoding": {"x": {"scale": {"type": "log", "base": 1.0000001}}})x",
-       "a base in \"encoding.x.scale.base\""},
-      {R"x("mark": "bar", "encoding": {"x": {"axis": {"format": "099999999d"}}})x",
-       "a format in \"encoding.x.axis.format\""},
-      {R"x("transform": [{"calculate": "sequence(0, 1e9)", "as": "b"}], "mark": "bar")x",
-       "calls sequence in"},
-      {R"x("transform": [{"filter": "max(1, pad ('', 1e9))"}], "mark": "bar")x", "calls pad in"},
-      {R"x("transform": [{"filter": "'\\'' + sequence(1)"}], "mark": "bar")x", "calls sequence in"},
-      {R"x("transform": [{"filter": "this['sequence'](1)"}], "mark": "bar")x",
-       "what another expression gives"},
-      {R"x("transform": [{"filter": "/'/ + sequence(0, 1e9) + /'/"}], "mark": "bar")x", "calls something by"},
-      {R"x("transform": [{"filter": "re\\u{67}exp('(a+)+')"}], "mark": "bar")x", "calls something by"},
-      {R"x("transform": [{"lookup": "a", "from": {}}], "mark": "bar")x", "\"transform[0].lookup\""},
-      {fold + R"(]}], "mark": "bar")", "more parts"},
-  };
-  for (const auto& [rest, complaint] : cases) {
-    write(file, begin + rest + "}");
-    const std::string error = user_error_of([&] { (void)read_chart(file); });
-    EXPECT_TRUE(error.starts_with(file.string() + ": ")) << rest << error;
-    EXPECT_NE(error.find(complaint), std::string::npos) << rest << "\n" << error;
-  }
+TEST(ChartOfResults, IsDrawnAsItIsBuiltIn) {
+  const ChartSpecification& built_in = chart_named(chart_specifications(), "working_set");
+  const ReportChart chart = chart_of_results(built_in, Json::parse(R"([{"a": 1}])"));
+  EXPECT_EQ(chart.name, "working_set");
+  EXPECT_EQ(chart.title, Json::parse(built_in.json)["title"]);
+  EXPECT_EQ(chart.spec["mark"], Json::parse(built_in.json)["mark"]);
+  EXPECT_EQ(chart.spec["data"]["values"][0]["a"], 1);
 }
 
 std::string png_of(std::string_view size) {

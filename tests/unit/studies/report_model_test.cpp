@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "processors/theory/closed_network.h"
-#include "studies/report/line_model.h"
-#include "studies/report/sweep_model.h"
+#include "studies/report/model/line_model.h"
+#include "studies/report/model/sweep_model.h"
 
 namespace marti::studies {
 namespace {

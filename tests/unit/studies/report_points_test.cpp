@@ -1,7 +1,7 @@
 // Points of a store that may have been changed by hand.
 #include <gtest/gtest.h>
 
-#include "studies/report/sweep_points.h"
+#include "studies/report/read/read_points.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "studies/tables/sqlite_connection.h"
 #include "tests/support/temporary_directory.h"

@@ -16,7 +16,7 @@
 
 #include "sim/files.h"
 #include "studies/compare/compare_sweeps.h"
-#include "studies/report/report_kinds.h"
+#include "studies/report/read/read_report.h"
 #include "studies/sweep/store/points_table.h"
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/sweep/store/sweep_store.h"

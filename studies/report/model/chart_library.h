@@ -1,0 +1,41 @@
+// The charts of reports: specifications (studies/report/charts/*.vl.json, built into the program) with the
+// rows of a table.
+#pragma once
+
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "studies/report/model/report_data.h"
+#include "studies/tables/chart.h"
+#include "studies/tables/table.h"
+
+namespace marti::studies {
+
+/// All specifications, in alphabetical order.
+[[nodiscard]] std::span<const ChartSpecification> report_chart_specifications();
+
+/// The chart of that specification with the rows of `table`. Its name and title are the table's. Throws
+/// InternalError when there is no such specification.
+[[nodiscard]] ReportChart make_chart(std::string_view specification, const Table& table,
+                                     const std::string& note = {});
+
+/// Words of a specification, and what stands in their place.
+using ChartWords = std::initializer_list<std::pair<std::string_view, std::string_view>>;
+
+/// A chart whose rows the explorer makes by `live` (ReportChart::live).
+[[nodiscard]] ReportChart live_chart(std::string_view specification, const std::string& name,
+                                     const std::string& title, const nlohmann::ordered_json& live,
+                                     ChartWords words = {});
+
+/// A chart that a run or a study has written beside its results, with these rows.
+[[nodiscard]] ReportChart chart_of_results(const ChartSpecification& specification,
+                                           const nlohmann::ordered_json& rows);
+
+/// A name as charts, files and elements of the page have it: every other character than lower-case letters
+/// and digits becomes '_'.
+[[nodiscard]] std::string plain_name(std::string name);
+
+}  // namespace marti::studies

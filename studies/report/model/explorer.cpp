@@ -1,0 +1,196 @@
+#include "studies/report/model/explorer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "studies/report/model/cycle_groups.h"
+#include "studies/report/model/rounded.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double ms_a_ps = 1e-9;
+constexpr double us_a_ps = 1e-6;
+
+Json error_json(const ModelError* errors) {
+  Json json = Json::object();
+  for (const Zone zone : {Zone::between, Zone::beyond}) {
+    const ModelError& error = errors[static_cast<std::size_t>(zone)];
+    json[zone == Zone::between ? "between" : "beyond"] = {
+        {"points", error.points}, {"mean", error.mean}, {"p95", error.p95}, {"known", error.is_known()}};
+  }
+  return json;
+}
+
+Json model_json(const AxisModel& model) {
+  Json json = {{"note", error_note(&model)},
+               {"x", Json::array()},
+               {"error", error_json(model.end)},
+               {"speed_up_error", error_json(model.speed_up)},
+               {"curves", Json::object()}};
+  for (const double x : model.x) {
+    json["x"].push_back(x);
+  }
+  for (const auto& [key, curve] : model.curves) {
+    Json ms = Json::array();
+    Json base = Json::array();
+    Json bound = Json::array();
+    bool one_base = true;
+    double first_base = -1.0;
+    for (const std::optional<Modelled>& sample : curve.samples) {
+      ms.push_back(sample ? Json(rounded(sample->end * ms_a_ps, curve_digits)) : Json());
+      base.push_back(sample ? Json(rounded(sample->base_end * ms_a_ps, place_digits)) : Json());
+      bound.push_back(sample ? Json(rounded(sample->asymptote * ms_a_ps, curve_digits)) : Json());
+      if (sample) {
+        first_base = first_base < 0.0 ? sample->base_end : first_base;
+        one_base = one_base && std::abs(sample->base_end - first_base) <= 1e-9 * first_base;
+      }
+    }
+    Json each = {{"ms", ms}, {"bound", bound}};
+    each["base"] = one_base ? Json(rounded(std::max(first_base, 0.0) * ms_a_ps, place_digits)) : base;
+    if (curve.saturation) {
+      each["saturation"] = *curve.saturation;
+    }
+    json["curves"][key] = each;
+  }
+  return json;
+}
+
+/// A figure of every point that the page has.
+struct ExplorerField {
+  std::string name;  // as in ReportPoint::figures
+  std::string unit;  // as shown
+  std::string description;
+  double scale = 1.0;  // shown is the figure times this
+  bool exact = false;  // all its digits are shown
+};
+
+// The fields that at least one point has.
+std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
+  std::vector<ExplorerField> fields = {
+      {"end", "ms", "frame time", ms_a_ps, true},
+      {"speed_up", "1", "speed-up over the base machine", 1.0, true},
+      {"efficiency", "fraction", "speed-up by the number of nodes", 1.0, true},
+      {"times_faster", "1", "frame time of the machine of [sweep.compare] by this one's"},
+      {"price", "1", sweep.priced ? "cost by [prices]" : "number of nodes"},
+      {"hit_ratio", "fraction", "hits by all references"},
+      {"hit_ratio_node", "fraction", "of node records"},
+      {"hit_ratio_list", "fraction", "of lists"},
+      {"hit_ratio_primitive", "fraction", "of primitives"},
+      {"hit_ratio_material", "fraction", "of materials"},
+      {"interconnect_utilisation", "fraction",
+       "busy time of the busiest cluster's interconnect by the frame time"},
+      {"bank_utilisation", "fraction", "busy time of the busiest bank by the frame time"},
+      {"network_utilisation", "fraction", "busy time of the network's links by the frame time"},
+      {"mean_interconnect_wait", "us", "mean wait for the interconnect", us_a_ps},
+      {"interconnect_wait_p50", "us", "half of the waits for the interconnect are not longer", us_a_ps},
+      {"interconnect_wait_p95", "us", "95 % of the waits for the interconnect are not longer", us_a_ps},
+      {"interconnect_wait_p99", "us", "99 % of the waits for the interconnect are not longer", us_a_ps},
+      {"mean_bank_wait", "us", "mean wait for a bank", us_a_ps},
+      {"bank_wait_p50", "us", "half of the waits for a bank are not longer", us_a_ps},
+      {"bank_wait_p95", "us", "95 % of the waits for a bank are not longer", us_a_ps},
+      {"bank_wait_p99", "us", "99 % of the waits for a bank are not longer", us_a_ps}};
+  for (const std::string_view group : cycle_group_names) {
+    fields.push_back({"part_" + std::string(group), "fraction", "share of the nodes' time"});
+  }
+  std::erase_if(fields, [&](const ExplorerField& field) {
+    return std::none_of(sweep.points.begin(), sweep.points.end(),
+                        [&](const ReportPoint& point) { return point.has(field.name); });
+  });
+  return fields;
+}
+
+// The figure as it is shown, for each point; null where the point lacks it.
+Json column_of(const ExplorerField& field, const ReportPoints& sweep) {
+  Json column = Json::array();
+  for (const ReportPoint& point : sweep.points) {
+    const double value = point.figure(field.name) * field.scale;
+    column.push_back(!point.has(field.name) ? Json()
+                                            : Json(field.exact ? value : rounded(value, figure_digits)));
+  }
+  return column;
+}
+
+Json numbers_of(const ReportAxis& axis) {
+  Json numbers = Json::array();
+  for (std::size_t i = 0; axis.numeric && i < axis.values.size(); ++i) {
+    numbers.push_back(axis.number(i));
+  }
+  return numbers;
+}
+
+}  // namespace
+
+Json channel_of(const ReportAxis& axis) {
+  Json channel = {
+      {"title", axis.unit.empty() || axis.unit == "1" ? axis.name : axis.name + ", " + axis.unit}};
+  for (const std::string& follower : axis.followers) {
+    channel["title"] = channel["title"].get<std::string>() + ", with " + follower;
+  }
+  channel["scale"] = axis.logarithmic ? Json{{"type", "log"}, {"nice", false}}
+                                      : Json{{"type", "linear"}, {"zero", false}, {"nice", false}};
+  const Json values = numbers_of(axis);
+  // The labels are the sweep's own texts; JSON's quoting is that of Vega's expressions too.
+  Json texts = axis.texts;
+  channel["axis"] = {{"values", values},
+                     {"labelOverlap", true},
+                     {"grid", false},
+                     {"labelExpr", texts.dump(-1, ' ', true, Json::error_handler_t::replace) + "[indexof(" +
+                                       values.dump() + ", datum.value)]"}};
+  return channel;
+}
+
+Json explorer_json(const ReportPoints& sweep, std::span<const AxisModel> models, const Chosen& chosen,
+                   std::optional<std::size_t> axis) {
+  Json json = {{"axis", axis ? Json(*axis) : Json()},
+               {"start", chosen.knee},
+               {"fastest", chosen.fastest},
+               {"no_model", error_note(nullptr)}};
+  json["axes"] = Json::array();
+  json["place"] = Json::array();
+  for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
+    const ReportAxis& each = sweep.axes[i];
+    json["axes"].push_back({{"name", each.name},
+                            {"followers", each.followers},
+                            {"texts", each.texts},
+                            {"values", numbers_of(each)},
+                            {"numeric", each.numeric},
+                            {"integer", each.integer},
+                            {"logarithmic", each.logarithmic},
+                            {"unit", each.unit}});
+    if (each.numeric) {
+      json["axes"].back()["x"] = channel_of(each);
+    }
+    Json place = Json::array();
+    for (const ReportPoint& point : sweep.points) {
+      place.push_back(point.place[i]);
+    }
+    json["place"].push_back(std::move(place));
+  }
+  Json ordinals = Json::array();
+  for (const ReportPoint& point : sweep.points) {
+    ordinals.push_back(point.ordinal);
+  }
+  json["ordinal"] = std::move(ordinals);
+  json["front"] = chosen.front;
+  json["fields"] = Json::array();
+  json["columns"] = Json::object();
+  for (const ExplorerField& field : explorer_fields(sweep)) {
+    json["fields"].push_back(
+        {{"name", field.name}, {"unit", field.unit}, {"description", field.description}});
+    json["columns"][field.name] = column_of(field, sweep);
+  }
+  json["models"] = Json::object();
+  for (const AxisModel& model : models) {
+    json["models"][std::to_string(model.axis)] = model_json(model);
+  }
+  return json;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,24 @@
+// What the charts that follow the explorer are made of: the points' figures in columns, and the model's
+// curves.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <span>
+
+#include "studies/report/model/report_points.h"
+#include "studies/report/model/sweep_answer.h"
+#include "studies/report/model/sweep_model.h"
+
+namespace marti::studies {
+
+/// How an axis stands in a chart: the members of Vega-Lite's channel definition.
+[[nodiscard]] nlohmann::ordered_json channel_of(const ReportAxis& axis);
+
+/// See docs/report.md. `axis`: the one that the curve runs along at first; std::nullopt for a sweep without
+/// an axis of numbers.
+[[nodiscard]] nlohmann::ordered_json explorer_json(const ReportPoints& sweep,
+                                                   std::span<const AxisModel> models, const Chosen& chosen,
+                                                   std::optional<std::size_t> axis);
+
+}  // namespace marti::studies

@@ -1,0 +1,108 @@
+#include "studies/report/model/run_answer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "studies/report/model/answer_text.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr double longest = 0x1p62;     // of times, ps
+constexpr double most_nodes = 0x1p24;  // of a machine, and so of its clusters
+constexpr double most_figure = 1e12;   // of ratios: far beyond any
+
+std::string with_capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') {
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  }
+  return text;
+}
+
+// Where most of the lost speed-up went.
+std::string largest_loss(const RunJson& run) {
+  std::pair<std::string, double> largest = {"", 0.0};
+  const auto& lost = run.find("machine.speed_up_loss.lost_speed_up");
+  if (!lost.is_object()) {
+    return {};
+  }
+  double all = 0.0;
+  for (const auto& [name, ignored] : lost.items()) {
+    const std::optional<double> value =
+        run.optional_number("machine.speed_up_loss.lost_speed_up." + name, -most_figure, most_figure);
+    if (value) {
+      all += *value;
+      if (*value > largest.second) {
+        largest = {name, *value};
+      }
+    }
+  }
+  if (largest.first.empty() || all <= 0.0) {
+    return {};
+  }
+  return fmt::format("Of the ideal speed-up {:.2f} are lost, most of it ({:.2f}) to {}.", all, largest.second,
+                     words(largest.first));
+}
+
+std::string bound_sentence(const RunJson& run) {
+  const std::optional<double> least =
+      run.optional_number("machine.bounds.frame_time_at_least_ps", 0.0, longest);
+  const double end = run.required_number("machine.frame_time_ps", 1.0, longest);
+  if (!least) {
+    return {};
+  }
+  return fmt::format(
+      "This machine cannot do this work in less than {} ({}): better waiting and balance could gain {:.1f} % "
+      "at most.",
+      time_text(*least), words(run.text("machine.bounds.by")), 100.0 * std::max(0.0, 1.0 - *least / end));
+}
+
+std::string saturation_sentence(const RunJson& run) {
+  const std::optional<double> nodes =
+      run.optional_number("machine.bounds.prediction.saturation_nodes", 0.0, most_figure);
+  const std::optional<double> error =
+      run.optional_number("machine.bounds.prediction.mean_value_error", -most_figure, most_figure);
+  if (!nodes) {
+    return {};
+  }
+  std::string text = fmt::format("The busiest queue of a cluster is full from {:.1f} nodes on", *nodes);
+  if (error) {
+    text += fmt::format(" (by queueing theory, which is {:+.1f} % off for this frame)", 100.0 * *error);
+  }
+  return text + ".";
+}
+
+}  // namespace
+
+std::string machine_text(const RunJson& run) {
+  const double clusters = run.required_number("machine.clusters", 1.0, most_nodes);
+  const double nodes = run.required_number("machine.nodes", 1.0, most_nodes);
+  const std::string each = fmt::format("{:.0f} node{}", nodes, nodes == 1.0 ? "" : "s");
+  return clusters > 1.0 ? fmt::format("{:.0f} clusters of {}", clusters, each) : each;
+}
+
+std::vector<std::string> answer_of(const RunJson& run) {
+  std::vector<std::string> answer;
+  std::string first =
+      fmt::format("A frame takes {} on {}",
+                  time_text(run.required_number("machine.frame_time_ps", 1.0, longest)), machine_text(run));
+  if (const std::optional<double> speed_up = run.optional_number("machine.speed_up", 0.0, most_figure)) {
+    first += fmt::format(": {:.2f} times as fast as one node, an efficiency of {:.1f} %", *speed_up,
+                         100.0 * run.required_number("machine.efficiency", 0.0, most_figure));
+  }
+  answer.push_back(first + ".");
+  if (const std::string limit = run.text("machine.limit.sentence"); !limit.empty()) {
+    answer.push_back(with_capital("what limits it, and what to change: " + limit + "."));
+  }
+  for (const std::string& sentence : {largest_loss(run), bound_sentence(run), saturation_sentence(run)}) {
+    if (!sentence.empty()) {
+      answer.push_back(sentence);
+    }
+  }
+  return answer;
+}
+
+}  // namespace marti::studies

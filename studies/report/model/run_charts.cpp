@@ -1,0 +1,314 @@
+#include "studies/report/model/run_charts.h"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "sim/error.h"
+#include "sim/units.h"
+#include "studies/report/model/chart_library.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Adds counts of a file that somebody may have changed; if they overflow, add_run_charts() names the file.
+std::int64_t plus(std::int64_t a, std::int64_t b) {
+  std::int64_t sum = 0;
+  if (__builtin_add_overflow(a, b, &sum)) {
+    throw std::overflow_error("its counts do not fit in 64 bits; run `marti run` again");
+  }
+  return sum;
+}
+
+std::int64_t times(std::int64_t a, std::int64_t b) {
+  std::int64_t product = 0;
+  if (__builtin_mul_overflow(a, b, &product)) {
+    throw std::overflow_error("its counts do not fit in 64 bits; run `marti run` again");
+  }
+  return product;
+}
+
+void add(ReportData& report, const Table& table, const std::string& note = {}) {
+  if (!table.rows().empty()) {
+    report.charts.push_back(make_chart(table.name(), table, note));
+  }
+}
+
+Table cycles_table(const RunJson& run) {
+  Table table("run_cycles", "Where the nodes' time goes",
+              {{"activity", ColumnType::text, "", "see docs/model.md, Accounting"},
+               {"ps", ColumnType::integer, "ps", "time of all nodes"},
+               {"share", ColumnType::real, "fraction", "of all nodes' time"}});
+  const RunJson times(run.find("machine.time_ps"), run.file());
+  double all = 0.0;
+  if (!times.json().is_object()) {
+    return table;
+  }
+  for (const auto& [name, value] : times.json().items()) {
+    all += times.count(name);
+  }
+  for (const auto& [name, value] : times.json().items()) {
+    const std::int64_t ps = whole(times, name);
+    if (ps > 0) {
+      table.add_row({name, ps, static_cast<double>(ps) / all});
+    }
+  }
+  return table;
+}
+
+Table loss_table(const RunJson& run) {
+  Table table("run_loss", "Where the lost speed-up went",
+              {{"part", ColumnType::text, "", "see docs/model.md, Speed-up"},
+               {"lost", ColumnType::real, "1", "of the ideal speed-up; below 0: won"}});
+  const Json& parts = run.find("machine.speed_up_loss.lost_speed_up");
+  if (run.count("machine.nodes") * run.count("machine.clusters") > 1.0 && parts.is_object()) {
+    for (const auto& [name, value] : parts.items()) {
+      if (value.is_number()) {
+        table.add_row({name, value.get<double>()});
+      }
+    }
+  }
+  return table;
+}
+
+Table references_table(const RunJson& run) {
+  Table table("run_references", "References and hit ratio by kind of record",
+              {{"record", ColumnType::text, "", "kind of record"},
+               {"hits", ColumnType::integer, "1", "references that hit the first-level cache"},
+               {"misses", ColumnType::integer, "1", "references that missed"},
+               {"hit_ratio", ColumnType::real, "fraction", "hits by both"}});
+  const RunJson kinds(run.find("machine.references"), run.file());
+  if (!kinds.json().is_object()) {
+    return table;
+  }
+  for (const auto& [name, value] : kinds.json().items()) {
+    const std::int64_t hits = whole(kinds, name + ".hits");
+    const std::int64_t misses = whole(kinds, name + ".misses");
+    if (const std::int64_t all = plus(hits, misses); all > 0) {
+      table.add_row({name, hits, misses, static_cast<double>(hits) / static_cast<double>(all)});
+    }
+  }
+  return table;
+}
+
+// A size of the run's own configuration: "8 B".
+std::int64_t size_of(const RunJson& run, const std::string& key) {
+  const Json& keys = run.find("config.keys");
+  if (!keys.is_object() || !keys.contains(key)) {
+    return 0;
+  }
+  std::string text = RunJson(keys[key], run.file()).text("value");
+  std::erase(text, '"');
+  try {
+    return sim::parse_size(text);
+  } catch (const sim::UserError&) {
+    return 0;  // not what a run writes: the chart leaves it out
+  }
+}
+
+Table tree_table(const RunJson& run) {
+  Table table("run_tree", "The tree by level",
+              {{"level", ColumnType::integer, "1", "from 1, the root"},
+               {"branches", ColumnType::integer, "1", "branches"},
+               {"leaves", ColumnType::integer, "1", "leaves, empty ones included"},
+               {"empty_leaves", ColumnType::integer, "1", "leaves without objects"},
+               {"entries", ColumnType::integer, "1", "object references"}});
+  std::int64_t level = 0;
+  for (const RunJson& each : run.list("structure.levels")) {
+    table.add_row({++level, whole(each, "branches"), whole(each, "leaves"), whole(each, "empty_leaves"),
+                   whole(each, "entries")});
+  }
+  return table;
+}
+
+Table level_memory_table(const RunJson& run) {
+  Table table("run_level_memory", "Memory by level of the tree",
+              {{"level", ColumnType::integer, "1", "from 1, the root"},
+               {"node_bytes", ColumnType::integer, "byte", "node records"},
+               {"list_bytes", ColumnType::integer, "byte", "object lists"}});
+  const std::int64_t node = size_of(run, "layout.node");
+  const std::int64_t entry = size_of(run, "layout.entry");
+  std::int64_t level = 0;
+  for (const RunJson& each : run.list("structure.levels")) {
+    table.add_row({++level, times(node, plus(whole(each, "branches"), whole(each, "leaves"))),
+                   times(entry, whole(each, "entries"))});
+  }
+  return table;
+}
+
+// Records by their sizes; what alignment adds is the rest.
+Table memory_table(const RunJson& run) {
+  Table table("run_memory", "Memory by kind of record",
+              {{"record", ColumnType::text, "", "kind of record"},
+               {"records", ColumnType::integer, "1", "how many"},
+               {"bytes", ColumnType::integer, "byte", "records by their size, without alignment"}});
+  const std::int64_t quadrics =
+      plus(plus(whole(run, "scene.spheres"), whole(run, "scene.cylinders")), whole(run, "scene.cones"));
+  const std::tuple<const char*, const char*, std::int64_t> kinds[] = {
+      {"nodes", "layout.node", whole(run, "structure.nodes")},
+      {"list entries", "layout.entry", whole(run, "structure.entries")},
+      {"triangles", "layout.primitive", whole(run, "scene.triangles")},
+      {"spheres, cylinders, cones", "layout.quadric", quadrics},
+      {"materials", "layout.material", whole(run, "scene.materials")}};
+  for (const auto& [name, key, count] : kinds) {
+    if (count > 0 && size_of(run, key) > 0) {
+      table.add_row({std::string(name), count, times(count, size_of(run, key))});
+    }
+  }
+  return table;
+}
+
+Table visits_table(const RunJson& run) {
+  Table table("run_visits", "Visits by level of the tree",
+              {{"level", ColumnType::integer, "1", "from 1, the root"},
+               {"visits", ColumnType::integer, "1", "visits of rays to nodes of this level"}});
+  std::int64_t level = 0;
+  for (const RunJson& each : run.list("machine.build.levels")) {
+    table.add_row({++level, whole(each, "visits")});
+  }
+  return table;
+}
+
+struct LevelReferences {
+  std::int64_t references = 0;
+  std::int64_t misses = 0;
+};
+
+void add_levels(const RunJson& run, ReportData& report) {
+  std::map<std::pair<std::int64_t, std::string>, LevelReferences> levels;
+  for (const RunJson& each : run.list("machine.counts.attribution")) {
+    if (const std::int64_t level = whole(each, "level"); level > 0) {
+      LevelReferences& sum = levels[{level, each.text("record")}];
+      sum.references = plus(sum.references, whole(each, "references"));
+      sum.misses = plus(sum.misses, whole(each, "misses"));
+    }
+  }
+  Table accesses("run_level_accesses", "Accesses by level of the tree",
+                 {{"level", ColumnType::integer, "1", "from 1, the root"},
+                  {"record", ColumnType::text, "", "kind of record"},
+                  {"references", ColumnType::integer, "1", "references of the first level of caches"},
+                  {"misses", ColumnType::integer, "1", "of these, misses"}});
+  Table ratios("run_level_hit_ratio", "Hit ratio by level of the tree",
+               {{"level", ColumnType::integer, "1", "from 1, the root"},
+                {"record", ColumnType::text, "", "kind of record"},
+                {"hit_ratio", ColumnType::real, "fraction", "hits by references"}});
+  for (const auto& [place, sum] : levels) {
+    accesses.add_row({place.first, place.second, sum.references, sum.misses});
+    if (sum.references > 0) {
+      ratios.add_row({place.first, place.second,
+                      1.0 - static_cast<double>(sum.misses) / static_cast<double>(sum.references)});
+    }
+  }
+  add(report, accesses);
+  add(report, ratios, "Of the references to this level's records and lists.");
+}
+
+using Histogram = std::map<std::int64_t, std::int64_t>;  // highest of a bucket, count
+
+void add_histogram(const RunJson& waits, Histogram& histogram) {
+  const Json& buckets = waits.find("histogram_ps");
+  if (!buckets.is_array()) {
+    return;
+  }
+  for (const Json& bucket : buckets) {
+    if (bucket.is_array() && bucket.size() == 3 && bucket[1].is_number_integer() &&
+        bucket[2].is_number_integer()) {
+      std::int64_t& count = histogram[bucket[1].get<std::int64_t>()];
+      count = plus(count, bucket[2].get<std::int64_t>());
+    }
+  }
+}
+
+Table waits_table(const RunJson& run) {
+  Table table("run_waits", "Waits",
+              {{"what", ColumnType::text, "", "what is waited for"},
+               {"highest_ps", ColumnType::integer, "ps", "upper end of a bucket"},
+               {"count", ColumnType::integer, "1", "waits in it"},
+               {"share", ColumnType::real, "fraction", "of the waits that are not longer"}});
+  std::map<std::string, Histogram> histograms;
+  for (const RunJson& cluster : run.list("machine.per_cluster")) {
+    add_histogram({cluster.find("interconnect.waits"), run.file()}, histograms["interconnect"]);
+    add_histogram({cluster.find("distributed.network.waits"), run.file()}, histograms["network"]);
+    for (const RunJson& bank : cluster.list("banks")) {
+      add_histogram({bank.find("waits"), run.file()}, histograms["bank"]);
+    }
+  }
+  for (const char* what : {"interconnect", "bank", "network"}) {
+    double all = 0.0;
+    for (const auto& [highest, count] : histograms[what]) {
+      all += static_cast<double>(count);
+    }
+    double below = 0.0;
+    for (const auto& [highest, count] : histograms[what]) {
+      below += static_cast<double>(count);
+      table.add_row({std::string(what), highest, count, all > 0.0 ? below / all : 0.0});
+    }
+  }
+  return table;
+}
+
+Table nodes_table(const RunJson& run) {
+  Table table("run_nodes", "What each node does",
+              {{"node", ColumnType::integer, "1", "its number"},
+               {"compute", ColumnType::real, "fraction", "of the frame: computing, cache accesses, messages"},
+               {"memory", ColumnType::real, "fraction", "transfers and bank accesses without queues"},
+               {"waits", ColumnType::real, "fraction", "waiting for anything"},
+               {"idle", ColumnType::real, "fraction", "nothing left to do"}});
+  const double end = run.count("machine.frame_time_ps");
+  std::int64_t number = 0;
+  for (const RunJson& node : run.list("machine.per_node")) {
+    const auto share = [&](std::initializer_list<const char*> activities) {
+      double sum = 0.0;
+      for (const char* activity : activities) {
+        sum += node.count(std::string("time_ps.") + activity);
+      }
+      return end > 0.0 ? sum / end : 0.0;
+    };
+    table.add_row({number++,
+                   share({"traversal", "intersection", "shading", "building", "cache_access", "switching",
+                          "messaging"}),
+                   share({"transfer", "bank_access"}),
+                   share({"interconnect_wait", "bank_wait", "lock_wait", "message_wait", "queue_full_wait",
+                          "dispatch_wait"}),
+                   share({"idle"})});
+  }
+  return table;
+}
+
+void add_all(const RunJson& run, ReportData& report) {
+  add(report, cycles_table(run), "All nodes' time from 0 to the end of the frame, without remainder.");
+  add(report, loss_table(run), "The parts add up to the number of nodes less the speed-up.");
+  add(report, nodes_table(run), "Uneven bars are imbalance.");
+  add(report, references_table(run));
+  add_levels(run, report);
+  add(report, visits_table(run));
+  add(report, waits_table(run), "How many of the waits are not longer than this.");
+  add(report, tree_table(run));
+  add(report, level_memory_table(run));
+  add(report, memory_table(run));
+}
+
+}  // namespace
+
+std::int64_t whole(const RunJson& part, std::string_view path) {
+  const Json& value = part.find(path);
+  return value.is_number_integer() && !(value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX)
+             ? std::max<std::int64_t>(value.get<std::int64_t>(), 0)
+             : 0;
+}
+
+void add_run_charts(const RunJson& run, ReportData& report) {
+  try {
+    add_all(run, report);
+  } catch (const std::overflow_error& error) {
+    throw sim::UserError(run.file() + ": " + error.what());
+  }
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,238 @@
+#include "studies/report/model/sweep_answer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "processors/cost/accounting.h"
+#include "studies/figures/scaling.h"
+#include "studies/report/model/answer_text.h"
+#include "studies/sweep/store/sweep_best.h"
+
+namespace marti::studies {
+
+namespace {
+
+double price_of(const ReportPoint& point) { return point.figure("price"); }
+
+// The point of the front farthest below the line between its ends. A price of 0 has no logarithm: prices are
+// taken as they are then.
+std::size_t knee_of(const ReportPoints& sweep, const std::vector<std::size_t>& front) {
+  const bool free = price_of(sweep.points[front.front()]) <= 0.0;  // the cheapest
+  const auto place = [&](std::size_t i) {
+    const ReportPoint& point = sweep.points[i];
+    const double price = price_of(point);
+    return std::pair(free ? price : std::log(price), std::log(point.figure("end")));
+  };
+  const auto [x0, y0] = place(front.front());
+  const auto [x1, y1] = place(front.back());
+  std::size_t best = front.back();
+  double deepest = 0.0;
+  for (const std::size_t i : front) {
+    const auto [x, y] = place(i);
+    const double depth = x1 > x0 ? y0 + (y1 - y0) * (x - x0) / (x1 - x0) - y : 0.0;
+    if (depth > deepest + 1e-12) {
+      deepest = depth;
+      best = i;
+    }
+  }
+  return best;
+}
+
+// What a step up or down on each axis gains, the best first; steps that gain nothing are left out.
+struct Advice {
+  bool any_step = false;  ///< a machine one step away was timed on the same frame
+  std::string text;
+};
+
+Advice advice(const ReportPoints& sweep, const ReportPoint& from) {
+  struct Step {
+    std::string text;
+    double gain;
+  };
+  constexpr double little = 0.0005;  // of the frame: less is shown as 0.0 %
+  std::map<std::vector<std::size_t>, const ReportPoint*> timed;
+  for (const ReportPoint& point : sweep.points) {
+    if (point.frame == from.frame) {
+      timed.emplace(point.place, &point);
+    }
+  }
+  Advice advice;
+  std::vector<Step> steps;
+  for (std::size_t axis = 0; axis < sweep.axes.size(); ++axis) {
+    const ReportAxis& each = sweep.axes[axis];
+    for (const int direction : {1, -1}) {
+      std::vector<std::size_t> place = from.place;
+      if (!each.numeric || (direction < 0 && place[axis] == 0)) {
+        continue;
+      }
+      place[axis] = direction > 0 ? place[axis] + 1 : place[axis] - 1;
+      const auto next = timed.find(place);
+      if (next == timed.end()) {
+        continue;
+      }
+      advice.any_step = true;
+      const double gain = 1.0 - next->second->figure("end") / from.figure("end");
+      if (gain >= little) {
+        steps.push_back({fmt::format("{} from {} to {} makes the frame {:.1f} % shorter", each.name,
+                                     each.texts[from.place[axis]], each.texts[place[axis]], 100.0 * gain),
+                         gain});
+      }
+    }
+  }
+  std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) { return a.gain > b.gain; });
+  for (const Step& step : steps) {
+    advice.text += (advice.text.empty() ? "" : "; ") + step.text;
+  }
+  return advice;
+}
+
+// Values that all machines of a frame share and other machines have not: "image.width = 512".
+std::string frame_text(const ReportPoints& sweep, std::size_t frame) {
+  std::string text;
+  for (std::size_t axis = 0; axis < sweep.axes.size(); ++axis) {
+    std::set<std::size_t> values;
+    for (const ReportPoint& point : sweep.points) {
+      if (point.frame == frame) {
+        values.insert(point.place[axis]);
+      }
+    }
+    if (values.size() == 1) {
+      text += (text.empty() ? ": " : ", ") + sweep.axes[axis].name + " = " +
+              sweep.axes[axis].texts[*values.begin()];
+    }
+  }
+  return text;
+}
+
+// What limits the point, by a machine with only the parts that find_limit() reads; what it reads only as a
+// sum is given to one node.
+std::optional<Finding> limit_of(const ReportPoint& point) {
+  constexpr double most_nodes = 65'536;  // each takes memory
+  const double nodes = point.figure("nodes");
+  const double clusters = std::max(1.0, point.figure("clusters"));
+  if (!point.image_machine || nodes < 1.0 || nodes > most_nodes) {
+    return std::nullopt;
+  }
+  const auto ticks = [&](std::string_view name) { return static_cast<sim::Ticks>(point.figure(name)); };
+  processors::MachineConfig machine;
+  machine.scheme = processors::Scheme::image;
+  machine.placement = point.image_machine->placement;
+  machine.interconnect.kind = point.image_machine->interconnect;
+  machine.network.kind = point.image_machine->network;
+  machine.build.sharing = point.image_machine->sharing;
+  processors::MachineResult result;
+  result.end = ticks("end");
+  result.nodes.resize(static_cast<std::size_t>(nodes));
+  bool timed = false;
+  for (std::size_t i = 0; i < processors::activities; ++i) {
+    const sim::Ticks time = ticks("time_" + std::string(processors::activity_names[i]));
+    result.nodes.front().time[i] = time;
+    timed = timed || time > 0;
+  }
+  result.build.start_up_wait = ticks("build_start_up_wait");
+  result.packets = static_cast<std::uint64_t>(point.figure("packets"));
+  processors::ClusterResult& busiest = result.clusters.emplace_back();
+  busiest.interconnect.busy = ticks("most_interconnect_busy");
+  busiest.interconnect.links = static_cast<std::int64_t>(point.figure("interconnect_links") / clusters);
+  busiest.banks.emplace_back().busy = ticks("most_bank_busy");
+  return timed ? std::optional(find_limit(machine, result)) : std::nullopt;
+}
+
+std::string speed_text(const ReportPoint& point) {
+  if (!point.has("speed_up")) {
+    return {};
+  }
+  return fmt::format(", {:.2f} times as fast as its base machine (efficiency {:.0f} %)",
+                     point.figure("speed_up"), 100.0 * point.figure("efficiency"));
+}
+
+}  // namespace
+
+Chosen choose(const ReportPoints& sweep) {
+  const auto shortest = std::min_element(
+      sweep.points.begin(), sweep.points.end(),
+      [](const ReportPoint& a, const ReportPoint& b) { return a.figure("end") < b.figure("end"); });
+  Chosen chosen;
+  std::vector<Offer> offers;
+  std::vector<std::size_t> offered;
+  for (std::size_t i = 0; i < sweep.points.size(); ++i) {
+    const ReportPoint& point = sweep.points[i];
+    if (point.frame == shortest->frame) {
+      offers.push_back({price_of(point), point.figure("end")});
+      offered.push_back(i);
+    }
+  }
+  for (const std::size_t i : pareto_front(offers, Better::lower)) {
+    chosen.front.push_back(offered[i]);
+  }
+  chosen.fastest = chosen.front.back();
+  chosen.knee = knee_of(sweep, chosen.front);
+  return chosen;
+}
+
+std::string place_text(const ReportPoints& sweep, const ReportPoint& point) {
+  std::string text;
+  for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
+    text += (i == 0 ? "" : ", ") + sweep.axes[i].name + " = " + sweep.axes[i].texts[point.place[i]];
+  }
+  return text.empty() ? "the only machine" : text;
+}
+
+std::string limit_sentence(const ReportPoint& point) {
+  const std::optional<Finding> finding = limit_of(point);
+  return finding ? finding->sentence : std::string();
+}
+
+std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chosen) {
+  const ReportPoint& fastest = sweep.points[chosen.fastest];
+  const ReportPoint& knee = sweep.points[chosen.knee];
+  const std::string unit = sweep.priced ? "at a price of" : "with a node count of";
+  const auto compared = static_cast<std::size_t>(
+      std::count_if(sweep.points.begin(), sweep.points.end(),
+                    [&](const ReportPoint& point) { return point.frame == fastest.frame; }));
+  std::vector<std::string> answer;
+  const auto add_limit = [&](const char* begin, const ReportPoint& point) {
+    if (const std::string limit = limit_sentence(point); !limit.empty()) {
+      answer.push_back(fmt::format("{}: {}.", begin, limit));
+    }
+  };
+  answer.push_back(fmt::format("The fastest of {} machines takes {} a frame{} {} {:g}: {}.", compared,
+                               time_text(fastest.figure("end")), speed_text(fastest), unit, price_of(fastest),
+                               place_text(sweep, fastest)));
+  if (sweep.frames > 1) {
+    answer.push_back(fmt::format(
+        "The sweep has {} different frames, which are not the same work: only the machines of the frame with "
+        "the shortest time are compared here{}.",
+        sweep.frames, frame_text(sweep, fastest.frame)));
+  }
+  add_limit("What limits it", fastest);
+  if (chosen.knee != chosen.fastest) {
+    const double time = knee.figure("end") / fastest.figure("end");
+    const double price = price_of(knee) / price_of(fastest);  // dearer than the knee: above 0
+    answer.push_back(
+        fmt::format("Worth its price (the knee of the {} machines that no other beats in price and time): {} "
+                    "a frame{} {} {:g}, "
+                    "{:.2f} times the time of the fastest for {:.1f} % of its price: {}.",
+                    chosen.front.size(), time_text(knee.figure("end")), speed_text(knee), unit,
+                    price_of(knee), time, 100.0 * price, place_text(sweep, knee)));
+    add_limit("What limits that one", knee);
+  }
+  if (const Advice steps = advice(sweep, knee); !steps.text.empty()) {
+    answer.push_back(fmt::format("What to change there, one step at a time: {}.", steps.text));
+  } else if (steps.any_step) {
+    answer.push_back(
+        "What to change there: no single step of an axis makes it faster, of those that were timed.");
+  }
+  if (sweep.points.size() < sweep.planned) {
+    answer.push_back(
+        fmt::format("{} of {} points have been timed so far; run `marti sweep` again for the rest.",
+                    sweep.points.size(), sweep.planned));
+  }
+  return answer;
+}
+
+}  // namespace marti::studies

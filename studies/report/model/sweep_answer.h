@@ -1,0 +1,36 @@
+// What a sweep says in sentences: the fastest machine, the one that is worth its price, what limits them, and
+// which axis to turn.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "studies/report/model/report_points.h"
+
+namespace marti::studies {
+
+/// Indices into ReportPoints::points.
+struct Chosen {
+  std::size_t fastest = 0;         ///< the shortest frame; of equal ones the cheapest, then the first
+  std::size_t knee = 0;            ///< of the front, the machine where more money begins to buy less
+  std::vector<std::size_t> front;  ///< that no other beats in price and frame time, ascending by price
+};
+
+/// Among the machines of one frame, the one with the shortest time of all: frames of different work are not
+/// compared. The price is the cost by [prices], or the number of nodes where all costs are equal. The knee is
+/// the point of the front that lies farthest below the line from its first to its last, both in logarithms;
+/// the price as it is where a machine of the front is free.
+[[nodiscard]] Chosen choose(const ReportPoints& sweep);
+
+/// "machine.nodes = 16, cache.size = 16 KiB".
+[[nodiscard]] std::string place_text(const ReportPoints& sweep, const ReportPoint& point);
+
+/// What limits a machine of the image scheme: the sentence of find_limit (studies/figures/scaling.h), as
+/// `marti run` says it. Empty for a machine of another scheme, because a store lacks how busy its stages and
+/// nodes are; for one of more than 65,536 nodes; and where the store has no times.
+[[nodiscard]] std::string limit_sentence(const ReportPoint& point);
+
+[[nodiscard]] std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chosen);
+
+}  // namespace marti::studies

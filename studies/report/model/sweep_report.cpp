@@ -1,0 +1,263 @@
+#include "studies/report/model/sweep_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "studies/report/model/chart_library.h"
+#include "studies/report/model/cycle_groups.h"
+#include "studies/report/model/explorer.h"
+#include "studies/report/model/report_points.h"
+#include "studies/report/model/sweep_answer.h"
+#include "studies/report/model/sweep_model.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A chart of exact points only: figures over an axis.
+struct SliceChart {
+  std::string_view name;  // of chart and specification
+  std::string_view title;
+  std::string_view note;
+  std::vector<std::string> fields;
+};
+
+std::vector<SliceChart> charts_over_nodes() {
+  std::vector<std::string> parts;
+  for (const std::string_view group : cycle_group_names) {
+    parts.push_back("part_" + std::string(group));
+  }
+  return {
+      {"efficiency",
+       "Efficiency",
+       "Speed-up by the number of nodes; 100 % is the dashed line.",
+       {"efficiency"}},
+      {"cycles", "Where the cycles go",
+       "All nodes' time from 0 to the end of the frame; it adds up to 100 %.", parts},
+      {"utilisation",
+       "How busy the shared parts are",
+       "What comes near 100 % limits the machine.",
+       {"interconnect_utilisation", "bank_utilisation", "network_utilisation"}},
+      {"waits",
+       "How long nodes wait for shared parts",
+       "Means are exact; a percentile is the upper end of its bucket of the histogram, at most an eighth too "
+       "long.",
+       {"mean_interconnect_wait", "interconnect_wait_p50", "interconnect_wait_p95", "interconnect_wait_p99",
+        "mean_bank_wait", "bank_wait_p50", "bank_wait_p95", "bank_wait_p99"}}};
+}
+
+// Axes along which hit ratios are worth a chart of their own.
+bool bears_on_caches(const std::string& name) {
+  for (const std::string_view prefix : {"cache.", "l2.", "structure.", "packets.", "layout."}) {
+    if (name.starts_with(prefix)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// A figure that no machine of the sweep has gets no place in the legend.
+void keep_folded(Json& spec, const Json& names) {
+  Json& first = spec["transform"][0];
+  if (!first.contains("fold")) {
+    return;
+  }
+  Json& folded = first["fold"];
+  for (std::size_t i = folded.size(); i-- > 0;) {
+    if (std::find(names.begin(), names.end(), folded[i]) != names.end()) {
+      continue;
+    }
+    for (const char* channel : {"color", "shape"}) {
+      for (const char* part : {"domain", "range"}) {
+        const Json::json_pointer place("/encoding/" + std::string(channel) + "/scale/" + part);
+        if (spec.contains(place) && spec[place].size() == folded.size()) {
+          spec[place].erase(i);
+        }
+      }
+    }
+    folded.erase(i);
+  }
+}
+
+// In a layered chart each layer has its own title of the x axis.
+void set_x_title(Json& view, const std::string& title) {
+  if (view.contains("encoding") && view["encoding"].contains("x")) {
+    view["encoding"]["x"]["title"] = title;
+  }
+  if (view.contains("layer")) {
+    for (Json& layer : view["layer"]) {
+      set_x_title(layer, title);
+    }
+  }
+}
+
+// Takes the ideal speed-up out of the chart of a figure that has none.
+void drop_ideal(Json& spec) {
+  std::size_t ideal = 0;
+  for (std::size_t i = 0; i < spec["layer"].size(); ++i) {
+    Json& encoding = spec["layer"][i]["encoding"];
+    if (encoding.contains("color")) {
+      ideal = encoding["color"]["datum"] == "ideal" ? i : ideal;
+      encoding["color"]["scale"]["domain"].erase(3);
+      encoding["color"]["scale"]["range"].erase(3);
+    }
+  }
+  spec["layer"].erase(ideal);
+}
+
+// Exact points and the model's curve over an axis. `model` may be null.
+void add_explored(const std::string& name, const std::string& title, const ReportAxis& axis,
+                  const AxisModel* model, ChartWords words, ReportData& report) {
+  ReportChart chart = live_chart("over_axis", name, fmt::format("{} over {}", title, axis.name),
+                                 {{"rows", "explorer"}, {"title", title}}, words);
+  chart.note = error_note(model);
+  chart.spec["encoding"]["x"].update(channel_of(axis), true);
+  report.charts.push_back(std::move(chart));
+}
+
+// Without any of its fields there is no chart.
+void add_slice(const ReportPoints& sweep, const SliceChart& slice, std::size_t axis, const std::string& name,
+               ReportData& report) {
+  const std::string& along = sweep.axes[axis].name;
+  Json fields = Json::array();
+  for (const std::string& field : slice.fields) {
+    if (report.explorer["columns"].contains(field)) {
+      fields.push_back(field);
+    }
+  }
+  if (fields.empty()) {
+    return;
+  }
+  ReportChart chart = live_chart(slice.name, name, fmt::format("{} over {}", slice.title, along),
+                                 {{"rows", "slice"}, {"axis", axis}, {"fields", fields}});
+  chart.note = slice.note;
+  set_x_title(chart.spec, along);
+  keep_folded(chart.spec, fields);
+  report.charts.push_back(std::move(chart));
+}
+
+void add_prices(const ReportPoints& sweep, ReportData& report) {
+  ReportChart chart =
+      live_chart("price", "price", sweep.priced ? "Frame time and price" : "Frame time and number of nodes",
+                 {{"rows", "all"}});
+  chart.note = "Every machine of the sweep; the line joins those that no other beats in both.";
+  Json& x = chart.spec["encoding"]["x"];
+  x["title"] = sweep.priced ? "price" : "nodes";
+  const bool has_free = std::any_of(sweep.points.begin(), sweep.points.end(),
+                                    [](const ReportPoint& point) { return point.figure("price") <= 0.0; });
+  if (has_free) {
+    x["scale"] = {{"type", "linear"}, {"nice", false}};
+  }
+  report.charts.push_back(std::move(chart));
+}
+
+Table front_table(const ReportPoints& sweep, const Chosen& chosen) {
+  Table table("front", "Machines that no other beats in price and frame time",
+              {{"ordinal", ColumnType::integer, "1", "number of the point in the sweep, from 0"},
+               {"machine", ColumnType::text, "", "its values"},
+               {"price", ColumnType::real, "1", sweep.priced ? "cost by [prices]" : "number of nodes"},
+               {"ms", ColumnType::real, "ms", "frame time"},
+               {"speed_up", ColumnType::real, "1", "over the base machine"},
+               {"efficiency", ColumnType::real, "fraction", "speed-up by the number of nodes"},
+               {"limit", ColumnType::text, "", "what takes most of its nodes' time"}});
+  for (const std::size_t i : chosen.front) {
+    const ReportPoint& point = sweep.points[i];
+    const auto cell = [&](const char* name) { return point.has(name) ? Cell(point.figure(name)) : Cell(); };
+    table.add_row({point.ordinal, place_text(sweep, point), point.figure("price"), point.figure("end") * 1e-9,
+                   cell("speed_up"), cell("efficiency"), limit_sentence(point)});
+  }
+  return table;
+}
+
+Table error_table(const ReportPoints& sweep, std::span<const AxisModel> models) {
+  Table table("model_error", "Error of the analytic model, measured by leaving exact points out",
+              {{"axis", ColumnType::text, "", "key that the curve runs along"},
+               {"figure", ColumnType::text, "", "what is modelled"},
+               {"zone", ColumnType::text, "", "between exact points, or one step beyond them"},
+               {"points", ColumnType::integer, "1", "points that were left out once"},
+               {"mean", ColumnType::real, "fraction", "mean error"},
+               {"p95", ColumnType::real, "fraction", "95th percentile, the band that is shown"}});
+  for (const AxisModel& model : models) {
+    for (const Zone zone : {Zone::between, Zone::beyond}) {
+      for (const auto& [figure, errors] :
+           {std::pair("frame time", model.end), std::pair("speed-up", model.speed_up)}) {
+        const ModelError& error = errors[static_cast<std::size_t>(zone)];
+        table.add_row({sweep.axes[model.axis].name, std::string(figure),
+                       std::string(zone == Zone::between ? "between" : "beyond"),
+                       static_cast<std::int64_t>(error.points), error.points > 0 ? Cell(error.mean) : Cell(),
+                       error.points > 0 ? Cell(error.p95) : Cell()});
+      }
+    }
+  }
+  return table;
+}
+
+// The axis that the page begins with: nodes, else the first of numbers.
+std::optional<std::size_t> first_axis(const ReportPoints& sweep) {
+  if (const std::optional<std::size_t> nodes = sweep.axis("machine.nodes");
+      nodes && sweep.axes[*nodes].numeric) {
+    return nodes;
+  }
+  for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
+    if (sweep.axes[i].numeric) {
+      return i;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+ReportData sweep_report(const ReportPoints& sweep) {
+  const Chosen chosen = choose(sweep);
+  const std::vector<AxisModel> models = model_sweep(sweep);
+  const std::optional<std::size_t> axis = first_axis(sweep);
+  ReportData report;
+  report.kind = "sweep";
+  report.title = fmt::format("Sweep of {} machines", sweep.points.size());
+  report.answer = answer_of(sweep, chosen);
+  report.explorer = explorer_json(sweep, models, chosen, axis);
+  if (axis) {
+    const auto model =
+        std::find_if(models.begin(), models.end(), [&](const AxisModel& each) { return each.axis == *axis; });
+    const AxisModel* const curve = model == models.end() ? nullptr : &*model;
+    add_explored("frame_time", "Frame time", sweep.axes[*axis], curve,
+                 {{"FIGURE", "ms"}, {"TITLE", "frame time, ms"}}, report);
+    drop_ideal(report.charts.back().spec);
+    add_explored("speed_up", "Speed-up", sweep.axes[*axis], curve,
+                 {{"FIGURE", "speed_up"}, {"TITLE", "speed-up"}}, report);
+    for (const SliceChart& slice : charts_over_nodes()) {
+      add_slice(sweep, slice, *axis, std::string(slice.name), report);
+    }
+  }
+  const SliceChart hit_ratios = {
+      "hit_ratio",
+      "Hit ratio",
+      "Of all references of the first level, and by kind of record.",
+      {"hit_ratio", "hit_ratio_node", "hit_ratio_list", "hit_ratio_primitive", "hit_ratio_material"}};
+  for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
+    if (bears_on_caches(sweep.axes[i].name)) {
+      add_slice(sweep, hit_ratios, i, "hit_ratio_" + plain_name(sweep.axes[i].name), report);
+    }
+  }
+  if (sweep.points.size() > 1) {
+    add_prices(sweep, report);
+  }
+  constexpr std::size_t few = 12;
+  report.tables.push_back({front_table(sweep, chosen), chosen.front.size() > few});
+  if (!models.empty()) {
+    report.tables.push_back({error_table(sweep, models), true});
+  }
+  for (const auto& [key, value] : sweep.settings) {
+    report.configuration += key + " = " + value + "\n";
+  }
+  report.provenance = sweep.provenance;
+  return report;
+}
+
+}  // namespace marti::studies

@@ -1,9 +1,0 @@
-#include "studies/report/vega_bundle.h"
-
-namespace marti::studies {
-
-std::span<const Script> vega_scripts() { return {}; }
-
-bool have_vega_scripts() { return false; }
-
-}  // namespace marti::studies

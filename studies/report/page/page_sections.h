@@ -1,0 +1,20 @@
+// The parts of a report's page that are there without a script.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/report/model/report_data.h"
+
+namespace marti::studies {
+
+struct PageSection {
+  std::string id;     ///< of the element
+  std::string title;  ///< for people
+  std::string html;   ///< what it holds
+};
+
+/// In the order of the page; parts for which the report has no data are left out.
+[[nodiscard]] std::vector<PageSection> page_sections(const ReportData& report);
+
+}  // namespace marti::studies

@@ -1,0 +1,412 @@
+#include "studies/report/read/read_points.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "processors/cost/accounting.h"
+#include "sim/error.h"
+#include "sim/schema.h"
+#include "studies/report/model/cycle_groups.h"
+#include "studies/report/read/axis_order.h"
+#include "studies/sweep/plan/sweep_keys.h"
+#include "studies/sweep/store/sweep_reader.h"
+#include "studies/tables/cell_number.h"
+
+namespace marti::studies {
+
+namespace {
+
+// What a browser can be given as one page, and a person as one chart.
+constexpr std::size_t most_points = 20'000;
+
+// No time and no count of a simulation is above it; sums and rounding stay clear of 64 bits.
+constexpr double most = 0x1p62;
+
+constexpr std::string_view counters[] = {"end",
+                                         "cost",
+                                         "build_start_up_wait",
+                                         "most_interconnect_busy",
+                                         "most_bank_busy",
+                                         "nodes",
+                                         "clusters",
+                                         "packets",
+                                         "database_bytes",
+                                         "events",
+                                         "hits",
+                                         "misses",
+                                         "interconnect_reads",
+                                         "interconnect_busy",
+                                         "interconnect_links",
+                                         "interconnect_bytes",
+                                         "banks",
+                                         "bank_busy",
+                                         "speed_up",
+                                         "efficiency",
+                                         "times_faster",
+                                         "hit_ratio",
+                                         "l2_hit_ratio",
+                                         "interconnect_utilisation",
+                                         "bank_utilisation",
+                                         "network_utilisation",
+                                         "mean_interconnect_wait",
+                                         "mean_bank_wait",
+                                         "finish_balance"};
+
+constexpr std::string_view kinds[] = {"node", "list", "primitive", "material"};
+constexpr std::string_view waits[] = {"interconnect_wait", "bank_wait"};
+
+std::vector<std::string> wanted_figures(const SweepReader& reader) {
+  std::set<std::string, std::less<>> wanted(std::begin(counters), std::end(counters));
+  for (const std::string_view activity : processors::activity_names) {
+    wanted.insert("time_" + std::string(activity));
+    wanted.insert("share_" + std::string(activity));
+  }
+  for (const std::string_view kind : kinds) {
+    wanted.insert(std::string(kind) + "_hits");
+    wanted.insert(std::string(kind) + "_misses");
+  }
+  // Figures that a store of another version lacks are left out.
+  std::vector<std::string> names = reader.figures();
+  std::erase_if(names, [&](const std::string& name) { return !wanted.contains(name); });
+  return names;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& store, std::int64_t ordinal, const std::string& what) {
+  throw sim::UserError(
+      fmt::format("{}: point {}: {}; the store is damaged or was changed: remove it and run the sweep again",
+                  store.string(), ordinal, what));
+}
+
+std::string shown(const Cell& cell) {
+  if (const auto* text = std::get_if<std::string>(&cell)) {
+    constexpr std::size_t longest = 40;
+    return "\"" + text->substr(0, longest) + "\"";
+  }
+  const std::optional<double> number = number_of(cell);
+  return number ? fmt::format("{:g}", *number) : "missing";
+}
+
+// Refuses a point with figures outside the range in which the page and its model can calculate.
+void check_point(const std::filesystem::path& store, const StoredPoint& point,
+                 std::span<const std::string> axes) {
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const Cell& value = point.values[i];
+    const std::optional<double> number = number_of(value);
+    if (std::holds_alternative<std::monostate>(value)) {
+      refuse(store, point.ordinal, "its value of axis " + axes[i] + " is missing");
+    }
+    if (number && !(std::abs(*number) <= 0x1p63)) {
+      refuse(store, point.ordinal,
+             fmt::format("its value of axis {} is {}, out of range", axes[i], shown(value)));
+    }
+  }
+}
+
+void check_figure(const std::filesystem::path& store, std::int64_t ordinal, std::string_view name,
+                  const Cell& cell) {
+  const bool needed = name == "end" || name == "cost" || name == "nodes";
+  if (std::holds_alternative<std::monostate>(cell) && !needed) {
+    return;  // the machine has no such part
+  }
+  const double least = name == "end" || name == "nodes" ? 1.0 : 0.0;
+  const std::optional<double> number = number_of(cell);
+  const bool whole = name != "end" || std::holds_alternative<std::int64_t>(cell);
+  if (!number || !whole || !(*number >= least && *number <= most)) {
+    refuse(store, ordinal,
+           fmt::format("its {} is {}; expected is {} from {:.0f} to 2^62", name, shown(cell),
+                       name == "end" ? "an integer" : "a number", least));
+  }
+}
+
+// Points are told apart by their values: as texts, and as numbers where a chart has them on an axis of
+// numbers.
+void check_places(const std::filesystem::path& store, const ReportPoints& sweep) {
+  std::map<std::vector<std::size_t>, std::int64_t> seen;
+  for (const ReportPoint& point : sweep.points) {
+    const auto [at, fresh] = seen.emplace(point.place, point.ordinal);
+    if (!fresh) {
+      refuse(store, point.ordinal, fmt::format("it has the same values as point {}", at->second));
+    }
+    for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
+      const ReportAxis& axis = sweep.axes[i];
+      const std::size_t place = point.place[i];
+      if (axis.numeric && place > 0 && !(axis.number(place) > axis.number(place - 1))) {
+        refuse(store, point.ordinal,
+               fmt::format("two values of axis {} are the same number, {}", axis.name, axis.texts[place]));
+      }
+    }
+  }
+}
+
+void add_hit_ratios(ReportPoint& point) {
+  for (const std::string_view kind : kinds) {
+    const double hits = point.figure(std::string(kind) + "_hits");
+    const double all = hits + point.figure(std::string(kind) + "_misses");
+    if (all > 0.0) {
+      point.figures["hit_ratio_" + std::string(kind)] = hits / all;
+    }
+  }
+}
+
+void add_groups(ReportPoint& point) {
+  const std::array<double, cycle_groups> parts =
+      group_cycles([&](std::string_view activity) { return point.figure("share_" + std::string(activity)); });
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    point.figures["part_" + std::string(cycle_group_names[i])] = parts[i];
+  }
+}
+
+// The upper bound of the bucket that the percentile lies in: waits are not above it.
+void add_percentiles(const SweepRow& row, ReportPoint& point) {
+  for (const SweepHistogram& histogram : row.histograms) {
+    if (std::find(std::begin(waits), std::end(waits), histogram.what) == std::end(waits)) {
+      continue;
+    }
+    double all = 0.0;
+    for (const SweepHistogram::Bucket& bucket : histogram.buckets) {
+      all += static_cast<double>(bucket.count);
+    }
+    for (const int percent : {50, 95, 99}) {
+      double below = 0.0;
+      for (const SweepHistogram::Bucket& bucket : histogram.buckets) {
+        below += static_cast<double>(bucket.count);
+        if (below >= all * percent / 100.0) {
+          point.figures[fmt::format("{}_p{}", histogram.what, percent)] = static_cast<double>(bucket.highest);
+          break;
+        }
+      }
+    }
+  }
+}
+
+// The number of a setting's text among a choice's names; the first where the machine has no such setting.
+template <class Choice, std::size_t N>
+Choice choice_of(std::string text, const std::array<std::string_view, N>& names) {
+  std::erase(text, '"');
+  const auto* const at = std::find(names.begin(), names.end(), text);
+  return static_cast<Choice>(at == names.end() ? 0 : at - names.begin());
+}
+
+template <class Value>
+ImageMachine image_machine(const Value& value) {
+  constexpr std::array<std::string_view, 3> interconnects = {"ideal", "bus", "crossbar"};
+  return {choice_of<processors::Placement>(value("database.placement"), processors::placement_names),
+          choice_of<memory::InterconnectKind>(value("interconnect.kind"), interconnects),
+          choice_of<memory::NetworkKind>(value("network.kind"), memory::network_kind_names),
+          choice_of<processors::Sharing>(value("build.sharing"), processors::sharing_names)};
+}
+
+// Numbers frames by what was rendered. A tree that was built otherwise gives the same rays and pixels: its
+// machines can be compared.
+class Frames {
+ public:
+  explicit Frames(const SweepReader& reader) : reader_(reader) {}
+
+  [[nodiscard]] std::size_t number_of(std::int64_t machine) {
+    std::string key;
+    if (const std::optional<FrameRow> frame = reader_.read_frame(machine)) {
+      key = fmt::format("{} {} {}", frame->scene_hash, frame->image_hash, frame->hit_hash);
+    }
+    return numbers_.emplace(key, numbers_.size()).first->second;
+  }
+  [[nodiscard]] std::size_t count() const { return numbers_.size(); }
+
+ private:
+  const SweepReader& reader_;
+  std::map<std::string, std::size_t> numbers_;
+};
+
+// A machine's settings by key: every machine has some.
+std::map<std::string, std::string> settings_of(const SweepReader& reader, const std::filesystem::path& store,
+                                               std::int64_t ordinal, std::int64_t machine) {
+  const std::vector<std::pair<std::string, std::string>> settings = reader.settings(machine);
+  if (settings.empty()) {
+    refuse(store, ordinal, fmt::format("its machine {} is not in the store", machine));
+  }
+  return {settings.begin(), settings.end()};
+}
+
+// Collects the settings that all machines of the sweep share, and notes for each point what its queues are.
+class Settings {
+ public:
+  void add(ReportPoint& point, const std::map<std::string, std::string>& by_key) {
+    const auto value = [&](const char* key) {
+      const auto at = by_key.find(key);
+      return at == by_key.end() ? std::string() : at->second;
+    };
+    const bool bus = value("interconnect.kind") == "\"bus\"";
+    const bool local = value("database.placement") != "\"shared\"";
+    if (value("machine.scheme") == "\"image\"") {
+      point.image_machine = image_machine(value);
+    }
+    point.links_are_queues = !local && (bus || value("interconnect.kind") == "\"crossbar\"");
+    point.banks_are_queues = point.links_are_queues && !(bus && value("interconnect.mode") == "\"held\"");
+    if (!begun_) {
+      shared_ = by_key;
+      begun_ = true;
+      return;
+    }
+    std::erase_if(shared_, [&](const auto& setting) {
+      const auto at = by_key.find(setting.first);
+      return at == by_key.end() || at->second != setting.second;
+    });
+  }
+
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> shared() const {
+    return {shared_.begin(), shared_.end()};
+  }
+
+ private:
+  std::map<std::string, std::string> shared_;
+  bool begun_ = false;
+};
+
+bool is_boolean(const sim::Key* key) { return key != nullptr && key->type == sim::ValueType::boolean; }
+
+// A value as its key would have it in a file.
+std::string text_of(const Cell& cell, const sim::Key* key) {
+  if (const auto* text = std::get_if<std::string>(&cell)) {
+    return *text;
+  }
+  const std::optional<double> number = number_of(cell);
+  if (!number) {
+    return "none";
+  }
+  const auto* integer = std::get_if<std::int64_t>(&cell);
+  if (integer != nullptr && is_boolean(key)) {
+    return *integer != 0 ? "true" : "false";
+  }
+  const bool real =
+      key != nullptr && (key->type == sim::ValueType::real || key->type == sim::ValueType::frequency ||
+                         key->type == sim::ValueType::percentage);
+  std::string text;
+  if (key == nullptr || (integer == nullptr && !real)) {
+    text = integer != nullptr ? std::to_string(*integer) : fmt::format("{}", *number);
+  } else {
+    text = sim::print_value(key->type, real ? sim::Value(*number) : sim::Value(*integer));
+  }
+  std::erase(text, '"');
+  return text;
+}
+
+std::string unit_of(const sim::Key* key) {
+  if (key == nullptr) {
+    return {};
+  }
+  switch (key->type) {
+    case sim::ValueType::size:
+      return "byte";
+    case sim::ValueType::frequency:
+      return "Hz";
+    case sim::ValueType::duration:
+      return "ps";
+    default:
+      return key->unit;
+  }
+}
+
+ReportAxis make_axis(const AxisColumn& column, const sim::Schema& schema) {
+  ReportAxis axis;
+  axis.name = column.name;
+  axis.followers = column.followers;
+  axis.values = column.values;
+  const std::optional<std::size_t> at = schema.find(column.name);
+  const sim::Key* key = at ? &schema.keys()[*at] : nullptr;
+  axis.unit = unit_of(key);
+  axis.numeric =
+      !is_boolean(key) && std::all_of(axis.values.begin(), axis.values.end(),
+                                      [](const Cell& cell) { return number_of(cell).has_value(); });
+  for (const Cell& value : axis.values) {
+    axis.texts.push_back(text_of(value, key));
+  }
+  if (axis.numeric) {
+    std::vector<double> numbers;
+    for (const Cell& value : axis.values) {
+      numbers.push_back(*number_of(value));
+    }
+    const std::size_t last = numbers.size() - 1;
+    axis.logarithmic = numbers.front() > 0.0 &&
+                       (last < 2 || numbers[last] - numbers[last - 1] > 1.5 * (numbers[1] - numbers[0]));
+    axis.integer = std::all_of(axis.values.begin(), axis.values.end(),
+                               [](const Cell& cell) { return std::holds_alternative<std::int64_t>(cell); });
+  }
+  return axis;
+}
+
+}  // namespace
+
+ReportPoints read_report_points(const std::filesystem::path& store) {
+  const SweepReader reader(store);
+  ReportPoints sweep;
+  sweep.version = reader.version();
+  const std::vector<std::string> names = wanted_figures(reader);
+  std::vector<std::vector<Cell>> values;
+  Settings settings;
+  Frames frames(reader);
+  reader.for_each_point(names, [&](const StoredPoint& stored, std::span<const Cell> cells) {
+    ++sweep.planned;
+    const std::map<std::string, std::string> by_key =
+        settings_of(reader, store, stored.ordinal, stored.machine);
+    if (!stored.done) {
+      return;
+    }
+    check_point(store, stored, reader.axes());
+    if (sweep.points.size() == most_points) {
+      throw sim::UserError(
+          fmt::format("{}: has more than {} timed points, too many for one page; time a part of "
+                      "them (sweep.filter) in a directory of its own, or read the store with "
+                      "sqlite3",
+                      store.string(), most_points));
+    }
+    ReportPoint point;
+    point.ordinal = stored.ordinal;
+    point.machine = stored.machine;
+    point.cost = stored.cost;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      check_figure(store, stored.ordinal, names[i], cells[i]);
+      if (const std::optional<double> number = number_of(cells[i])) {
+        point.figures[names[i]] = *number;
+      }
+    }
+    settings.add(point, by_key);
+    sweep.points.push_back(std::move(point));
+    values.push_back(stored.values);
+  });
+  if (sweep.points.empty()) {
+    throw sim::UserError(
+        store.string() +
+        ": no point of the sweep has been timed yet; run `marti sweep` with the same -o first");
+  }
+  for (ReportPoint& point : sweep.points) {
+    add_hit_ratios(point);
+    add_groups(point);
+    if (const std::optional<SweepRow> row = reader.read_result(point.machine)) {
+      add_percentiles(*row, point);
+    }
+    point.frame = frames.number_of(point.machine);
+  }
+  sweep.frames = frames.count();
+  const sim::Schema schema = sweep_schema();
+  for (const AxisColumn& column : order_axes(reader.axes(), values)) {
+    for (std::size_t i = 0; i < sweep.points.size(); ++i) {
+      sweep.points[i].place.push_back(column.index[i]);
+    }
+    sweep.axes.push_back(make_axis(column, schema));
+  }
+  check_places(store, sweep);
+  sweep.settings = settings.shared();
+  sweep.priced = std::any_of(sweep.points.begin(), sweep.points.end(), [&](const ReportPoint& point) {
+    return point.cost != sweep.points.front().cost;
+  });
+  for (ReportPoint& point : sweep.points) {
+    point.figures["price"] = sweep.priced ? point.cost : point.figure("nodes");
+  }
+  sweep.provenance = {{"version of marti", sweep.version},
+                      {"points", fmt::format("{} timed of {}", sweep.points.size(), sweep.planned)}};
+  return sweep;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,53 @@
+#include "studies/report/read/read_report.h"
+
+#include <filesystem>
+
+#include "sim/error.h"
+#include "studies/report/model/sweep_report.h"
+#include "studies/report/read/read_points.h"
+#include "studies/sweep/store/store_schema.h"
+#include "studies/tables/result_directory.h"
+#include "studies/tables/sqlite_connection.h"
+
+namespace marti::studies {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view expected =
+    "expected is the directory of `marti run CONFIG -o DIR`, `marti sweep CONFIG -o DIR` or `marti study "
+    "... -o "
+    "DIR`";
+
+// Sweeps and studies both have a results.sqlite; its table `columns` differs. Other faults of the file are
+// reported by the code that reads it.
+bool is_study(const fs::path& file) {
+  (void)check_store_file(file);
+  SqliteConnection connection(file, SqliteConnection::Access::read);
+  return connection.integer("SELECT count(*) FROM pragma_table_info('columns') WHERE name = 'table_name'") >
+         0;
+}
+
+}  // namespace
+
+ReportData read_report(const fs::path& directory) {
+  std::error_code error;
+  const fs::file_status status = fs::status(directory, error);
+  if (status.type() == fs::file_type::not_found) {
+    throw sim::UserError(directory.string() + ": there is no such directory; " + std::string(expected));
+  }
+  if (error) {
+    throw sim::UserError(directory.string() + ": cannot be read: " + error.message());
+  }
+  if (!fs::is_directory(status)) {
+    throw sim::UserError(directory.string() + ": is no directory; " + std::string(expected));
+  }
+  const fs::path file = results_in(directory, expected);
+  if (file.extension() == ".json") {
+    return read_run_report(directory);
+  }
+  return is_study(file) ? read_study_report(directory) : sweep_report(read_report_points(file));
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,134 @@
+// The report of a run's directory: what its result.json says, and the files beside it.
+#include <fmt/format.h>
+
+#include <map>
+
+#include "sim/error.h"
+#include "sim/sha256.h"
+#include "studies/report/model/chart_library.h"
+#include "studies/report/model/run_answer.h"
+#include "studies/report/model/run_charts.h"
+#include "studies/report/read/read_report.h"
+#include "studies/report/read/report_files.h"
+#include "studies/tables/result_directory.h"
+#include "studies/tables/run_files.h"
+#include "studies/tables/run_json.h"
+
+namespace marti::studies {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void add_configuration(const RunJson& run, ReportData& report) {
+  std::string defaults;
+  for (const auto& [key, setting] : run.at("config.keys").items()) {
+    const RunJson each(setting, run.file());
+    const std::string line = key + " = " + each.text("value") + "\n";
+    (each.boolean("given") ? report.configuration : defaults) += line;
+  }
+  report.configuration =
+      "# given in the file or by --set\n" + report.configuration + "\n# defaults\n" + defaults;
+}
+
+Table plan_table(const RunJson& run) {
+  Table table("plan", "The plan: what the run left out",
+              {{"item", ColumnType::text, "", "what could be left out"},
+               {"decision", ColumnType::text, "", "left out, needed, kept or not applicable"},
+               {"class", ColumnType::text, "", "proved before the frame, or decided ray by ray"},
+               {"fact", ColumnType::text, "", "what the decision rests on"},
+               {"saved_operations", ColumnType::integer, "1", "counted after the frame"},
+               {"unit", ColumnType::text, "", "of saved_operations"}});
+  for (const auto& [name, item] : run.at("plan").items()) {
+    const RunJson each(item, run.file());
+    const bool saved = each.find("counted.operations").is_number_integer();
+    table.add_row({name, each.text("decision"), each.text("class"), each.text("fact"),
+                   saved ? Cell(whole(each, "counted.operations")) : Cell(), each.text("unit")});
+  }
+  return table;
+}
+
+Table figures_table(const RunJson& run) {
+  Table table(
+      "figures", "Figures of the run",
+      {{"figure", ColumnType::text, "", "field of result.json"}, {"value", ColumnType::text, "", ""}});
+  for (const char* part : {"scene", "structure", "image", "work_log", "machine"}) {
+    for (const auto& [name, value] : run.at(part).items()) {
+      if (value.is_number() || value.is_boolean() || value.is_string()) {
+        table.add_row(
+            {fmt::format("{}.{}", part, name), value.is_string() ? value.get<std::string>() : value.dump()});
+      }
+    }
+  }
+  return table;
+}
+
+// Whether the run has written what now stands under that name; otherwise the page says why it is left out.
+bool is_of_run(const fs::path& directory, const std::string& name,
+               const std::map<std::string, std::string>& files, ReportData& report) {
+  const auto named = files.find(name);
+  if (!is_there(directory / name)) {
+    if (named == files.end()) {
+      return false;
+    }
+    report.answer.push_back(name + " is left out of this page: it is not there any more.");
+    return false;
+  }
+  std::string reason = "result.json does not name it";
+  if (named != files.end()) {
+    try {
+      if (sim::sha256_of_file(directory / name) == named->second) {
+        return true;
+      }
+      reason = "it is not the file that this run has written";
+    } catch (const sim::UserError&) {
+      reason = "it cannot be read, or is no regular file";
+    }
+  }
+  report.answer.push_back(name + " is left out of this page: " + reason + ".");
+  return false;
+}
+
+void add_files(const fs::path& directory, const RunJson& run, ReportData& report) {
+  const std::map<std::string, std::string> files = files_of(run);
+  if (const char* chart = "working_set.vl.json"; is_of_run(directory, chart, files, report)) {
+    // Only its rows: how they are drawn is built into the program.
+    report.charts.push_back(chart_of_results(chart_named(chart_specifications(), "working_set"),
+                                             read_chart_rows(directory / chart)));
+  }
+  constexpr std::pair<const char*, const char*> images[] = {
+      {"image.png", "The image"},
+      {"exact.png", "The exact image, without the voxel cut"},
+      {"heat-cycles.png", "Heat map: cycles of each pixel"},
+      {"heat-misses.png", "Heat map: misses of each pixel"},
+      {"heat-waits.png", "Heat map: waits of each pixel"}};
+  for (const auto& [name, title] : images) {
+    if (is_of_run(directory, name, files, report)) {
+      take_image(directory / name, title, report);
+    }
+  }
+}
+
+}  // namespace
+
+ReportData read_run_report(const fs::path& directory) {
+  const RunJson run = read_run_json(directory / "result.json", {"config.keys", "scene", "structure", "image",
+                                                                "work_log", "plan", "machine"});
+  ReportData report;
+  report.kind = "run";
+  report.title = fmt::format("Run of {} on {}", run.text("scene.name"), machine_text(run));
+  report.answer = answer_of(run);
+  add_run_charts(run, report);
+  add_files(directory, run, report);
+  report.tables.push_back({plan_table(run), true});
+  report.tables.push_back({figures_table(run), true});
+  add_configuration(run, report);
+  report.provenance = {{"version of marti", run.text("marti.version")},
+                       {"configuration", run.text("config.file")},
+                       {"scene", run.text("scene.source")},
+                       {"hash of the image", run.text("image.image_hash")},
+                       {"hash of all hits", run.text("image.hit_hash")}};
+  return report;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,192 @@
+// The report of a study's directory.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "sim/error.h"
+#include "sim/files.h"
+#include "studies/report/model/chart_library.h"
+#include "studies/report/read/read_report.h"
+#include "studies/report/read/report_files.h"
+#include "studies/tables/json_table.h"
+#include "studies/tables/result_directory.h"
+#include "studies/tables/sqlite_connection.h"
+
+namespace marti::studies {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t largest_text = std::int64_t{4} << 20U;
+constexpr std::size_t most_rows = 20'000;  // of all tables together: people read no more
+constexpr std::string_view remedy = "; run the study again into an empty directory";
+
+struct Described {
+  std::string unit;
+  std::string description;
+};
+
+// Unit and meaning by table and column.
+using Descriptions = std::map<std::pair<std::string, std::string>, Described>;
+
+Descriptions descriptions_of(SqliteConnection& connection) {
+  Descriptions found;
+  SqliteStatement rows(connection, "SELECT table_name, column_name, unit, description FROM columns");
+  while (rows.next()) {
+    found[{rows.text(0), rows.text(1)}] = {rows.text(2), rows.text(3)};
+  }
+  return found;
+}
+
+std::vector<std::string> tables_of(SqliteConnection& connection) {
+  std::vector<std::string> names;
+  SqliteStatement rows(
+      connection, "SELECT name FROM sqlite_schema WHERE type = 'table' AND name <> 'columns' ORDER BY rowid");
+  while (rows.next()) {
+    names.push_back(rows.text(0));
+  }
+  return names;
+}
+
+ColumnType type_of(const std::string& declared) {
+  return declared == "INTEGER" ? ColumnType::integer
+         : declared == "REAL"  ? ColumnType::real
+                               : ColumnType::text;
+}
+
+bool is_plain(const std::string& name) {
+  return !name.empty() &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
+}
+
+// SQLite stores a value of any type, whatever type the column declares.
+Cell as_type(const Cell& cell, ColumnType type) {
+  const auto* integer = std::get_if<std::int64_t>(&cell);
+  if (type == ColumnType::real && integer != nullptr) {
+    return static_cast<double>(*integer);
+  }
+  const bool fits = type == ColumnType::integer ? integer != nullptr
+                    : type == ColumnType::real  ? std::holds_alternative<double>(cell)
+                                                : std::holds_alternative<std::string>(cell);
+  return fits ? cell : Cell{};
+}
+
+Table read_table(SqliteConnection& connection, const fs::path& file, const std::string& name,
+                 const Descriptions& descriptions, std::size_t& rows_left) {
+  std::vector<Column> columns;
+  std::set<std::string> seen;
+  SqliteStatement info(connection, "SELECT name, type FROM pragma_table_info(?)");
+  info.bind(1, std::string_view(name));
+  while (info.next()) {
+    Column column{info.text(0), type_of(info.text(1)), "", ""};
+    if (!is_plain(column.name) || !seen.insert(column.name).second) {
+      throw sim::UserError(file.string() + ": table " + name + ": its columns are not those of a study" +
+                           std::string(remedy));
+    }
+    if (const auto at = descriptions.find({name, column.name}); at != descriptions.end()) {
+      column.unit = at->second.unit;
+      column.description = at->second.description;
+    }
+    columns.push_back(column);
+  }
+  if (columns.empty() || !is_plain(name)) {
+    throw sim::UserError(file.string() + ": table " + name + " is not one of a study" + std::string(remedy));
+  }
+  Table table(name, name, columns);
+  SqliteStatement rows(connection, "SELECT * FROM " + sql_name(name));
+  while (rows.next()) {
+    if (rows_left == 0) {
+      throw sim::UserError(
+          fmt::format("{}: has more than {} rows, too many for one page; read the tables with "
+                      "sqlite3 or from the .csv files",
+                      file.string(), most_rows));
+    }
+    --rows_left;
+    std::vector<Cell> cells;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      cells.push_back(as_type(rows.cell(static_cast<int>(i)), columns[i].type));
+    }
+    table.add_row(std::move(cells));
+  }
+  return table;
+}
+
+// "setting", "value" and "given", as studies/tables/provenance.h makes it.
+void take_settings(const Table& table, ReportData& report) {
+  for (const std::vector<Cell>& row : table.rows()) {
+    const auto text = [&](std::size_t i) {
+      const auto* found = i < row.size() ? std::get_if<std::string>(&row[i]) : nullptr;
+      return found == nullptr ? std::string() : *found;
+    };
+    if (text(0) == "version") {
+      report.provenance.emplace_back("version of marti", text(1));
+    } else {
+      report.configuration += text(0) + " = " + text(1) + "\n";
+    }
+  }
+}
+
+// Takes the report's first paragraph as the title, if it is short.
+void take_text(const fs::path& file, ReportData& report) {
+  report.text = sim::read_file(file, largest_text);
+  const std::size_t end = report.text.find("\n\n");
+  std::string first = report.text.substr(0, end);
+  std::replace(first.begin(), first.end(), '\n', ' ');
+  constexpr std::size_t longest = 300;
+  if (!first.empty() && first.size() <= longest) {
+    report.title = first;
+  }
+}
+
+// What a study has found, claim by claim (studies/tables/claim.h): its answer.
+void take_claims(SqliteConnection& connection, ReportData& report) {
+  SqliteStatement rows(connection,
+                       "SELECT subject, coalesce(here, '?'), verdict FROM claims ORDER BY rowid LIMIT 12");
+  while (rows.next()) {
+    report.answer.push_back(fmt::format("{}: {} ({}).", rows.text(0), rows.text(1), rows.text(2)));
+  }
+}
+
+}  // namespace
+
+ReportData read_study_report(const fs::path& directory) {
+  const fs::path file = directory / "results.sqlite";
+  ReportData report;
+  report.kind = "study";
+  report.title = "Study";
+  SqliteConnection connection(file, SqliteConnection::Access::read);
+  const Descriptions descriptions = descriptions_of(connection);
+  std::size_t rows_left = most_rows;
+  std::vector<Table> tables;
+  for (const std::string& name : tables_of(connection)) {
+    Table table = read_table(connection, file, name, descriptions, rows_left);
+    if (name == "provenance") {
+      take_settings(table, report);
+      continue;
+    }
+    if (name == "claims") {
+      take_claims(connection, report);
+    }
+    tables.push_back(std::move(table));
+  }
+  if (is_there(directory / "report.txt")) {
+    take_text(directory / "report.txt", report);
+  }
+  for (const auto& [chart, table] : charts_of(tables)) {
+    report.charts.push_back(chart_of_results(*chart, rows_json(*table)));
+  }
+  for (Table& table : tables) {
+    report.tables.push_back({std::move(table), true});
+  }
+  for (const fs::path& image : files_ending_in(directory, ".png")) {
+    take_image(image, image.stem().string(), report);
+  }
+  report.answer.push_back(fmt::format("{} tables and {} charts below; the study's own report follows them.",
+                                      report.tables.size(), report.charts.size()));
+  return report;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,18 @@
+// The directories in which results are kept: that of a run has a result.json, that of a sweep or a study a
+// results.sqlite.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace marti::studies {
+
+/// Whether a file or a link of this name exists, even a link to nothing. UserError when that cannot be told.
+[[nodiscard]] bool is_there(const std::filesystem::path& file);
+
+/// The one of the two that the directory holds. UserError when it holds both, or neither: `expected` says
+/// what it should be then.
+[[nodiscard]] std::filesystem::path results_in(const std::filesystem::path& directory,
+                                               std::string_view expected);
+
+}  // namespace marti::studies
