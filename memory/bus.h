@@ -32,8 +32,10 @@ class Bus final : public Interconnect {
     std::uint32_t bytes = 0;
   };
 
-  // Grants the bus to a tenure of `length` that arrives now; returns when it starts.
-  sim::Ticks take(sim::Ticks length);
+  // Grants the bus to a tenure of `length` that arrives at `arrival`; returns when it starts.
+  sim::Ticks take(sim::Ticks arrival, sim::Ticks length);
+  // Sends the data of the port's read, which are ready at `ready`.
+  void send_data(std::uint32_t port, sim::Ticks ready);
 
   InterconnectSite site_;
   BusMode mode_;
