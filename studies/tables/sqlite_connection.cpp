@@ -90,18 +90,18 @@ SqliteStatement::SqliteStatement(SqliteConnection& connection, const std::string
 
 SqliteStatement& SqliteStatement::with(const std::vector<Cell>& parameters) {
   connection_.checked([&] {
-    statement_.reset();
+    (void)statement_.tryReset();  // gives once more the error that its last run has thrown
     int index = 0;
     for (const Cell& cell : parameters) {
       ++index;
-      if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
+      if (std::holds_alternative<std::monostate>(cell)) {
+        statement_.bind(index);
+      } else if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
         statement_.bind(index, *integer);
       } else if (const auto* real = std::get_if<double>(&cell)) {
         statement_.bind(index, *real);
-      } else if (const auto* text = std::get_if<std::string>(&cell)) {
-        statement_.bind(index, *text);
       } else {
-        statement_.bind(index);
+        statement_.bind(index, std::get<std::string>(cell));
       }
     }
   });
@@ -142,19 +142,18 @@ std::vector<std::string> SqliteStatement::column_names() const {
 Cell SqliteStatement::cell(int column) const {
   return connection_.checked([&]() -> Cell {
     const SQLite::Column value = statement_.getColumn(column);
-    if (value.isInteger()) {
-      return std::int64_t{value.getInt64()};
+    switch (value.getType()) {
+      case SQLITE_INTEGER:
+        return std::int64_t{value.getInt64()};
+      case SQLITE_FLOAT:
+        return value.getDouble();
+      case SQLITE_TEXT:
+        return value.getString();
+      case SQLITE_NULL:
+        return {};
+      default:
+        refuse(column, ColumnType::text);
     }
-    if (value.isFloat()) {
-      return value.getDouble();
-    }
-    if (value.isText()) {
-      return value.getString();
-    }
-    if (!value.isNull()) {
-      refuse(column, ColumnType::text);
-    }
-    return {};
   });
 }
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "sim/error.h"
-#include "studies/sweep/ranks/plan_digest.h"
 #include "studies/sweep/ranks/rank_sweep.h"
 
 namespace marti::studies {

@@ -1,15 +1,11 @@
 #include <algorithm>
-#include <atomic>
-#include <deque>
-#include <exception>
-#include <mutex>
-#include <set>
+#include <chrono>
+#include <future>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "sim/error.h"
-#include "studies/sweep/ranks/plan_digest.h"
 #include "studies/sweep/ranks/rank_sweep.h"
 
 namespace marti::studies {
@@ -38,20 +34,11 @@ void RankServer::work(SweepSite& site, Coordinator& coordinator, const std::stri
   for (std::size_t rank = 1; rank < clients_.size(); ++rank) {
     tell(rank, {.kind = Kind::begin, .bytes = configuration});
   }
-  std::exception_ptr error;
-  std::atomic<bool> done = false;
-  const std::jthread here([&] {
-    try {
-      work_together(site, coordinator, workers);
-    } catch (...) {
-      error = std::current_exception();
-    }
-    done = true;
-  });
+  std::future<void> here = std::async(std::launch::async, [&] { work_together(site, coordinator, workers); });
   try {
-    while (!done || !all_leave()) {
-      if (done && error != nullptr) {
-        std::rethrow_exception(error);
+    while (here.valid() || !all_leave()) {
+      if (here.valid() && here.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        here.get();  // throws what the workers have thrown
       }
       if (!step(site, coordinator)) {
         std::this_thread::sleep_for(pause);
@@ -60,9 +47,6 @@ void RankServer::work(SweepSite& site, Coordinator& coordinator, const std::stri
   } catch (...) {
     coordinator.stop();
     throw;
-  }
-  if (error != nullptr) {
-    std::rethrow_exception(error);
   }
   for (std::size_t rank = 1; rank < clients_.size(); ++rank) {
     tell(rank, {.kind = Kind::goodbye});

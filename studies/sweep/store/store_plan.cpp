@@ -25,7 +25,7 @@ class Settings {
         add_section_(connection, insert_sql("sections", 2)) {
     SqliteStatement settings(connection, "SELECT id, key, value FROM settings");
     while (settings.next()) {
-      settings_[joined(settings.text(1), settings.text(2))] = settings.integer(0);
+      settings_[{settings.text(1), settings.text(2)}] = settings.integer(0);
       next_setting_ = std::max(next_setting_, settings.integer(0) + 1);
     }
     SqliteStatement sections(connection, "SELECT section, setting FROM sections ORDER BY section, setting");
@@ -60,15 +60,8 @@ class Settings {
   }
 
  private:
-  const std::string& joined(std::string_view key, std::string_view value) {
-    text_.assign(key);
-    text_ += '\0';
-    text_ += value;
-    return text_;
-  }
-
   std::int64_t setting(const sim::EffectiveValue& value) {
-    const auto [at, is_new] = settings_.try_emplace(joined(value.key, value.value), next_setting_);
+    const auto [at, is_new] = settings_.try_emplace({value.key, value.value}, next_setting_);
     if (is_new) {
       add_setting_.run({next_setting_++, value.key, value.value});
     }
@@ -76,14 +69,14 @@ class Settings {
   }
 
   std::int64_t section_of(const std::vector<sim::EffectiveValue>& values) {
-    members_.clear();
+    std::vector<std::int64_t> members;
     for (const sim::EffectiveValue& value : values) {
-      members_.push_back(setting(value));
+      members.push_back(setting(value));
     }
-    std::sort(members_.begin(), members_.end());
-    const auto [at, is_new] = sections_.try_emplace(members_, next_section_);
+    std::sort(members.begin(), members.end());
+    const auto [at, is_new] = sections_.try_emplace(members, next_section_);
     if (is_new) {
-      for (const std::int64_t member : members_) {
+      for (const std::int64_t member : members) {
         add_section_.run({next_section_, member});
       }
       ++next_section_;
@@ -93,26 +86,36 @@ class Settings {
 
   SqliteStatement add_setting_;
   SqliteStatement add_section_;
-  std::unordered_map<std::string, std::int64_t> settings_;
+  std::map<std::pair<std::string, std::string>, std::int64_t> settings_;
   std::map<std::vector<std::int64_t>, std::int64_t> sections_;
   SettingsPool pool_;  // of what is not shared yet: parts are known by their addresses
   std::unordered_map<const void*, std::int64_t> section_of_part_;
   std::int64_t next_setting_ = 1;
   std::int64_t next_section_ = 1;
-  std::string text_;
-  std::vector<std::int64_t> members_;
 };
 
-using Known = std::unordered_map<std::string, std::int64_t>;
-
-Known known_keys(SqliteConnection& connection, const std::string& table, std::int64_t& next) {
-  Known known;
+// The ids of frames or machines, in their order. Calls `add` for those whose keys the table lacks, with a new
+// id.
+template <class Wanted, class Add>
+std::vector<std::int64_t> enter(SqliteConnection& connection, const std::string& table,
+                                const std::vector<Wanted>& all, const Add& add) {
+  std::unordered_map<std::string, std::int64_t> known;
+  std::int64_t next = 1;
   SqliteStatement rows(connection, "SELECT id, key FROM " + table);
   while (rows.next()) {
     known[rows.text(1)] = rows.integer(0);
     next = std::max(next, rows.integer(0) + 1);
   }
-  return known;
+  std::vector<std::int64_t> ids;
+  ids.reserve(all.size());
+  for (const Wanted& wanted : all) {
+    const auto [at, is_new] = known.try_emplace(wanted.key, next);
+    if (is_new) {
+      add(next++, wanted);
+    }
+    ids.push_back(at->second);
+  }
+  return ids;
 }
 
 void add_sections(SqliteStatement& insert, std::int64_t whose, const std::vector<std::int64_t>& sections) {
@@ -123,41 +126,22 @@ void add_sections(SqliteStatement& insert, std::int64_t whose, const std::vector
 
 std::vector<std::int64_t> enter_frames(SqliteConnection& connection, const SweepPlan& plan,
                                        Settings& settings) {
-  std::int64_t next = 1;
-  Known known = known_keys(connection, "frames", next);
-  SqliteStatement frame(connection, insert_sql("frames", 2));
+  SqliteStatement insert(connection, insert_sql("frames", 2));
   SqliteStatement section(connection, insert_sql("frame_sections", 2));
-  std::vector<std::int64_t> ids;
-  for (const SweepFrame& wanted : plan.frames) {
-    const auto [at, is_new] = known.try_emplace(wanted.key, next);
-    if (is_new) {
-      frame.run({next, wanted.key});
-      add_sections(section, next, settings.sections_of(settings.shared(wanted.settings)));
-      ++next;
-    }
-    ids.push_back(at->second);
-  }
-  return ids;
+  return enter(connection, "frames", plan.frames, [&](std::int64_t id, const SweepFrame& frame) {
+    insert.run({id, frame.key});
+    add_sections(section, id, settings.sections_of(settings.shared(frame.settings)));
+  });
 }
 
 std::vector<std::int64_t> enter_machines(SqliteConnection& connection, const SweepPlan& plan,
                                          const std::vector<std::int64_t>& frames, Settings& settings) {
-  std::int64_t next = 1;
-  Known known = known_keys(connection, "machines", next);
-  SqliteStatement machine(connection, insert_sql("machines", 3));
+  SqliteStatement insert(connection, insert_sql("machines", 3));
   SqliteStatement section(connection, insert_sql("machine_sections", 2));
-  std::vector<std::int64_t> ids;
-  ids.reserve(plan.machines.size());
-  for (const SweepMachine& wanted : plan.machines) {
-    const auto [at, is_new] = known.try_emplace(wanted.key, next);
-    if (is_new) {
-      machine.run({next, wanted.key, frames.at(wanted.frame)});
-      add_sections(section, next, settings.sections_of(wanted.settings));
-      ++next;
-    }
-    ids.push_back(at->second);
-  }
-  return ids;
+  return enter(connection, "machines", plan.machines, [&](std::int64_t id, const SweepMachine& machine) {
+    insert.run({id, machine.key, frames.at(machine.frame)});
+    add_sections(section, id, settings.sections_of(machine.settings));
+  });
 }
 
 Cell axis_cell(const sim::Value& value) {

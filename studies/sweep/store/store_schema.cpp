@@ -68,7 +68,12 @@ CREATE VIEW histograms AS
 
 bool has_columns(SqliteConnection& connection, const std::string& table, std::size_t first,
                  std::span<const Column> columns) {
-  const std::vector<std::string> names = SqliteStatement(connection, "SELECT * FROM " + table).column_names();
+  std::vector<std::string> names;  // none when there is no such table
+  SqliteStatement rows(connection, "SELECT name FROM pragma_table_info(?) ORDER BY cid");
+  rows.with({table});
+  while (rows.next()) {
+    names.push_back(rows.text(0));
+  }
   return names.size() == first + columns.size() &&
          std::equal(columns.begin(), columns.end(), names.begin() + static_cast<std::ptrdiff_t>(first),
                     [](const Column& column, const std::string& name) { return name == column.name; });

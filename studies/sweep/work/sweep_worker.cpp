@@ -91,9 +91,7 @@ void do_time(SweepSite& site, TaskSource& source, const SweepTask& task) {
   }
 }
 
-}  // namespace
-
-void work(SweepSite& site, TaskSource& source) {
+void take_tasks(SweepSite& site, TaskSource& source) {
   for (;;) {
     const SweepTask task = source.next();
     switch (task.kind) {
@@ -111,6 +109,8 @@ void work(SweepSite& site, TaskSource& source) {
   }
 }
 
+}  // namespace
+
 void work_together(SweepSite& site, TaskSource& source, unsigned workers) {
   std::mutex mutex;
   std::exception_ptr first;
@@ -118,7 +118,7 @@ void work_together(SweepSite& site, TaskSource& source, unsigned workers) {
     std::vector<std::jthread> threads;
     const auto run = [&] {
       try {
-        work(site, source);
+        take_tasks(site, source);
       } catch (...) {
         const std::lock_guard lock(mutex);
         if (first == nullptr) {

@@ -33,13 +33,10 @@ struct SweepSite {
   MemoryGate machines;
 };
 
-/// Works until there is nothing to do. Throws any error; the error of a machine that cannot be timed names
-/// it. Several may work at once, each in a thread of its own: threads and not tasks of oneTBB, because they
-/// wait for each other, and oneTBB's own threads must be free to trace and strip meanwhile.
-void work(SweepSite& site, TaskSource& source);
-
-/// Runs `workers` workers, or as many as the system has threads for, and returns when all have ended; throws
-/// what the first to fail threw.
+/// Runs `workers` workers, or as many as the system has threads for, until there is nothing to do; throws
+/// what the first to fail threw. The error of a machine that cannot be timed names it. Each worker is a
+/// thread and not a task of oneTBB, because they wait for each other, and oneTBB's own threads must be free
+/// to trace and strip meanwhile.
 void work_together(SweepSite& site, TaskSource& source, unsigned workers);
 
 }  // namespace marti::studies
