@@ -13,7 +13,7 @@ namespace marti::studies {
 namespace {
 
 // The columns of table points that are not axes.
-constexpr std::size_t point_columns = 4;
+constexpr std::size_t columns_before_axes = 4;
 
 const std::filesystem::path& existing_store(const std::filesystem::path& file) {
   std::error_code error;
@@ -57,10 +57,10 @@ SweepReader::SweepReader(const std::filesystem::path& file)
                     "SELECT key, value FROM frame_settings WHERE frame = "
                     "(SELECT frame FROM machines WHERE id = ?1) ORDER BY key");
   const std::vector<std::string> columns = columns_of(connection_, "points");
-  if (columns.size() < point_columns) {
+  if (columns.size() < columns_before_axes) {
     throw sim::UserError(file.string() + ": its table points lacks columns: it is damaged");
   }
-  axes_.assign(columns.begin() + point_columns, columns.end());
+  axes_.assign(columns.begin() + columns_before_axes, columns.end());
   figures_ = columns_of(connection_, "summary");
   summary_figures_ = figures_.size();
   for (const std::string& counter : columns_of(connection_, "results")) {
