@@ -1,131 +1,182 @@
-// The pending events, earliest first, as a 4-ary heap of 16-byte keys.
+// The pending events, earliest first.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
+#include "sim/event.h"
+#include "sim/event_heap.h"
 #include "sim/large_pages.h"
-#include "sim/time.h"
+#include "sim/number_set.h"
 
 namespace marti::sim {
 
-inline constexpr unsigned sequence_bits = 24;
-inline constexpr unsigned component_bits = 32;
-
-/// One event. Events are ordered by (time, class, component, sequence), packed so that two integer
-/// comparisons decide; the order at equal times never depends on the order of insertion. A component that may
-/// have several events of one class pending gives each a sequence number of its own.
-struct Event {
-  Ticks time = 0;
-  std::uint64_t order = 0;
-
-  [[nodiscard]] static Event make(Ticks time, std::uint8_t event_class, std::uint32_t component,
-                                  std::uint32_t sequence = 0) {
-    return {time, (std::uint64_t{event_class} << (component_bits + sequence_bits)) |
-                      (std::uint64_t{component} << sequence_bits) |
-                      (sequence & ((1U << sequence_bits) - 1U))};
-  }
-  [[nodiscard]] std::uint8_t event_class() const {
-    return static_cast<std::uint8_t>(order >> (component_bits + sequence_bits));
-  }
-  [[nodiscard]] std::uint32_t component() const { return static_cast<std::uint32_t>(order >> sequence_bits); }
-  [[nodiscard]] std::uint32_t sequence() const {
-    return static_cast<std::uint32_t>(order) & ((1U << sequence_bits) - 1U);
-  }
-
-  // One comparison of 128 bits, without a branch: which of two events is earlier is not predictable.
-  friend bool operator<(const Event& a, const Event& b) { return a.key() < b.key(); }
-
- private:
-  __extension__ using Key = __int128;
-  [[nodiscard]] Key key() const { return static_cast<Key>(time) << 64U | order; }
-};
-
-/// A priority queue of events. `pop` leaves a hole at the root that a following `push` fills, because a
-/// handler nearly always posts one event: that is one pass down the heap instead of two.
+/// A priority queue of events: a calendar of short days for the near future (R. Brown, "Calendar queues: a
+/// fast O(1) priority queue implementation for the simulation event set problem", Communications of the ACM
+/// 31(10), 1988), and a heap for what does not fit there. The events of a day are a sorted list, and the
+/// length of a day follows from how far ahead events are pushed, so that pushing and popping take constant
+/// time. What is popped never depends on the calendar: it is the earlier of the calendar's first event and
+/// the heap's.
+///
+/// An event that is pushed must not be earlier than the one popped last.
 class EventQueue {
  public:
-  [[nodiscard]] bool empty() const { return heap_.size() == (hole_ ? 1U : 0U); }
-  [[nodiscard]] std::size_t size() const { return heap_.size() - (hole_ ? 1U : 0U); }
-  void reserve(std::size_t events) { heap_.reserve(events); }
+  explicit EventQueue(std::uint32_t days = few_days) : days_(days, none), busy_days_(days) {}
 
-  void push(const Event& event) {
-    if (hole_) {
-      hole_ = false;
-      sift_down(event);
-      return;
+  [[nodiscard]] bool empty() const { return in_calendar_ == 0 && heap_.empty(); }
+  [[nodiscard]] std::size_t size() const { return in_calendar_ + heap_.size(); }
+  /// For so many pending events. The queue must be empty.
+  void reserve(std::size_t events) {
+    entries_.reserve(events);
+    if (events > few_days) {
+      days_.assign(NumberSet::most, none);
+      busy_days_ = NumberSet(NumberSet::most);
     }
-    heap_.push_back(event);
-    std::size_t at = heap_.size() - 1;
-    while (at > 0) {
-      const std::size_t parent = (at - 1) / arity;
-      if (!(event < heap_[parent])) {
-        break;
-      }
-      heap_[at] = heap_[parent];
-      at = parent;
-    }
-    heap_[at] = event;
   }
 
-  /// Calls visit(event) for the few events that may be next unless an earlier one is pushed. Call it between
-  /// a pop and the push that follows.
-  template <class Visit>
-  void each_likely_next(Visit&& visit) const {
-    for (std::size_t at = 1; at <= arity && at < heap_.size(); ++at) {
-      visit(heap_[at]);
+  void push(const Event& event) {
+    ahead_ += static_cast<double>(event.time - last_);
+    if (!push_into_calendar(event)) {
+      heap_.push(event);
     }
+    if (++pushed_ == tuned_at_) [[unlikely]] {
+      tune();
+    }
+  }
+
+  /// Calls visit(event) for a few events that may be next unless an earlier one is pushed.
+  template <class Visit>
+  void each_likely_next(const Visit& visit) const {
+    if (in_calendar_ != 0) {
+      std::uint32_t number = days_[first_day()];
+      for (int count = 0; count < 2 && number != none; ++count) {
+        visit(entries_[number].event);
+        number = entries_[number].next;
+      }
+    }
+    heap_.each_likely_next(visit);
   }
 
   /// Removes and returns the earliest event. The queue must not be empty.
   Event pop() {
-    fill_hole();
-    hole_ = true;
-    return heap_.front();
+    if (in_calendar_ != 0) [[likely]] {
+      const std::uint32_t day = first_day();
+      if (heap_.empty() || entries_[days_[day]].event < heap_.front()) {
+        return pop_of(day);
+      }
+    }
+    const Event event = heap_.pop();
+    last_ = event.time;
+    return event;
   }
 
  private:
-  static constexpr std::size_t arity = 4;
+  static constexpr std::uint32_t none = 0xffffffffU;
+  static constexpr std::uint32_t few_days = 64 * 64;
+  static constexpr int longest_walk = 16;             // along the list of a day
+  static constexpr std::uint64_t tuned_after = 1024;  // pushed events
 
-  void fill_hole() {
-    if (hole_) {
-      hole_ = false;
-      const Event last = heap_.back();
-      heap_.pop_back();
-      sift_down(last);
+  struct Entry {
+    Event event;
+    std::uint32_t next = none;  // of its day, or of the entries that are free
+  };
+
+  // Days are counted from time 0; those that are open, as many as days_ has, begin with that of last_.
+  [[nodiscard]] std::uint32_t place_of(Ticks time) const {
+    return static_cast<std::uint32_t>(static_cast<std::uint64_t>(time) >> shift_) &
+           (static_cast<std::uint32_t>(days_.size()) - 1U);
+  }
+  [[nodiscard]] std::uint32_t first_day() const { return busy_days_.next(place_of(last_)); }
+
+  // False when the event is on a day that is not open, or its day has many events.
+  bool push_into_calendar(const Event& event) {
+    const std::uint64_t days_ahead =
+        (static_cast<std::uint64_t>(event.time) >> shift_) - (static_cast<std::uint64_t>(last_) >> shift_);
+    if (days_ahead >= days_.size()) {
+      return false;
     }
+    const std::uint32_t day = place_of(event.time);
+    std::uint32_t* link = &days_[day];
+    if (*link == none) {
+      busy_days_.insert(day);
+    } else {
+      for (int walked = 0; *link != none && entries_[*link].event < event; ++walked) {
+        if (walked == longest_walk) {
+          return false;
+        }
+        link = &entries_[*link].next;
+      }
+    }
+    const std::uint32_t next = *link;
+    if (free_ != none) [[likely]] {
+      const std::uint32_t number = free_;
+      free_ = entries_[number].next;
+      entries_[number] = {event, next};
+      *link = number;
+    } else {
+      *link = static_cast<std::uint32_t>(entries_.size());  // before push_back, which may move the link
+      entries_.push_back({event, next});
+    }
+    ++in_calendar_;
+    return true;
   }
 
-  // Moves the root's hole down until `event` fits in it.
-  void sift_down(const Event& event) {
-    const std::size_t size = heap_.size();
-    std::size_t at = 0;
-    for (;;) {
-      const std::size_t first = at * arity + 1;
-      if (first >= size) {
-        break;
+  Event pop_of(std::uint32_t day) {
+    const std::uint32_t number = days_[day];
+    Entry& entry = entries_[number];
+    days_[day] = entry.next;
+    if (entry.next == none) {
+      busy_days_.erase(day);
+    }
+    entry.next = free_;
+    free_ = number;
+    --in_calendar_;
+    last_ = entry.event.time;
+    return entry.event;
+  }
+
+  // Chooses the length of a day so that the open days are four times as long as events are pushed ahead on
+  // average.
+  void tune() {
+    const double wanted =
+        4.0 * ahead_ / static_cast<double>(tuned_after_last_) / static_cast<double>(days_.size());
+    const auto shift =
+        wanted < 1.0 ? 0U : static_cast<unsigned>(std::bit_width(static_cast<std::uint64_t>(wanted)));
+    if (shift > shift_ || shift + 1 < shift_) {
+      std::vector<Event> events;
+      events.reserve(in_calendar_);
+      const Ticks last = last_;
+      while (in_calendar_ != 0) {
+        events.push_back(pop_of(first_day()));
       }
-      std::size_t least = first;
-      if (first + arity <= size) [[likely]] {
-        const std::size_t left = heap_[first + 1] < heap_[first] ? first + 1 : first;
-        const std::size_t right = heap_[first + 3] < heap_[first + 2] ? first + 3 : first + 2;
-        least = heap_[right] < heap_[left] ? right : left;
-      } else {
-        for (std::size_t child = first + 1; child < size; ++child) {
-          least = heap_[child] < heap_[least] ? child : least;
+      last_ = last;
+      shift_ = shift;
+      for (const Event& event : events) {
+        if (!push_into_calendar(event)) {
+          heap_.push(event);
         }
       }
-      if (!(heap_[least] < event)) {
-        break;
-      }
-      heap_[at] = heap_[least];
-      at = least;
     }
-    heap_[at] = event;
+    ahead_ = 0.0;
+    tuned_after_last_ = std::max<std::uint64_t>(tuned_after, 8 * size());
+    tuned_at_ = pushed_ + tuned_after_last_;
   }
 
-  LargeVector<Event> heap_;
-  bool hole_ = false;
+  EventHeap heap_;
+  LargeVector<std::uint32_t> days_;  // the first entry of each open day
+  NumberSet busy_days_;              // those that have events
+  LargeVector<Entry> entries_;
+  std::uint32_t free_ = none;
+  std::size_t in_calendar_ = 0;
+  unsigned shift_ = 0;  // a day has 2^shift_ ticks
+  Ticks last_ = 0;      // time of the event popped last
+  double ahead_ = 0.0;  // sum over the events pushed since the last tuning: ticks from the event popped last
+  std::uint64_t pushed_ = 0;
+  std::uint64_t tuned_at_ = tuned_after;
+  std::uint64_t tuned_after_last_ = tuned_after;
 };
 
 }  // namespace marti::sim

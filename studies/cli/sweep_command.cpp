@@ -11,7 +11,6 @@
 #include "sim/files.h"
 #include "studies/keys/config_file.h"
 #include "studies/keys/frame_keys.h"
-#include "studies/sweep/join_sweep.h"
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/sweep/plan/sweep_row.h"
 #include "studies/sweep/ranks/launch.h"
@@ -114,15 +113,15 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
       });
   if (arguments.json) {
     print(json_of(arguments.best.empty()
-                      ? points_table(report.store)
-                      : best_points(report.store, arguments.best, arguments.within).front));
+                      ? points_table(*report.reader)
+                      : best_points(*report.reader, arguments.best, arguments.within).front));
     return;
   }
   std::string text = said(report);
   text += "wrote         " + report.store.string() + "\n";
   text += "wrote         " + report.points.string() + "\n";
   if (!arguments.best.empty()) {
-    text += "\n" + best_points(report.store, arguments.best, arguments.within).text;
+    text += "\n" + best_points(*report.reader, arguments.best, arguments.within).text;
   }
   print(text);
 }

@@ -16,11 +16,9 @@
 #include "studies/show/output.h"
 #include "studies/sweep/ranks/rank_sweep.h"
 #include "studies/sweep/store/points_table.h"
-#include "studies/sweep/store/sweep_reader.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "studies/sweep/sweep_outlook.h"
 #include "studies/sweep/work/coordinator.h"
-#include "studies/sweep/work/sweep_memory.h"
 #include "studies/sweep/work/sweep_worker.h"
 #include "studies/tables/csv.h"
 
@@ -69,31 +67,28 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
                       const std::function<void(const std::string&)>& announce) {
   refuse_large_machines(plan, limit);
   prepare_output(options.directory);
-  announce(describe(plan, look_ahead(plan, options)));
-  const unsigned threads = threads_of(options);
-  const unsigned all_threads =
-      threads * (options.ranks != nullptr ? static_cast<unsigned>(options.ranks->size()) : 1U);
   SweepReport report;
   report.store = options.directory / "results.sqlite";
   report.points = options.directory / "points.csv";
-  SweepStore store(report.store, plan);
+  const bool begun = is_begun(report.store);
+  announce(describe(plan, look_ahead(plan, options)));  // checks a store that was begun
+  const unsigned threads = threads_of(options);
+  const unsigned all_threads =
+      threads * (options.ranks != nullptr ? static_cast<unsigned>(options.ranks->size()) : 1U);
+  SweepStore store(report.store, plan, begun);
   const Schedule left(plan, store.done(), store.frames_done());
   report.timed = left.machines_left();
   report.traced = left.frames_left();
 
   const auto begin = std::chrono::steady_clock::now();
-  const SweepMemory memory = shares_of(limit.limit());
-  LogShelf logs(memory.logs);
-  StripShelf strips(memory.strips);
-  MemoryGate machines(memory.machines);
+  SweepSite site(plan, limit.limit());
   Progress progress({options.terminal, options.quiet, stderr, all_threads});
   std::optional<RankServer> server;
   if (options.ranks != nullptr) {
     server.emplace(*options.ranks, plan);
   }
   Coordinator coordinator(plan, store, progress, [&](std::size_t frame) {
-    strips.drop(frame);
-    logs.drop(frame);
+    site.drop(frame);
     if (server) {
       server->over(frame);
     }
@@ -105,15 +100,13 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
           stderr, "marti: interrupted: %zu of %zu machines are saved in %s; the same command does the rest\n",
           saved, plan.machines.size(), report.store.c_str());
     });
-    const SweepSite site{plan, logs, strips, machines};
     try {
       if (server) {
         server->work(site, coordinator, options.configuration, threads);
       } else {
-        LocalSource source(coordinator, 0);
         // More workers than tasks would only wait.
         const std::size_t tasks = std::max<std::size_t>(1, report.timed + report.traced);
-        work_together(site, source, static_cast<unsigned>(std::min<std::size_t>(threads, tasks)));
+        work_together(site, coordinator, static_cast<unsigned>(std::min<std::size_t>(threads, tasks)));
       }
     } catch (const sim::UserError& error) {
       progress.end();
@@ -124,8 +117,20 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
   progress.end();
   store.close();
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  sim::write_file(report.points, csv_of(points_table(report.store)));
+  report.reader = std::make_unique<const SweepReader>(report.store);
+  sim::write_file(report.points, csv_of(points_table(*report.reader)));
   return report;
+}
+
+void join_sweep(Ranks& ranks, const SweepOptions& options,
+                const std::function<JoinedSweep(const std::string& configuration)>& read) {
+  std::optional<JoinedSweep> joined;
+  std::optional<SweepSite> site;
+  work_for_rank_0(ranks, options.threads != 0 ? options.threads : threads_of_rank(ranks),
+                  [&](const std::string& configuration) -> SweepSite& {
+                    joined = read(configuration);
+                    return site.emplace(joined->plan, joined->memory_limit);
+                  });
 }
 
 }  // namespace marti::studies

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "sim/config.h"
 #include "studies/sweep/plan/sweep_plan.h"
+#include "studies/sweep/store/sweep_reader.h"
 
 namespace marti::studies {
 
@@ -31,7 +33,8 @@ struct SweepReport {
   std::size_t traced = 0;  ///< frames traced now
   double seconds = 0.0;    ///< of real time
   std::filesystem::path store;
-  std::filesystem::path points;  ///< the table as CSV
+  std::filesystem::path points;               ///< the table as CSV
+  std::unique_ptr<const SweepReader> reader;  ///< of the store as the sweep has left it
 };
 
 /// Runs the part of the plan that is not in the store yet. `announce` is called with the plan as text before
@@ -39,5 +42,15 @@ struct SweepReport {
 /// Throws UserError; what is done by then is saved.
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
                       const std::function<void(const std::string&)>& announce);
+
+/// What a rank makes of the configuration.
+struct JoinedSweep {
+  SweepPlan plan;
+  std::uint64_t memory_limit = 0;
+};
+
+/// The part of a rank that does not hold the store: works until rank 0 says that all is done.
+void join_sweep(Ranks& ranks, const SweepOptions& options,
+                const std::function<JoinedSweep(const std::string& configuration)>& read);
 
 }  // namespace marti::studies

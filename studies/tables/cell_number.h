@@ -1,4 +1,4 @@
-// A cell's value where it is a number.
+// A cell's value as a number, and as the type that its column declares.
 #pragma once
 
 #include <optional>
@@ -14,6 +14,19 @@ namespace marti::studies {
   }
   const auto* real = std::get_if<double>(&cell);
   return real == nullptr ? std::nullopt : std::optional(*real);
+}
+
+/// The cell as a value of that type; without a value where it cannot be one. SQLite stores a value of any
+/// type, whatever type the column declares.
+[[nodiscard]] inline Cell as_type(const Cell& cell, ColumnType type) {
+  if (type == ColumnType::text) {
+    return std::holds_alternative<std::string>(cell) ? cell : Cell();
+  }
+  if (type == ColumnType::integer) {
+    return std::holds_alternative<std::int64_t>(cell) ? cell : Cell();
+  }
+  const std::optional<double> number = number_of(cell);
+  return number ? Cell(*number) : Cell();
 }
 
 }  // namespace marti::studies

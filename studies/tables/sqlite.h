@@ -8,10 +8,10 @@
 
 namespace marti::studies {
 
-/// Writes all tables into a new database file, which must be new or empty. It is not journalled, so give it a
-/// temporary name until it is complete (sim::PendingFile). Tables come in the order given, so that equal
-/// tables give equal files; NaN becomes NULL, as SQLite has none. Every failure (no permission, disk full,
-/// ...) is a UserError with SQLite's reason; running out of memory is std::bad_alloc.
+/// Writes all tables into a new database file in one transaction. Tables come in the order given, so that
+/// equal tables give equal files; NaN becomes NULL, as SQLite has none. The file must be new or empty. It is
+/// not journalled, so give it a temporary name until it is complete (sim::PendingFile). Every failure is a
+/// UserError with SQLite's reason.
 void write_database(const std::filesystem::path& file, std::span<const Table> tables);
 
 }  // namespace marti::studies

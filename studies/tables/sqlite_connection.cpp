@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstring>
 #include <new>
 
@@ -15,18 +16,11 @@ namespace {
 // How long to wait for a lock: another process may just be writing or cleaning up.
 constexpr int patience_ms = 5000;
 
-// A file's name as the path of a URI.
+// A file's name as a URI: https://www.sqlite.org/uri.html.
 std::string uri_of(const std::filesystem::path& file) {
-  constexpr std::string_view digits = "0123456789abcdef";
   std::string uri = "file:";
-  for (const char c : std::filesystem::absolute(file).string()) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '/';
-    if (plain) {
-      uri += c;
-    } else {
-      uri += {'%', digits[byte >> 4U], digits[byte & 15U]};
-    }
+  for (const char c : file.string()) {
+    uri += c == '%' ? "%25" : c == '?' ? "%3f" : c == '#' ? "%23" : std::string(1, c);
   }
   return uri + "?immutable=1";
 }
@@ -44,58 +38,34 @@ bool may_be_changed(const std::filesystem::path& place) {
 
 }  // namespace
 
-bool has_log_or_journal(const std::filesystem::path& database) {
-  const std::string place = place_of(database).string();
-  for (const char* suffix : {"-wal", "-journal"}) {
-    std::error_code error;
-    const std::uintmax_t bytes = std::filesystem::file_size(place + suffix, error);
-    if (!error && bytes > 0) {
-      return true;
-    }
-  }
-  return false;
-}
-
 SqliteConnection::SqliteConnection(const std::filesystem::path& file, Access access)
     : name_(file.string()), writes_(access != Access::read) {
-  int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_READWRITE;
-  std::string place = file.string();
+  int flags = SQLite::OPEN_NOMUTEX | SQLite::OPEN_READWRITE;
+  std::string place = name_;
   if (writes_) {
-    flags |= SQLITE_OPEN_CREATE;
+    flags |= SQLite::OPEN_CREATE;
   } else if (!may_be_changed(place_of(file))) {
-    flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_READONLY;
+    flags = SQLite::OPEN_NOMUTEX | SQLite::OPEN_READONLY;
     cannot_recover_ = has_log_or_journal(file);
     if (!cannot_recover_) {
       place = uri_of(place_of(file));
-      flags |= SQLITE_OPEN_URI;
+      flags |= SQLite::OPEN_URI;
     }
   }
-  const int status = sqlite3_open_v2(place.c_str(), &connection_, flags,
-                                     access == Access::write_alone ? "unix-none" : nullptr);
-  try {
-    check(status);
-    check(sqlite3_extended_result_codes(connection_, 1));
-    check(sqlite3_busy_timeout(connection_, patience_ms));
-  } catch (...) {
-    sqlite3_close_v2(connection_);
-    throw;
-  }
+  checked(
+      [&] { opened_.emplace(place, flags, patience_ms, access == Access::write_alone ? "unix-none" : ""); });
 }
 
-SqliteConnection::~SqliteConnection() { sqlite3_close_v2(connection_); }
-
-void SqliteConnection::check(int status) const {
-  if (status == SQLITE_OK || status == SQLITE_DONE || status == SQLITE_ROW) {
-    return;
-  }
-  const int kind = status & 0xff;  // without the bits of the extended code
-  if (kind == SQLITE_NOMEM || connection_ == nullptr) {
+void SqliteConnection::fail(const SQLite::Exception& error) const {
+  const int kind = error.getErrorCode();
+  if (kind == SQLITE_NOMEM) {
     throw std::bad_alloc();
   }
-  std::string message = name_ + ": the database cannot be " + (writes_ ? "written: " : "read: ");
-  message += sqlite3_errmsg(connection_);
+  std::string message =
+      name_ + ": the database cannot be " + (writes_ ? "written: " : "read: ") + error.what();
   if (kind == SQLITE_IOERR || kind == SQLITE_CANTOPEN) {
-    const int reason = sqlite3_system_errno(connection_);
+    // Where opening it has failed, there is no connection to ask; SQLite has left errno as it was.
+    const int reason = opened_ ? sqlite3_system_errno(opened_->getHandle()) : errno;
     message += reason == 0 ? "" : std::string(" (") + std::strerror(reason) + ")";
   }
   if (cannot_recover_ && (kind == SQLITE_READONLY || kind == SQLITE_CANTOPEN)) {
@@ -111,168 +81,114 @@ void SqliteConnection::check(int status) const {
 }
 
 void SqliteConnection::execute(const std::string& sql) {
-  check(sqlite3_exec(connection_, sql.c_str(), nullptr, nullptr, nullptr));
+  checked([&] { opened_->exec(sql); });
 }
 
-Cell SqliteConnection::value(const std::string& sql) {
-  SqliteStatement statement(*this, sql);
-  return statement.next() ? statement.cell(0) : Cell();
-}
+SqliteStatement::SqliteStatement(SqliteConnection& connection, const std::string& sql)
+    : connection_(connection),
+      statement_(connection.checked([&] { return SQLite::Statement(*connection.opened_, sql); })) {}
 
-std::int64_t SqliteConnection::integer(const std::string& sql) {
-  const Cell cell = value(sql);
-  const auto* number = std::get_if<std::int64_t>(&cell);
-  return number == nullptr ? 0 : *number;
-}
-
-bool SqliteConnection::in_transaction() const {
-  return connection_ != nullptr && sqlite3_get_autocommit(connection_) == 0;
-}
-
-void SqliteConnection::close() {
-  check(sqlite3_close(connection_));
-  connection_ = nullptr;
-}
-
-SqliteStatement::SqliteStatement(SqliteConnection& connection, std::string_view sql)
-    : connection_(connection) {
-  connection.check(sqlite3_prepare_v2(connection.connection_, sql.data(), static_cast<int>(sql.size()),
-                                      &statement_, nullptr));
-}
-
-SqliteStatement::~SqliteStatement() { sqlite3_finalize(statement_); }
-
-SqliteStatement& SqliteStatement::bind(int index, std::int64_t value) {
-  connection_.check(sqlite3_bind_int64(statement_, index, value));
-  return *this;
-}
-
-SqliteStatement& SqliteStatement::bind(int index, double value) {
-  connection_.check(sqlite3_bind_double(statement_, index, value));
-  return *this;
-}
-
-SqliteStatement& SqliteStatement::bind(int index, std::string_view text) {
-  // A null pointer would be NULL and no text.
-  const char* data = text.data() == nullptr ? "" : text.data();
-  connection_.check(sqlite3_bind_text64(statement_, index, data, text.size(), nullptr, SQLITE_UTF8));
-  return *this;
-}
-
-SqliteStatement& SqliteStatement::bind(int index, const std::optional<std::int64_t>& value) {
-  connection_.check(value ? sqlite3_bind_int64(statement_, index, *value)
-                          : sqlite3_bind_null(statement_, index));
-  return *this;
-}
-
-SqliteStatement& SqliteStatement::bind(int index, const Cell& cell) {
-  if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
-    return bind(index, *integer);
-  }
-  if (const auto* real = std::get_if<double>(&cell)) {
-    return bind(index, *real);
-  }
-  if (const auto* text = std::get_if<std::string>(&cell)) {
-    return bind(index, std::string_view(*text));
-  }
-  connection_.check(sqlite3_bind_null(statement_, index));
+SqliteStatement& SqliteStatement::with(const std::vector<Cell>& parameters) {
+  connection_.checked([&] {
+    (void)statement_.tryReset();  // gives once more the error that its last run has thrown
+    int index = 0;
+    for (const Cell& cell : parameters) {
+      ++index;
+      if (std::holds_alternative<std::monostate>(cell)) {
+        statement_.bind(index);
+      } else if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
+        statement_.bind(index, *integer);
+      } else if (const auto* real = std::get_if<double>(&cell)) {
+        statement_.bind(index, *real);
+      } else {
+        statement_.bind(index, std::get<std::string>(cell));
+      }
+    }
+  });
   return *this;
 }
 
 bool SqliteStatement::next() {
-  const int status = sqlite3_step(statement_);
-  connection_.check(status);
-  return status == SQLITE_ROW;
+  return connection_.checked([&] {
+    if (statement_.executeStep()) {
+      return true;
+    }
+    statement_.reset();
+    return false;
+  });
 }
 
-void SqliteStatement::run() {
-  const int status = sqlite3_step(statement_);
-  const int again = sqlite3_reset(statement_);  // returns the error of the last step once more
-  connection_.check(status);
-  connection_.check(again);
+void SqliteStatement::run(const std::vector<Cell>& parameters) {
+  with(parameters);
+  sim::ensure(!next(), "a statement that changes the database has a result");
 }
 
-void SqliteStatement::reset() { connection_.check(sqlite3_reset(statement_)); }
-
-int SqliteStatement::columns() const { return sqlite3_column_count(statement_); }
+void SqliteStatement::reset() {
+  connection_.checked([&] { statement_.reset(); });
+}
 
 std::string SqliteStatement::column_name(int column) const {
-  const char* name = sqlite3_column_name(statement_, column);
-  if (name == nullptr) {
-    throw std::bad_alloc();
+  return connection_.checked([&] { return std::string(statement_.getColumnName(column)); });
+}
+
+std::vector<std::string> SqliteStatement::column_names() const {
+  std::vector<std::string> names;
+  for (int column = 0; column < columns(); ++column) {
+    names.push_back(column_name(column));
   }
-  return name;
+  return names;
 }
 
 Cell SqliteStatement::cell(int column) const {
-  switch (sqlite3_column_type(statement_, column)) {
-    case SQLITE_INTEGER:
-      return std::int64_t{sqlite3_column_int64(statement_, column)};
-    case SQLITE_FLOAT:
-      return sqlite3_column_double(statement_, column);
-    case SQLITE_NULL:
-      return {};
-    default:
-      return text(column);
-  }
+  return connection_.checked([&]() -> Cell {
+    const SQLite::Column value = statement_.getColumn(column);
+    switch (value.getType()) {
+      case SQLITE_INTEGER:
+        return std::int64_t{value.getInt64()};
+      case SQLITE_FLOAT:
+        return value.getDouble();
+      case SQLITE_TEXT:
+        return value.getString();
+      case SQLITE_NULL:
+        return {};
+      default:
+        refuse(column, ColumnType::text);
+    }
+  });
 }
 
-bool SqliteStatement::has(int column, ColumnType type) const {
-  const int found = sqlite3_column_type(statement_, column);
-  const int wanted = type == ColumnType::integer ? SQLITE_INTEGER
-                     : type == ColumnType::real  ? SQLITE_FLOAT
-                                                 : SQLITE_TEXT;
-  if (found != wanted && found != SQLITE_NULL) {
-    throw sim::UserError(connection_.name_ + ": its column " + column_name(column) +
-                         " holds a value that is no " + std::string(sql_type(type)) +
-                         "; the file was damaged or changed: take a copy that is whole, or remove it");
-  }
-  return found == wanted;
+void SqliteStatement::refuse(int column, ColumnType wanted) const {
+  throw sim::UserError(connection_.name_ + ": its column " + column_name(column) +
+                       " holds a value that is no " + std::string(sql_type(wanted)) +
+                       "; the file was damaged or changed: take a copy that is whole, or remove it");
 }
 
-std::int64_t SqliteStatement::integer(int column) const {
-  return has(column, ColumnType::integer) ? sqlite3_column_int64(statement_, column) : 0;
-}
-
-std::optional<std::int64_t> SqliteStatement::optional_integer(int column) const {
-  return has(column, ColumnType::integer) ? std::optional(integer(column)) : std::nullopt;
-}
-
-std::string SqliteStatement::text(int column) const {
-  if (!has(column, ColumnType::text)) {
-    return {};
-  }
-  const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
-  const int size = sqlite3_column_bytes(statement_, column);
-  return bytes == nullptr ? std::string() : std::string(bytes, static_cast<std::size_t>(size));
-}
-
-SqliteTransaction::SqliteTransaction(SqliteConnection& connection) : connection_(connection) {
-  connection_.execute("BEGIN IMMEDIATE");
-}
-
-SqliteTransaction::~SqliteTransaction() {
-  if (connection_.in_transaction()) {
-    try {
-      connection_.execute("ROLLBACK");
-    } catch (const std::exception&) {
-      // Whatever ended the transaction has been thrown already.
-      return;
+bool has_log_or_journal(const std::filesystem::path& database) {
+  const std::string place = place_of(database).string();
+  for (const char* suffix : {"-wal", "-journal"}) {
+    std::error_code error;
+    const std::uintmax_t bytes = std::filesystem::file_size(place + suffix, error);
+    if (!error && bytes > 0) {
+      return true;
     }
   }
+  return false;
 }
-
-void SqliteTransaction::commit() { connection_.execute("COMMIT"); }
 
 std::string sql_name(std::string_view name) {
   std::string quoted = "\"";
   for (const char c : name) {
-    quoted += c;
-    if (c == '"') {
-      quoted += c;
-    }
+    quoted += c == '"' ? "\"\"" : std::string(1, c);
   }
   return quoted + "\"";
+}
+
+std::string insert_sql(const std::string& table, std::size_t columns) {
+  std::string places;
+  for (std::size_t i = 0; i < columns; ++i) {
+    places += i == 0 ? "?" : ", ?";
+  }
+  return "INSERT INTO " + table + " VALUES (" + places + ")";
 }
 
 std::string_view sql_type(ColumnType type) {

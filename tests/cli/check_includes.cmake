@@ -78,6 +78,7 @@ allow("^(oneapi/)?tbb/" "^((scenes|accel|processors|studies)/[a-z_/]+[.]cpp|proc
 allow("^nlohmann/json_fwd[.]hpp$" "^studies/")
 allow("^nlohmann/json[.]hpp$" "^((scenes|studies)/[a-z_/]+[.]cpp|studies/(show/json_parts|report/model/report_data|tables/run_json)[.]h)$")
 allow("^fmt/" "^(scenes|processors|studies)/[a-z_/]+[.]cpp$")
+allow("^SQLiteCpp/" "^studies/(tables/sqlite_connection|sweep/plan/sweep_filter)[.](h|cpp)$")
 allow("^sqlite3[.]h$" "^studies/(tables/sqlite_connection|sweep/plan/sweep_filter)[.]cpp$")
 allow("^mpi[.]h$" "^studies/sweep/ranks/mpi_ranks[.]cpp$")
 allow("^(poll|signal|spawn)[.]h$" "^studies/report/plots/child_process[.]cpp$")

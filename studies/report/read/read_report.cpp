@@ -25,8 +25,8 @@ constexpr std::string_view expected =
 bool is_study(const fs::path& file) {
   (void)check_store_file(file);
   SqliteConnection connection(file, SqliteConnection::Access::read);
-  return connection.integer("SELECT count(*) FROM pragma_table_info('columns') WHERE name = 'table_name'") >
-         0;
+  return connection.value<std::int64_t>(
+             "SELECT count(*) FROM pragma_table_info('columns') WHERE name = 'table_name'") != 0;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "studies/report/model/chart_library.h"
 #include "studies/report/read/read_report.h"
 #include "studies/report/read/report_files.h"
+#include "studies/tables/cell_number.h"
 #include "studies/tables/json_table.h"
 #include "studies/tables/result_directory.h"
 #include "studies/tables/sqlite_connection.h"
@@ -62,24 +63,12 @@ bool is_plain(const std::string& name) {
          name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
 }
 
-// SQLite stores a value of any type, whatever type the column declares.
-Cell as_type(const Cell& cell, ColumnType type) {
-  const auto* integer = std::get_if<std::int64_t>(&cell);
-  if (type == ColumnType::real && integer != nullptr) {
-    return static_cast<double>(*integer);
-  }
-  const bool fits = type == ColumnType::integer ? integer != nullptr
-                    : type == ColumnType::real  ? std::holds_alternative<double>(cell)
-                                                : std::holds_alternative<std::string>(cell);
-  return fits ? cell : Cell{};
-}
-
 Table read_table(SqliteConnection& connection, const fs::path& file, const std::string& name,
                  const Descriptions& descriptions, std::size_t& rows_left) {
   std::vector<Column> columns;
   std::set<std::string> seen;
   SqliteStatement info(connection, "SELECT name, type FROM pragma_table_info(?)");
-  info.bind(1, std::string_view(name));
+  info.with({name});
   while (info.next()) {
     Column column{info.text(0), type_of(info.text(1)), "", ""};
     if (!is_plain(column.name) || !seen.insert(column.name).second) {

@@ -11,15 +11,23 @@ namespace marti::studies {
 /// million different texts two are equal with a probability of about 1e-27.
 class Digest {
  public:
-  void add(std::string_view text);
+  void add(std::string_view text) {
+    constexpr Word prime = (Word{1} << 88U) + 0x13b;
+    for (const char c : text) {
+      word_ = (word_ ^ static_cast<unsigned char>(c)) * prime;
+    }
+  }
   /// 32 hexadecimal digits, most significant first.
   [[nodiscard]] std::string hex() const;
   /// Both halves in one number, as a checksum.
-  [[nodiscard]] std::uint64_t folded() const { return high_ ^ low_; }
+  [[nodiscard]] std::uint64_t folded() const { return high() ^ low(); }
 
  private:
-  std::uint64_t high_ = 0x6c62272e07bb0142ULL;
-  std::uint64_t low_ = 0x62b821756295c58dULL;
+  using Word = unsigned __int128;
+  [[nodiscard]] std::uint64_t high() const { return static_cast<std::uint64_t>(word_ >> 64U); }
+  [[nodiscard]] std::uint64_t low() const { return static_cast<std::uint64_t>(word_); }
+
+  Word word_ = (Word{0x6c62272e07bb0142ULL} << 64U) + 0x62b821756295c58dULL;
 };
 
 }  // namespace marti::studies

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <optional>
 #include <utility>
 
@@ -27,10 +28,6 @@ constexpr std::array<std::string_view, 24> functions = {
     "instr", "length", "like",     "ln",  "log10", "log2",  "lower",  "max",
     "min",   "mod",    "nullif",   "pow", "power", "round", "sqrt",   "substr"};
 
-constexpr std::array<std::string_view, 5> size_units = {"B", "KiB", "MiB", "GiB", "TiB"};
-constexpr std::array<std::string_view, 5> frequency_units = {"Hz", "kHz", "MHz", "GHz", "THz"};
-constexpr std::array<std::string_view, 5> duration_units = {"ps", "ns", "us", "ms", "s"};
-
 template <std::size_t N>
 bool holds(const std::array<std::string_view, N>& list, std::string_view name) {
   return std::find(list.begin(), list.end(), name) != list.end();
@@ -47,25 +44,22 @@ std::string lower(std::string_view text) {
   return small;
 }
 
-// A quantity as an SQL number, if the unit is one of those.
-std::optional<std::string> quantity(const std::string& number, std::string_view unit) {
-  const std::string text = number + " " + std::string(unit);
-  if (holds(size_units, unit)) {
-    return std::to_string(sim::parse_size(text));
-  }
-  if (holds(frequency_units, unit)) {
-    return sim::print_real(sim::parse_frequency(text));
-  }
-  if (holds(duration_units, unit)) {
-    return std::to_string(std::int64_t{sim::parse_duration(text)});
-  }
-  return std::nullopt;
+// What a unit measures, if it is one.
+std::optional<sim::ValueType> dimension_of(std::string_view unit) {
+  constexpr std::array<std::string_view, 5> sizes = {"B", "KiB", "MiB", "GiB", "TiB"};
+  constexpr std::array<std::string_view, 5> frequencies = {"Hz", "kHz", "MHz", "GHz", "THz"};
+  constexpr std::array<std::string_view, 5> durations = {"ps", "ns", "us", "ms", "s"};
+  return holds(sizes, unit)         ? std::optional(sim::ValueType::size)
+         : holds(frequencies, unit) ? std::optional(sim::ValueType::frequency)
+         : holds(durations, unit)   ? std::optional(sim::ValueType::duration)
+                                    : std::nullopt;
 }
 
-sim::ValueType dimension_of(std::string_view unit) {
-  return holds(size_units, unit)        ? sim::ValueType::size
-         : holds(frequency_units, unit) ? sim::ValueType::frequency
-                                        : sim::ValueType::duration;
+// A quantity as an SQL number.
+std::string quantity(const std::string& text, sim::ValueType dimension) {
+  return dimension == sim::ValueType::size        ? std::to_string(sim::parse_size(text))
+         : dimension == sim::ValueType::frequency ? sim::print_real(sim::parse_frequency(text))
+                                                  : std::to_string(std::int64_t{sim::parse_duration(text)});
 }
 
 // Words after which a value still is compared with the key before them.
@@ -161,48 +155,33 @@ class Translator {
   }
 
   void number() {
-    const std::size_t begin = at_;
-    const auto digits = [&] {
-      while (at_ < text_.size() && is_digit(text_[at_])) {
-        ++at_;
-      }
-    };
-    digits();
-    if (at_ < text_.size() && text_[at_] == '.') {
-      ++at_;
-      digits();
-    }
-    // "1e6", but not the "e" of "1 else".
-    if (at_ + 1 < text_.size() && (text_[at_] == 'e' || text_[at_] == 'E') &&
-        (is_digit(text_[at_ + 1]) ||
-         (at_ + 2 < text_.size() && (text_[at_ + 1] == '-' || text_[at_ + 1] == '+') &&
-          is_digit(text_[at_ + 2])))) {
-      at_ += 2;
-      digits();
-    }
-    const std::string digits_found(text_.substr(begin, at_ - begin));
+    double value = 0.0;
+    const char* const begin = text_.data() + at_;
+    // Takes the "e6" of "1e6", but not the "e" of "1 else".
+    const char* const end = std::from_chars(begin, text_.data() + text_.size(), value).ptr;
+    const std::string digits(begin, end);
+    at_ += digits.size();
     const std::size_t after = at_;
     skip_blanks();
-    const std::string_view unit = take_name(false);
+    const std::string unit(take_name(false));
     if (unit.empty() || holds(words, lower(unit))) {
       at_ = after;
-      refuse_number(digits_found, std::nullopt);
-      result_.sql += digits_found + " ";
+      refuse_number(digits, std::nullopt);
+      result_.sql += digits + " ";
       return;
     }
-    std::optional<std::string> value;
+    const std::optional<sim::ValueType> dimension = dimension_of(unit);
+    if (!dimension) {
+      fail("\"" + sim::shown(digits) + " " + sim::shown(unit) +
+           "\": unknown unit; there are B, KiB, MiB, GiB, TiB, Hz, kHz, MHz, GHz, THz, ps, ns, us, ms and s");
+    }
+    const std::string text = digits + " " + unit;
     try {
-      value = quantity(digits_found, unit);
+      result_.sql += quantity(text, *dimension) + " ";
     } catch (const sim::UserError& error) {
       fail(error.what());
     }
-    if (value) {
-      refuse_number(digits_found + " " + std::string(unit), dimension_of(unit));
-      result_.sql += *value + " ";
-      return;
-    }
-    fail("\"" + sim::shown(digits_found) + " " + sim::shown(unit) +
-         "\": unknown unit; there are B, KiB, MiB, GiB, TiB, Hz, kHz, MHz, GHz, THz, ps, ns, us, ms and s");
+    refuse_number(text, dimension);
   }
 
   void name() {
@@ -329,10 +308,12 @@ class Translator {
     if (number.empty()) {
       return;
     }
+    const std::optional<sim::ValueType> dimension = dimension_of(std::string_view(content).substr(unit));
+    if (!dimension) {
+      return;
+    }
     try {
-      if (!quantity(number, content.substr(unit))) {
-        return;
-      }
+      (void)quantity(number + " " + content.substr(unit), *dimension);
     } catch (const sim::UserError&) {
       return;
     }

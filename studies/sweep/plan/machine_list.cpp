@@ -15,6 +15,18 @@
 
 namespace marti::studies {
 
+std::string digest_of(const SweepPlan& plan) {
+  Digest digest;
+  digest.add(build_of_program());
+  for (const SweepFrame& frame : plan.frames) {
+    digest.add(frame.key);
+  }
+  for (const SweepMachine& machine : plan.machines) {
+    digest.add(machine.key);
+  }
+  return digest.hex();
+}
+
 std::size_t MachineList::enter(ReadPoint& read) {
   const std::size_t frame = enter_frame(read);
   Digest digest;

@@ -4,31 +4,21 @@
 #include <string_view>
 #include <utility>
 
+#include "studies/sweep/plan/byte_codec.h"
+
 namespace marti::studies {
-
-namespace {
-
-void append(std::string& text, std::string_view part) {
-  text += part;
-  text += '\0';
-}
-
-}  // namespace
 
 std::string_view section_of(std::string_view key) { return key.substr(0, key.rfind('.')); }
 
 SharedSettings SettingsPool::share(std::vector<sim::EffectiveValue> settings) {
   SharedSettings shared;
   for (auto begin = settings.begin(); begin != settings.end();) {
-    std::string content;
+    ByteWriter content;
     auto end = begin;
     for (; end != settings.end() && section_of(end->key) == section_of(begin->key); ++end) {
-      append(content, end->key);
-      append(content, end->value);
-      append(content, end->given ? "given" : "default");
-      append(content, end->source);
+      content.write(end->key, end->value, end->given, end->source);
     }
-    SettingsPart& part = parts_[std::move(content)];
+    SettingsPart& part = parts_[content.take()];
     if (part == nullptr) {
       part = std::make_shared<const std::vector<sim::EffectiveValue>>(std::make_move_iterator(begin),
                                                                       std::make_move_iterator(end));

@@ -1,8 +1,11 @@
 // The filter of a sweep, evaluated by SQLite.
 #pragma once
 
+#include <SQLiteCpp/Database.h>
+#include <SQLiteCpp/Statement.h>
+
 #include <cstddef>
-#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,12 +20,9 @@ class SweepFilter {
  public:
   /// See translate_filter. Throws the UserError "place: message" for a text that is not an expression.
   SweepFilter(const sim::Schema& schema, std::string_view text, bool points, std::string_view place);
-  ~SweepFilter();
-  SweepFilter(SweepFilter&&) noexcept;
-  SweepFilter& operator=(SweepFilter&&) = delete;
 
   /// The columns it compares: indices of keys, or FilterText::point, whose value is a text.
-  [[nodiscard]] std::span<const std::size_t> columns() const;
+  [[nodiscard]] std::span<const std::size_t> columns() const { return text_.columns; }
 
   /// Is the expression true (not false, not null) for these values, one for each of columns()? Sizes are in
   /// bytes, frequencies in hertz, durations in ticks, percentages fractions, booleans 0 or 1. Throws
@@ -30,8 +30,12 @@ class SweepFilter {
   [[nodiscard]] bool passes(std::span<const sim::Value> values);
 
  private:
-  struct Statement;
-  std::unique_ptr<Statement> statement_;
+  [[noreturn]] void fail(const char* what, const SQLite::Exception& error) const;
+
+  FilterText text_;
+  std::string place_;
+  SQLite::Database database_;
+  std::optional<SQLite::Statement> statement_;
 };
 
 }  // namespace marti::studies

@@ -78,6 +78,10 @@ struct SweepPlan {
 /// host_machine.memory_limit, before its points are read.
 [[nodiscard]] SweepPlan plan_sweep(sim::Config& config);
 
+/// A digest of program, frames and machines, the content of scenes included: 32 hexadecimal digits, on which
+/// all ranks of a sweep must agree.
+[[nodiscard]] std::string digest_of(const SweepPlan& plan);
+
 /// What is known before the plan runs, beside the plan itself.
 struct SweepOutlook {
   std::size_t machines_done = 0;               ///< whose results are there already

@@ -16,37 +16,33 @@ using processors::ClusterResult;
 using processors::MachineConfig;
 using processors::MachineResult;
 
-// All of a machine's statistics of one kind together; std::nullopt if the machine has none.
+// Adds a part's statistics to those of all parts of its kind, which have no value if there is no part.
 template <class S>
-struct Sum {
-  std::optional<S> counters;
-
-  void add(const S& part) {
-    if (!counters) {
-      counters.emplace();
-    }
-    sim::merge(*counters, part);
+void merge_into(std::optional<S>& sum, const S& part) {
+  if (!sum) {
+    sum.emplace();
   }
-};
+  sim::merge(*sum, part);
+}
 
 // Waits of many queues: counters and histogram.
 struct Waits {
-  Sum<memory::WaitStatistics> sum;
+  std::optional<memory::WaitStatistics> sum;
   sim::LogHistogram histogram;
 
   void add(const memory::WaitStatistics& part) {
-    sum.add(part);
+    merge_into(sum, part);
     histogram.merge(part.histogram);
   }
 };
 
 struct Sums {
-  Sum<memory::InterconnectStatistics> interconnect;
-  Sum<memory::BankStatistics> bank;
-  Sum<memory::DistributedStatistics> distributed;
-  Sum<memory::NetworkStatistics> network;
-  Sum<processors::NodeStatistics> node;
-  Sum<processors::FlowCounts> flow;
+  std::optional<memory::InterconnectStatistics> interconnect;
+  std::optional<memory::BankStatistics> bank;
+  std::optional<memory::DistributedStatistics> distributed;
+  std::optional<memory::NetworkStatistics> network;
+  std::optional<processors::NodeStatistics> node;
+  std::optional<processors::FlowCounts> flow;
   Waits interconnect_waits;
   Waits bank_waits;
   Waits network_waits;
@@ -57,22 +53,22 @@ struct Sums {
   sim::Ticks most_network_busy = 0;
 
   void add_network(const memory::NetworkStatistics& part) {
-    network.add(part);
+    merge_into(network, part);
     network_waits.add(part.waits);
     most_network_busy = std::max(most_network_busy, part.busy);
   }
   void add_cluster(const ClusterResult& cluster) {
-    interconnect.add(cluster.interconnect);
+    merge_into(interconnect, cluster.interconnect);
     interconnect_waits.add(cluster.interconnect.waits);
     most_interconnect_busy = std::max(most_interconnect_busy, cluster.interconnect.busy);
     for (const memory::BankStatistics& part : cluster.banks) {
-      bank.add(part);
+      merge_into(bank, part);
       bank_waits.add(part.waits);
       most_bank_busy = std::max(most_bank_busy, part.busy);
       ++banks;
     }
     if (cluster.distributed) {
-      distributed.add(cluster.distributed->accesses);
+      merge_into(distributed, cluster.distributed->accesses);
       add_network(cluster.distributed->network);
     }
   }
@@ -87,10 +83,10 @@ Sums sums_of(const MachineResult& result) {
     sums.add_network(network);
   }
   for (const processors::NodeStatistics& node : result.nodes) {
-    sums.node.add(node);
+    merge_into(sums.node, node);
   }
   for (const processors::FlowCounts& node : result.flow.nodes) {
-    sums.flow.add(node);
+    merge_into(sums.flow, node);
   }
   for (const memory::WaitStatistics& waits : result.l2.waits) {
     sums.l2_waits.add(waits);
@@ -135,7 +131,7 @@ void add_references(RowParts& parts, const MachineResult& r) {
 }
 
 void add_nodes(RowParts& parts, const MachineResult& r, const Sums& sums) {
-  parts.add_all("node_", "all nodes", sums.node.counters);
+  parts.add_all("node_", "all nodes", sums.node);
   const auto by_finish = [](const auto& a, const auto& b) { return a.finish < b.finish; };
   const auto [first, last] = std::minmax_element(r.nodes.begin(), r.nodes.end(), by_finish);
   const bool there = !r.nodes.empty();
@@ -146,27 +142,27 @@ void add_nodes(RowParts& parts, const MachineResult& r, const Sums& sums) {
 }
 
 void add_memory(RowParts& parts, const Sums& sums) {
-  parts.add_all("interconnect_", "interconnects of all clusters", sums.interconnect.counters);
+  parts.add_all("interconnect_", "interconnects of all clusters", sums.interconnect);
   parts.add("most_interconnect_busy", "ps", "transfer time of the busiest cluster's interconnect",
-            only(sums.interconnect.counters.has_value(), sums.most_interconnect_busy));
-  parts.add_all("interconnect_wait_", "waits for the interconnects", sums.interconnect_waits.sum.counters);
-  const bool banks = sums.bank.counters.has_value();
+            only(sums.interconnect.has_value(), sums.most_interconnect_busy));
+  parts.add_all("interconnect_wait_", "waits for the interconnects", sums.interconnect_waits.sum);
+  const bool banks = sums.bank.has_value();
   parts.add("banks", "1", "banks of all clusters", only(banks, sums.banks));
-  parts.add_all("bank_", "all banks", sums.bank.counters);
+  parts.add_all("bank_", "all banks", sums.bank);
   parts.add("most_bank_busy", "ps", "busy time of the busiest bank", only(banks, sums.most_bank_busy));
-  parts.add_all("bank_wait_", "waits for the banks", sums.bank_waits.sum.counters);
-  parts.add_all("distributed_", "distributed memory", sums.distributed.counters);
-  parts.add_all("network_", "networks of all clusters", sums.network.counters);
+  parts.add_all("bank_wait_", "waits for the banks", sums.bank_waits.sum);
+  parts.add_all("distributed_", "distributed memory", sums.distributed);
+  parts.add_all("network_", "networks of all clusters", sums.network);
   parts.add("most_network_busy", "ps", "time that messages held the links of the busiest cluster's network",
-            only(sums.network.counters.has_value(), sums.most_network_busy));
-  parts.add_all("network_wait_", "waits for the networks' links", sums.network_waits.sum.counters);
+            only(sums.network.has_value(), sums.most_network_busy));
+  parts.add_all("network_wait_", "waits for the networks' links", sums.network_waits.sum);
 }
 
 void add_flow(RowParts& parts, const MachineConfig& machine, const MachineResult& r, const Sums& sums) {
   const processors::FlowResult& flow = r.flow;
-  const bool there = sums.flow.counters.has_value();
+  const bool there = sums.flow.has_value();
   const bool space = there && machine.scheme == processors::Scheme::space;
-  parts.add_all("flow_", "rays of all nodes", sums.flow.counters);
+  parts.add_all("flow_", "rays of all nodes", sums.flow);
   parts.add("flow_rays", "1", "camera rays the host sent and rays made", only(there, flow.rays));
   parts.add("flow_collected", "1", "contributions that reached the host", only(there, flow.collected));
   parts.add("flow_most_in_flight", "1", "most rays at a time, of all clusters",
@@ -208,7 +204,7 @@ void add_build(RowParts& parts, const MachineResult& r) {
 void add_caches(RowParts& parts, const MachineResult& r, const Sums& sums) {
   parts.add_all("l2_", "second level", only(!r.l2.caches.empty(), r.l2.counters()));
   parts.add_all("l2_wait_", "waits of hits for lines on their way to a shared second level",
-                sums.l2_waits.sum.counters);
+                sums.l2_waits.sum);
   parts.add_all("contexts_", "all nodes", only(!r.contexts.nodes.empty(), r.contexts.counts()));
 }
 
@@ -239,17 +235,17 @@ void add_counts(RowParts& parts, const MachineConfig& machine, const MachineResu
   parts.add("sharing_lines_of_all", "1", "of these, fetched by every node of the cluster",
             sharing ? std::optional(sharing->by(machine.nodes)) : std::nullopt);
   for (std::size_t ray = 0; ray < processors::ray_kinds; ++ray) {
-    Sum<processors::AttributionCounts> sum;
+    std::optional<processors::AttributionCounts> sum;
     if (r.counts.attribution) {
-      sum.counters.emplace();
+      sum.emplace();
       for (const processors::AttributionRow& row : *r.counts.attribution) {
         if (static_cast<std::size_t>(row.ray) == ray) {
-          sum.add(row.counts);
+          merge_into(sum, row.counts);
         }
       }
     }
     const std::string name(processors::ray_kind_names[ray]);
-    parts.add_all(name + "_ray_", "for " + name + " rays", sum.counters);
+    parts.add_all(name + "_ray_", "for " + name + " rays", sum);
   }
 }
 

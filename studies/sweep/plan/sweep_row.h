@@ -1,4 +1,5 @@
-// What is kept of a timed machine: its counters, summed over its nodes, and its histograms of waits.
+// What is kept of a timed machine: its counters, summed over its nodes, and its histograms of waits; and what
+// is kept of a frame. parts() is for their bytes (sweep/plan/byte_codec.h).
 #pragma once
 
 #include <cstdint>
@@ -6,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "processors/machine/machine_config.h"
@@ -23,9 +25,11 @@ struct SweepHistogram {
     std::int64_t highest = 0;
     std::int64_t count = 0;
     bool operator==(const Bucket&) const = default;
+    static auto parts(auto& bucket) { return std::tie(bucket.lowest, bucket.highest, bucket.count); }
   };
   std::vector<Bucket> buckets;
   bool operator==(const SweepHistogram&) const = default;
+  static auto parts(auto& histogram) { return std::tie(histogram.what, histogram.buckets); }
 };
 
 struct SweepRow {
@@ -33,6 +37,7 @@ struct SweepRow {
   std::vector<std::optional<std::int64_t>> counters;
   std::vector<SweepHistogram> histograms;
   bool operator==(const SweepRow&) const = default;
+  static auto parts(auto& row) { return std::tie(row.counters, row.histograms); }
 };
 
 /// The counters of every row, in order: all integers. "end" (ps) is the frame time.
@@ -46,11 +51,6 @@ struct SweepRow {
 [[nodiscard]] SweepRow sweep_row(const processors::MachineConfig& machine,
                                  const processors::MachineResult& result);
 
-/// The row as bytes, to send it to another process of the same program; and back. Throws InternalError for
-/// bytes that are not a row.
-[[nodiscard]] std::string encode(const SweepRow& row);
-[[nodiscard]] SweepRow decode_sweep_row(std::string_view bytes);
-
 /// What is kept of a functional run: counters of its scene, structure, rays and log.
 struct FrameRow {
   std::vector<std::optional<std::int64_t>> counters;  ///< one for each of frame_columns()
@@ -60,6 +60,9 @@ struct FrameRow {
   std::string hit_hash;
   std::vector<std::string> notes;
   bool operator==(const FrameRow&) const = default;
+  static auto parts(auto& row) {
+    return std::tie(row.counters, row.scene, row.scene_hash, row.image_hash, row.hit_hash, row.notes);
+  }
 };
 
 /// The counters of every FrameRow, in order: all integers.
@@ -67,8 +70,5 @@ struct FrameRow {
 
 /// `scene_hash` is that of the scene as opened (studies/run/scene_hash.h).
 [[nodiscard]] FrameRow frame_row(const FunctionalRun& run, std::uint64_t scene_hash);
-
-[[nodiscard]] std::string encode(const FrameRow& row);
-[[nodiscard]] FrameRow decode_frame_row(std::string_view bytes);
 
 }  // namespace marti::studies

@@ -228,14 +228,6 @@ class TableReader {
 
 }  // namespace
 
-std::uint64_t SweepTable::points() const {
-  std::uint64_t points = 1;
-  for (const SweepAxis& axis : axes) {
-    points *= axis.steps.size();
-  }
-  return points;
-}
-
 SweepTable read_sweep_table(const sim::Config& config) { return TableReader(config).read(); }
 
 }  // namespace marti::studies

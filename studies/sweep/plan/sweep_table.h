@@ -31,9 +31,6 @@ struct SweepTable {
   std::vector<sim::Setting> base;                    ///< of [sweep.base]; empty: one node
   std::optional<std::vector<sim::Setting>> compare;  ///< of [sweep.compare]
   std::vector<std::string> notes;                    ///< what a range had to be rounded to
-
-  /// Points before the filter: the product of the axes' steps.
-  [[nodiscard]] std::uint64_t points() const;
 };
 
 /// Reads what the free section "sweep" holds. Throws UserError naming file, line and key: for an unknown or

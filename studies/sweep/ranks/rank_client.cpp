@@ -9,9 +9,7 @@
 #include <vector>
 
 #include "sim/error.h"
-#include "studies/sweep/ranks/plan_digest.h"
 #include "studies/sweep/ranks/rank_sweep.h"
-#include "studies/sweep/ranks/sweep_message.h"
 
 namespace marti::studies {
 
@@ -36,10 +34,10 @@ class Tray final : public TaskSource {
     return task;
   }
   void traced(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) override {
-    put({.kind = Kind::traced, .number = frame, .nanoseconds = cpu_nanoseconds, .row = encode(row)});
+    put({.kind = Kind::traced, .number = frame, .nanoseconds = cpu_nanoseconds, .frame = row});
   }
   void timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds) override {
-    put({.kind = Kind::timed, .number = machine, .nanoseconds = cpu_nanoseconds, .row = encode(row)});
+    put({.kind = Kind::timed, .number = machine, .nanoseconds = cpu_nanoseconds, .machine = row});
   }
   void stop() override {
     const std::lock_guard guard(mutex_);
@@ -101,15 +99,15 @@ class Tray final : public TaskSource {
 
 class RankClient {
  public:
-  RankClient(Ranks& ranks, const RankWork& work, const SweepSite& site)
-      : ranks_(ranks), work_(work), site_(site) {}
+  RankClient(Ranks& ranks, unsigned workers, SweepSite& site)
+      : ranks_(ranks), workers_(workers), site_(site) {}
 
   void run() {
-    tell({.kind = Kind::ready, .number = work_.workers, .bytes = digest_of(site_.plan)});
+    tell({.kind = Kind::ready, .number = workers_, .bytes = digest_of(site_.plan)});
     std::exception_ptr error;
     const std::jthread workers([&] {
       try {
-        work_together(site_, tray_, work_.workers);
+        work_together(site_, tray_, workers_);
       } catch (...) {
         error = std::current_exception();
       }
@@ -119,13 +117,15 @@ class RankClient {
       bool left = false;
       while (!goodbye_) {
         const Tray::State state = tray_.look();
-        bring(state.results);
+        for (const SweepMessage& result : state.results) {
+          tell(result);
+        }
         if (state.finished && error != nullptr) {
           std::rethrow_exception(error);
         }
         // Asks ahead, so that each worker finds its next task when it has done one.
         std::size_t known = state.tasks + asked_;
-        for (; !ended_ && known < work_.workers; ++known, ++asked_) {
+        for (; !ended_ && known < workers_; ++known, ++asked_) {
           tell({.kind = Kind::ask});
         }
         while (std::optional<Ranks::Message> message = ranks_.receive()) {
@@ -146,12 +146,6 @@ class RankClient {
  private:
   void tell(const SweepMessage& message) { ranks_.send(0, encode(message)); }
 
-  void bring(const std::vector<SweepMessage>& results) {
-    for (const SweepMessage& result : results) {
-      tell(result);
-    }
-  }
-
   void handle(SweepMessage message) {
     switch (message.kind) {
       case Kind::task:
@@ -160,7 +154,7 @@ class RankClient {
         take(std::move(message.task));
         return;
       case Kind::drop:
-        work_.over(message.number);
+        site_.drop(message.number);
         return;
       case Kind::goodbye:
         goodbye_ = true;
@@ -180,8 +174,8 @@ class RankClient {
   }
 
   Ranks& ranks_;
-  const RankWork& work_;
-  const SweepSite& site_;
+  unsigned workers_;
+  SweepSite& site_;
   Tray tray_;
   std::size_t asked_ = 0;  // tasks under way
   bool ended_ = false;
@@ -190,13 +184,14 @@ class RankClient {
 
 }  // namespace
 
-void work_for_rank_0(Ranks& ranks, const RankWork& work) {
+void work_for_rank_0(Ranks& ranks, unsigned workers,
+                     const std::function<SweepSite&(const std::string& configuration)>& prepare) {
   SweepMessage failure{.kind = Kind::failed};
   std::exception_ptr error;
   try {
     const SweepMessage begin = decode_sweep_message(ranks.wait().bytes);
     sim::ensure(begin.kind == Kind::begin, "rank 0 does not begin with the configuration");
-    RankClient(ranks, work, work.prepare(begin.bytes)).run();
+    RankClient(ranks, workers, prepare(begin.bytes)).run();
     return;
   } catch (const sim::UserError& user) {
     failure.number = 1;

@@ -4,11 +4,16 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <functional>
-#include <memory>
+#include <mutex>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "studies/sweep/ranks/ranks.h"
+#include "studies/sweep/ranks/sweep_message.h"
 #include "studies/sweep/work/coordinator.h"
 #include "studies/sweep/work/sweep_worker.h"
 
@@ -18,7 +23,6 @@ namespace marti::studies {
 class RankServer {
  public:
   RankServer(Ranks& ranks, const SweepPlan& plan);
-  ~RankServer();
 
   /// Says that nobody needs that frame's log any more. May be called from any thread.
   void over(std::size_t frame);
@@ -27,24 +31,35 @@ class RankServer {
   /// everything is done and all ranks are ready to leave. Throws the error of any rank; the other ranks are
   /// still at work then, so call end_all_ranks(). UserError when another rank makes another plan of the
   /// configuration.
-  void work(const SweepSite& site, Coordinator& coordinator, const std::string& configuration,
-            unsigned workers);
+  void work(SweepSite& site, Coordinator& coordinator, const std::string& configuration, unsigned workers);
 
  private:
-  class Desk;
-  std::unique_ptr<Desk> desk_;
+  struct Client {
+    bool left = false;
+    std::set<std::size_t> logs;  // the frames whose logs it may have
+  };
+
+  void tell(std::size_t rank, const SweepMessage& message);
+  [[nodiscard]] bool all_leave() const;
+  /// Does what there is to do; returns whether there was anything.
+  bool step(const SweepSite& site, Coordinator& coordinator);
+  bool forget_logs();
+  bool hand_out(Coordinator& coordinator);
+  void handle(const SweepSite& site, Coordinator& coordinator, std::size_t from, const SweepMessage& message);
+
+  Ranks& ranks_;
+  const std::string digest_;
+  std::vector<Client> clients_;  // by rank; the first is not used
+  std::deque<std::size_t> asking_;
+  std::uint64_t workers_ = 0;  // of all ranks that are ready
+  std::mutex mutex_;           // of what follows
+  std::vector<std::size_t> over_;
 };
 
-/// Another rank's part: `prepare` makes of the configuration what is needed, and `over` is told that a
-/// frame's log is not needed any more.
-struct RankWork {
-  std::function<const SweepSite&(const std::string& configuration)> prepare;
-  std::function<void(std::size_t frame)> over;
-  unsigned workers = 1;
-};
-
+/// Another rank's part, with so many worker threads: `prepare` makes of the configuration what they need.
 /// Returns when rank 0 says so. An error is sent to rank 0, which ends the job; if it does not, the error is
 /// thrown after a while.
-void work_for_rank_0(Ranks& ranks, const RankWork& work);
+void work_for_rank_0(Ranks& ranks, unsigned workers,
+                     const std::function<SweepSite&(const std::string& configuration)>& prepare);
 
 }  // namespace marti::studies

@@ -4,13 +4,13 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
+#include "studies/sweep/plan/sweep_row.h"
 #include "studies/sweep/work/schedule.h"
 
 namespace marti::studies {
 
-/// Only the members that a kind names are sent.
+/// A kind uses the members that it names.
 struct SweepMessage {
   enum class Kind : std::uint8_t {
     // From rank 0.
@@ -21,15 +21,16 @@ struct SweepMessage {
     // To rank 0.
     ready,    ///< number: worker threads; bytes: digest of the plan
     ask,      ///< for a task
-    traced,   ///< number: frame; nanoseconds; row: of the frame
-    timed,    ///< number: machine; nanoseconds; row
+    traced,   ///< number: of the frame; nanoseconds; frame
+    timed,    ///< number: of the machine; nanoseconds; machine
     leaving,  ///< it has brought all its results and asks for no more tasks
     failed    ///< number: 1: the user's error, 0: ours; bytes: the message
   };
   Kind kind = Kind::ask;
   std::uint64_t number = 0;
   std::int64_t nanoseconds = 0;
-  std::string row{};
+  FrameRow frame{};
+  SweepRow machine{};
   std::string bytes{};
   SweepTask task{};
 };

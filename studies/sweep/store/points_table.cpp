@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -10,7 +11,6 @@
 #include "sim/error.h"
 #include "studies/sweep/plan/sweep_row.h"
 #include "studies/sweep/store/sweep_metrics.h"
-#include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_table.h"
 #include "studies/tables/text_units.h"
@@ -39,70 +39,55 @@ std::string plain(std::string name) {
   return name;
 }
 
-// Name, unit and description of a figure; its type is that of the first value there is.
-Column column_of(const std::string& name, std::span<const Row> rows, std::size_t index) {
+// The type of a figure: text, if its first value is one; integer, if all its values are; else real.
+ColumnType type_of(std::span<const Row> rows, std::size_t index) {
+  bool real = false;
+  std::optional<ColumnType> first;
+  for (const Row& row : rows) {
+    const Cell& cell = row.figures[index];
+    real = real || std::holds_alternative<double>(cell);
+    if (!first && !std::holds_alternative<std::monostate>(cell)) {
+      first = std::holds_alternative<std::string>(cell) ? ColumnType::text : ColumnType::integer;
+    }
+  }
+  return first == ColumnType::integer && real ? ColumnType::real : first.value_or(ColumnType::real);
+}
+
+// A figure without its type.
+Column column_of(const std::string& name) {
+  static const std::map<std::string, std::pair<std::string, std::string>> own = {
+      {"cost", {"1", "price of the machine, by [prices]"}},
+      {"ordinal", {"", "number of the point in the sweep, from 0"}},
+      {"machine", {"", "id of its machine in the store"}},
+      {"base", {"", "id of the machine that its speed-up is measured against"}},
+      {"point", {"", "name in [sweep.points]"}}};
   Column column{plain(name), ColumnType::real, "", "the key " + name};
-  if (name == "cost") {
-    column.unit = "1";
-    column.description = "price of the machine, by [prices]";
-  } else if (name == "ordinal") {
-    column.description = "number of the point in the sweep, from 0";
-  } else if (name == "machine") {
-    column.description = "id of its machine in the store";
-  } else if (name == "base") {
-    column.description = "id of the machine that its speed-up is measured against";
-  } else if (name == "point") {
-    column.description = "name in [sweep.points]";
+  const auto describe = [&](const std::string& unit, const std::string& description) {
+    column.unit = unit;
+    column.description = description;
+  };
+  if (const auto found = own.find(name); found != own.end()) {
+    describe(found->second.first, found->second.second);
   }
   for (const SweepMetric& metric : derived_metrics()) {
     if (metric.name == name) {
-      column.unit = metric.unit;
-      column.description = metric.description;
+      describe(metric.unit, metric.description);
     }
   }
   for (const Column& counter : sweep_columns()) {
     if (counter.name == name) {
-      column.unit = counter.unit;
-      column.description = counter.description;
-    }
-  }
-  for (const Row& row : rows) {
-    const Cell& cell = row.figures[index];
-    if (!std::holds_alternative<std::monostate>(cell)) {
-      column.type = std::holds_alternative<std::int64_t>(cell)  ? ColumnType::integer
-                    : std::holds_alternative<std::string>(cell) ? ColumnType::text
-                                                                : ColumnType::real;
-      break;
+      describe(counter.unit, counter.description);
     }
   }
   return column;
-}
-
-// A figure may be an integer in one row and a real in another.
-Cell as_type(const Cell& cell, ColumnType type) {
-  if (const auto* integer = std::get_if<std::int64_t>(&cell);
-      integer != nullptr && type == ColumnType::real) {
-    return static_cast<double>(*integer);
-  }
-  if (type == ColumnType::integer && !std::holds_alternative<std::int64_t>(cell)) {
-    return {};
-  }
-  return cell;
-}
-
-bool mixes_numbers(std::span<const Row> rows, std::size_t index) {
-  return std::any_of(rows.begin(), rows.end(),
-                     [index](const Row& row) { return std::holds_alternative<double>(row.figures[index]); });
 }
 
 Table table_of(std::string name, std::string title, std::span<const std::string> names,
                std::span<const Row> rows) {
   std::vector<Column> columns;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    columns.push_back(column_of(names[i], rows, i));
-    if (columns.back().type == ColumnType::integer && mixes_numbers(rows, i)) {
-      columns.back().type = ColumnType::real;
-    }
+    columns.push_back(column_of(names[i]));
+    columns.back().type = type_of(rows, i);
     if (columns.back().type == ColumnType::text) {
       columns.back().unit.clear();  // its text holds the unit
     }
@@ -128,15 +113,12 @@ std::string text_of(const Cell& cell) {
 
 }  // namespace
 
-Table points_table(const std::filesystem::path& store) {
-  const SweepReader reader(store);
-  const std::vector<std::string> names = reader.figures();
+Table points_table(const SweepReader& reader) {
+  const std::vector<std::string>& names = reader.figures();
   return table_of("points", "Points of the sweep", names, rows_of(reader, names));
 }
 
-BestPoints best_points(const std::filesystem::path& store, const std::string& metric,
-                       std::optional<double> budget) {
-  const SweepReader reader(store);
+BestPoints best_points(const SweepReader& reader, const std::string& metric, std::optional<double> budget) {
   std::vector<std::string> names = reader.axes();
   const std::size_t axes = names.size();
   names.insert(names.end(), {"cost", metric});
@@ -149,7 +131,7 @@ BestPoints best_points(const std::filesystem::path& store, const std::string& me
   }
   const std::optional<std::size_t> best = best_within(offers, budget, better);
   if (!best) {
-    throw sim::UserError(store.string() + ": no point has a " + metric +
+    throw sim::UserError(reader.file().string() + ": no point has a " + metric +
                          (budget ? fmt::format(" within a cost of {:g}", *budget) : std::string()));
   }
   std::vector<Row> front;

@@ -1,18 +1,17 @@
 // The points of a sweep's store as tables.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 
+#include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/table.h"
 
 namespace marti::studies {
 
 /// "points": a row for each point of the present plan whose machine has been timed: its axes, its cost, the
-/// derived figures, and all counters. A dot in a key becomes '_' in its column's name. Throws UserError when
-/// the store cannot be read.
-[[nodiscard]] Table points_table(const std::filesystem::path& store);
+/// derived figures, and all counters. A dot in a key becomes '_' in its column's name.
+[[nodiscard]] Table points_table(const SweepReader& reader);
 
 /// Which points are worth their price.
 struct BestPoints {
@@ -22,7 +21,7 @@ struct BestPoints {
 
 /// `metric` is a figure of SweepReader::figures(). Throws UserError when it is not, or when no point within
 /// the budget has it.
-[[nodiscard]] BestPoints best_points(const std::filesystem::path& store, const std::string& metric,
+[[nodiscard]] BestPoints best_points(const SweepReader& reader, const std::string& metric,
                                      std::optional<double> budget);
 
 }  // namespace marti::studies

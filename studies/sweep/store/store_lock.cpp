@@ -17,11 +17,6 @@ namespace marti::studies {
 
 namespace {
 
-std::string host_name() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "an unknown host";
-}
-
 // The holder of the lock, as its file names it.
 std::string holder_of(int descriptor) {
   std::array<char, 300> text{};
@@ -63,44 +58,40 @@ std::string why_no_lock(int descriptor) {
 
 }  // namespace
 
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
 StoreLock::StoreLock(const std::filesystem::path& store) : file_(store.string() + ".lock") {
-  for (;;) {
+  do {
     // O_NONBLOCK: a pipe that nobody writes to is refused and not waited for.
-    descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
-    if (descriptor_ < 0 && errno != ELOOP) {
+    descriptor_ =
+        sim::Descriptor(open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
+    if (descriptor_.get() < 0 && errno != ELOOP) {
       throw sim::UserError(file_.string() + ": cannot be made: " + std::strerror(errno));
     }
-    const std::string fault = descriptor_ < 0 ? "it is a symbolic link" : why_no_lock(descriptor_);
+    const std::string fault =
+        descriptor_.get() < 0 ? "it is a symbolic link" : why_no_lock(descriptor_.get());
     if (!fault.empty()) {
-      ::close(descriptor_);
       throw sim::UserError(file_.string() + ": cannot be the lock of the store: " + fault +
                            "; remove it if nothing else needs it, or give another directory");
     }
-    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-      const int reason = errno;
-      const std::string holder = holder_of(descriptor_);
-      ::close(descriptor_);
-      if (reason == EWOULDBLOCK) {
-        throw sim::UserError(store.string() + ": " + holder +
+    if (flock(descriptor_.get(), LOCK_EX | LOCK_NB) != 0) {
+      if (errno == EWOULDBLOCK) {
+        throw sim::UserError(store.string() + ": " + holder_of(descriptor_.get()) +
                              " is writing it; wait for it to end, or give another directory");
       }
-      throw sim::UserError(file_.string() + ": cannot be locked: " + std::strerror(reason));
+      throw sim::UserError(file_.string() + ": cannot be locked: " + std::strerror(errno));
     }
-    if (still_there(descriptor_, file_)) {
-      break;
-    }
-    ::close(descriptor_);
-  }
+  } while (!still_there(descriptor_.get(), file_));
   const std::string holder = std::string(first_word) + std::to_string(getpid()) + " on " + host_name() + "\n";
   // The text is only for people: on a full disk the lock holds without it.
-  if (ftruncate(descriptor_, 0) == 0) {
-    [[maybe_unused]] const ssize_t written = pwrite(descriptor_, holder.data(), holder.size(), 0);
+  if (ftruncate(descriptor_.get(), 0) == 0) {
+    [[maybe_unused]] const ssize_t written = pwrite(descriptor_.get(), holder.data(), holder.size(), 0);
   }
 }
 
-StoreLock::~StoreLock() {
-  unlink(file_.c_str());
-  ::close(descriptor_);
-}
+StoreLock::~StoreLock() { unlink(file_.c_str()); }
 
 }  // namespace marti::studies

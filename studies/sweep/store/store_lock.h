@@ -2,6 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+
+#include "sim/descriptor.h"
 
 namespace marti::studies {
 
@@ -18,7 +21,10 @@ class StoreLock {
 
  private:
   std::filesystem::path file_;
-  int descriptor_ = -1;
+  sim::Descriptor descriptor_;
 };
+
+/// The name of this computer, as it stands in locks and stores.
+[[nodiscard]] std::string host_name();
 
 }  // namespace marti::studies

@@ -1,6 +1,7 @@
 #include "studies/sweep/store/store_plan.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <string>
 #include <string_view>
@@ -20,11 +21,11 @@ namespace {
 class Settings {
  public:
   explicit Settings(SqliteConnection& connection)
-      : add_setting_(connection, "INSERT INTO settings VALUES (?, ?, ?)"),
-        add_section_(connection, "INSERT INTO sections VALUES (?, ?)") {
+      : add_setting_(connection, insert_sql("settings", 3)),
+        add_section_(connection, insert_sql("sections", 2)) {
     SqliteStatement settings(connection, "SELECT id, key, value FROM settings");
     while (settings.next()) {
-      settings_[joined(settings.text(1), settings.text(2))] = settings.integer(0);
+      settings_[{settings.text(1), settings.text(2)}] = settings.integer(0);
       next_setting_ = std::max(next_setting_, settings.integer(0) + 1);
     }
     SqliteStatement sections(connection, "SELECT section, setting FROM sections ORDER BY section, setting");
@@ -59,32 +60,24 @@ class Settings {
   }
 
  private:
-  const std::string& joined(std::string_view key, std::string_view value) {
-    text_.assign(key);
-    text_ += '\0';
-    text_ += value;
-    return text_;
-  }
-
   std::int64_t setting(const sim::EffectiveValue& value) {
-    const auto [at, is_new] = settings_.try_emplace(joined(value.key, value.value), next_setting_);
+    const auto [at, is_new] = settings_.try_emplace({value.key, value.value}, next_setting_);
     if (is_new) {
-      add_setting_.bind(1, next_setting_++).bind(2, std::string_view(value.key));
-      add_setting_.bind(3, std::string_view(value.value)).run();
+      add_setting_.run({next_setting_++, value.key, value.value});
     }
     return at->second;
   }
 
   std::int64_t section_of(const std::vector<sim::EffectiveValue>& values) {
-    members_.clear();
+    std::vector<std::int64_t> members;
     for (const sim::EffectiveValue& value : values) {
-      members_.push_back(setting(value));
+      members.push_back(setting(value));
     }
-    std::sort(members_.begin(), members_.end());
-    const auto [at, is_new] = sections_.try_emplace(members_, next_section_);
+    std::sort(members.begin(), members.end());
+    const auto [at, is_new] = sections_.try_emplace(members, next_section_);
     if (is_new) {
-      for (const std::int64_t member : members_) {
-        add_section_.bind(1, next_section_).bind(2, member).run();
+      for (const std::int64_t member : members) {
+        add_section_.run({next_section_, member});
       }
       ++next_section_;
     }
@@ -93,121 +86,97 @@ class Settings {
 
   SqliteStatement add_setting_;
   SqliteStatement add_section_;
-  std::unordered_map<std::string, std::int64_t> settings_;
+  std::map<std::pair<std::string, std::string>, std::int64_t> settings_;
   std::map<std::vector<std::int64_t>, std::int64_t> sections_;
   SettingsPool pool_;  // of what is not shared yet: parts are known by their addresses
   std::unordered_map<const void*, std::int64_t> section_of_part_;
   std::int64_t next_setting_ = 1;
   std::int64_t next_section_ = 1;
-  std::string text_;
-  std::vector<std::int64_t> members_;
 };
 
-using Known = std::unordered_map<std::string, std::int64_t>;
-
-Known known_keys(SqliteConnection& connection, const std::string& table, std::int64_t& next) {
-  Known known;
+// The ids of frames or machines, in their order. Calls `add` for those whose keys the table lacks, with a new
+// id.
+template <class Wanted, class Add>
+std::vector<std::int64_t> enter(SqliteConnection& connection, const std::string& table,
+                                const std::vector<Wanted>& all, const Add& add) {
+  std::unordered_map<std::string, std::int64_t> known;
+  std::int64_t next = 1;
   SqliteStatement rows(connection, "SELECT id, key FROM " + table);
   while (rows.next()) {
     known[rows.text(1)] = rows.integer(0);
     next = std::max(next, rows.integer(0) + 1);
   }
-  return known;
+  std::vector<std::int64_t> ids;
+  ids.reserve(all.size());
+  for (const Wanted& wanted : all) {
+    const auto [at, is_new] = known.try_emplace(wanted.key, next);
+    if (is_new) {
+      add(next++, wanted);
+    }
+    ids.push_back(at->second);
+  }
+  return ids;
 }
 
 void add_sections(SqliteStatement& insert, std::int64_t whose, const std::vector<std::int64_t>& sections) {
   for (const std::int64_t section : sections) {
-    insert.bind(1, whose).bind(2, section).run();
+    insert.run({whose, section});
   }
 }
 
 std::vector<std::int64_t> enter_frames(SqliteConnection& connection, const SweepPlan& plan,
                                        Settings& settings) {
-  std::int64_t next = 1;
-  Known known = known_keys(connection, "frames", next);
-  SqliteStatement frame(connection, "INSERT INTO frames VALUES (?, ?)");
-  SqliteStatement section(connection, "INSERT INTO frame_sections VALUES (?, ?)");
-  std::vector<std::int64_t> ids;
-  for (const SweepFrame& wanted : plan.frames) {
-    const auto [at, is_new] = known.try_emplace(wanted.key, next);
-    if (is_new) {
-      frame.bind(1, next).bind(2, std::string_view(wanted.key)).run();
-      add_sections(section, next, settings.sections_of(settings.shared(wanted.settings)));
-      ++next;
-    }
-    ids.push_back(at->second);
-  }
-  return ids;
+  SqliteStatement insert(connection, insert_sql("frames", 2));
+  SqliteStatement section(connection, insert_sql("frame_sections", 2));
+  return enter(connection, "frames", plan.frames, [&](std::int64_t id, const SweepFrame& frame) {
+    insert.run({id, frame.key});
+    add_sections(section, id, settings.sections_of(settings.shared(frame.settings)));
+  });
 }
 
 std::vector<std::int64_t> enter_machines(SqliteConnection& connection, const SweepPlan& plan,
                                          const std::vector<std::int64_t>& frames, Settings& settings) {
-  std::int64_t next = 1;
-  Known known = known_keys(connection, "machines", next);
-  SqliteStatement machine(connection, "INSERT INTO machines VALUES (?, ?, ?)");
-  SqliteStatement section(connection, "INSERT INTO machine_sections VALUES (?, ?)");
-  std::vector<std::int64_t> ids;
-  ids.reserve(plan.machines.size());
-  for (const SweepMachine& wanted : plan.machines) {
-    const auto [at, is_new] = known.try_emplace(wanted.key, next);
-    if (is_new) {
-      machine.bind(1, next).bind(2, std::string_view(wanted.key)).bind(3, frames.at(wanted.frame)).run();
-      add_sections(section, next, settings.sections_of(wanted.settings));
-      ++next;
-    }
-    ids.push_back(at->second);
-  }
-  return ids;
+  SqliteStatement insert(connection, insert_sql("machines", 3));
+  SqliteStatement section(connection, insert_sql("machine_sections", 2));
+  return enter(connection, "machines", plan.machines, [&](std::int64_t id, const SweepMachine& machine) {
+    insert.run({id, machine.key, frames.at(machine.frame)});
+    add_sections(section, id, settings.sections_of(machine.settings));
+  });
 }
 
-void bind_value(SqliteStatement& statement, int index, const sim::Value& value) {
+Cell axis_cell(const sim::Value& value) {
   if (const auto* flag = std::get_if<bool>(&value)) {
-    statement.bind(index, std::int64_t{*flag ? 1 : 0});
-  } else if (const auto* integer = std::get_if<std::int64_t>(&value)) {
-    statement.bind(index, *integer);
-  } else if (const auto* real = std::get_if<double>(&value)) {
-    statement.bind(index, *real);
-  } else {
-    statement.bind(index, std::string_view(std::get<std::string>(value)));
+    return std::int64_t{*flag ? 1 : 0};
   }
+  return std::visit([](const auto& number_or_text) { return Cell(number_or_text); }, value);
 }
 
 void enter_points(SqliteConnection& connection, const SweepPlan& plan,
                   const std::vector<std::int64_t>& machines) {
   create_points(connection, plan);
-  std::string sql = "INSERT INTO points VALUES (?, ?, ?, ?";
-  for (std::size_t axis = 0; axis < plan.axes.size(); ++axis) {
-    sql += ", ?";
-  }
-  SqliteStatement insert(connection, sql + ")");
+  SqliteStatement insert(connection, insert_sql("points", 4 + plan.axes.size()));
   std::int64_t ordinal = 0;
   for (const SweepPoint& point : plan.points) {
     sim::ensure(point.values.size() == plan.axes.size(), "a point of a sweep lacks a value");
-    insert.bind(1, ordinal++).bind(2, machines.at(point.machine)).bind(3, machines.at(point.base));
-    insert.bind(4, point.cost);
-    for (std::size_t axis = 0; axis < point.values.size(); ++axis) {
-      bind_value(insert, static_cast<int>(axis) + 5, point.values[axis]);
-    }
-    insert.run();
+    std::vector<Cell> cells = {ordinal++, machines.at(point.machine), machines.at(point.base), point.cost};
+    std::transform(point.values.begin(), point.values.end(), std::back_inserter(cells), axis_cell);
+    insert.run(cells);
   }
 }
 
 void enter_provenance(SqliteConnection& connection, const SweepPlan& plan) {
   connection.execute("DELETE FROM provenance");
-  SqliteStatement insert(connection, "INSERT INTO provenance VALUES (?, ?)");
-  const auto add = [&](std::string_view what, const std::string& value) {
-    insert.bind(1, what).bind(2, std::string_view(value)).run();
-  };
+  SqliteStatement insert(connection, insert_sql("provenance", 2));
   std::string axes;
   for (const std::string& axis : plan.axes) {
     axes += (axes.empty() ? "" : ", ") + axis;
   }
-  add("version", std::string(version));
-  add("axes", axes);
-  add("points", std::to_string(plan.points.size()));
-  add("filtered_out", std::to_string(plan.filtered_out));
-  add("machines", std::to_string(plan.machines.size()));
-  add("frames", std::to_string(plan.frames.size()));
+  insert.run({"version", std::string(version)});
+  insert.run({"axes", axes});
+  insert.run({"points", std::to_string(plan.points.size())});
+  insert.run({"filtered_out", std::to_string(plan.filtered_out)});
+  insert.run({"machines", std::to_string(plan.machines.size())});
+  insert.run({"frames", std::to_string(plan.frames.size())});
 }
 
 }  // namespace
@@ -220,9 +189,7 @@ StoreIds enter_plan(SqliteConnection& connection, const SweepPlan& plan) {
   enter_points(connection, plan, ids.machines);
   connection.execute("DELETE FROM compare");
   if (plan.compare) {
-    SqliteStatement(connection, "INSERT INTO compare VALUES (?)")
-        .bind(1, ids.machines.at(*plan.compare))
-        .run();
+    SqliteStatement(connection, insert_sql("compare", 1)).run({ids.machines.at(*plan.compare)});
   }
   enter_provenance(connection, plan);
   return ids;

@@ -16,16 +16,10 @@ class RowWriter {
  public:
   explicit RowWriter(SqliteConnection& connection);
 
-  [[nodiscard]] bool has_machine(std::int64_t machine) { return there(has_machine_, machine); }
-  [[nodiscard]] bool has_frame(std::int64_t frame) { return there(has_frame_, frame); }
   void add(std::int64_t machine, const SweepRow& row);
   void add(std::int64_t frame, const FrameRow& row);
 
  private:
-  static bool there(SqliteStatement& statement, std::int64_t id);
-
-  SqliteStatement has_machine_;
-  SqliteStatement has_frame_;
   SqliteStatement result_;
   SqliteStatement bucket_;
   SqliteStatement frame_;

@@ -66,21 +66,17 @@ CREATE VIEW histograms AS
   FROM wait_buckets h JOIN waits w ON w.id = h.wait LEFT JOIN buckets b ON b.lowest = h.lowest;
 )";
 
-std::vector<std::string> column_names(SqliteConnection& connection, const std::string& table) {
-  std::vector<std::string> names;
-  SqliteStatement statement(connection, "SELECT name FROM pragma_table_info(?) ORDER BY cid");
-  statement.bind(1, std::string_view(table));
-  while (statement.next()) {
-    names.push_back(statement.text(0));
-  }
-  return names;
-}
-
-bool has_columns(SqliteConnection& connection, const std::string& table, int first,
+bool has_columns(SqliteConnection& connection, const std::string& table, std::size_t first,
                  std::span<const Column> columns) {
-  const std::vector<std::string> names = column_names(connection, table);
-  return std::equal(std::min(names.begin() + first, names.end()), names.end(), columns.begin(), columns.end(),
-                    [](const std::string& name, const Column& column) { return name == column.name; });
+  std::vector<std::string> names;  // none when there is no such table
+  SqliteStatement rows(connection, "SELECT name FROM pragma_table_info(?) ORDER BY cid");
+  rows.with({table});
+  while (rows.next()) {
+    names.push_back(rows.text(0));
+  }
+  return names.size() == first + columns.size() &&
+         std::equal(columns.begin(), columns.end(), names.begin() + static_cast<std::ptrdiff_t>(first),
+                    [](const Column& column, const std::string& name) { return name == column.name; });
 }
 
 std::string counters_sql(std::span<const Column> columns) {
@@ -105,12 +101,6 @@ std::string axis_type(const SweepPlan& plan, std::size_t axis) {
   return std::string(type);
 }
 
-std::string text_of(SqliteConnection& connection, const std::string& sql) {
-  const Cell cell = connection.value(sql);
-  const auto* text = std::get_if<std::string>(&cell);
-  return text == nullptr ? "" : *text;
-}
-
 }  // namespace
 
 const std::filesystem::path& check_store_file(const std::filesystem::path& file) {
@@ -126,47 +116,41 @@ const std::filesystem::path& check_store_file(const std::filesystem::path& file)
   if (!error && bytes == 0) {
     return file;  // made, but never written
   }
-  std::array<unsigned char, 100> header{};
-  std::ifstream in(file, std::ios::binary);
-  in.read(reinterpret_cast<char*>(header.data()), static_cast<std::streamsize>(header.size()));
-  if (!in && in.gcount() == 0) {
+  if (std::ifstream(file, std::ios::binary).peek() == std::ifstream::traits_type::eof()) {
     throw sim::UserError(file.string() + ": cannot be read");
   }
-  constexpr std::string_view magic("SQLite format 3\0", 16);
-  if (!std::equal(magic.begin(), magic.end(), header.begin()) ||
-      in.gcount() != static_cast<std::streamsize>(header.size())) {
+  SQLite::Header header{};
+  try {
+    header = SQLite::Database::getHeaderInfo(file.string());
+  } catch (const SQLite::Exception&) {
     throw sim::UserError(file.string() + ": is no SQLite database" + std::string(what_to_do));
   }
-  // https://www.sqlite.org/fileformat.html: page size at 16, pages at 28. A log or journal beside the file
-  // may hold what it lacks.
-  const auto big_endian = [&](std::size_t at, std::size_t size) {
-    std::uint64_t value = 0;
-    for (std::size_t i = 0; i < size; ++i) {
-      value = value << 8U | header.at(at + i);
-    }
-    return value;
-  };
-  const std::uint64_t page = big_endian(16, 2) == 1 ? 65536 : big_endian(16, 2);
-  if (bytes < page * big_endian(28, 4) && !has_log_or_journal(file)) {
+  // A log or journal beside the file may hold what it lacks. Pages of 65536 bytes are written as 1.
+  const std::uint64_t page = header.pageSizeBytes == 1 ? 65536 : header.pageSizeBytes;
+  const std::uint64_t expected = page * (header.databaseSizePages & 0xffffffffU);
+  if (bytes < expected && !has_log_or_journal(file)) {
     throw sim::UserError(file.string() + ": is damaged: it has " + std::to_string(bytes) + " bytes of " +
-                         std::to_string(page * big_endian(28, 4)) + std::string(what_to_do));
+                         std::to_string(expected) + std::string(what_to_do));
   }
   return file;
 }
 
 bool is_empty_database(SqliteConnection& connection) {
-  return connection.integer("PRAGMA application_id") == 0 &&
-         connection.integer("SELECT COUNT(*) FROM sqlite_schema") == 0;
+  return connection.value<std::int64_t>("PRAGMA application_id") == 0 &&
+         connection.value<std::int64_t>("SELECT COUNT(*) FROM sqlite_schema") == 0;
+}
+
+std::optional<std::string> value_of(SqliteConnection& connection, const std::string& what) {
+  return connection.value<std::string>("SELECT value FROM store WHERE what = '" + what + "'");
 }
 
 std::int64_t check_store_format(SqliteConnection& connection, const std::filesystem::path& file) {
-  if (connection.integer("PRAGMA application_id") != application) {
+  if (connection.value<std::int64_t>("PRAGMA application_id") != application) {
     throw sim::UserError(file.string() + ": is a database, but not the store of a sweep" +
                          std::string(what_to_do));
   }
-  const std::int64_t found = connection.integer("PRAGMA user_version");
-  if (found < 1 || found > format ||
-      text_of(connection, "SELECT value FROM store WHERE what = 'format'") != std::to_string(found)) {
+  const std::int64_t found = connection.value<std::int64_t>("PRAGMA user_version").value_or(0);
+  if (found < 1 || found > format || value_of(connection, "format") != std::to_string(found)) {
     throw sim::UserError(file.string() + ": is a store of format " + std::to_string(found) +
                          ", but this program reads formats 1 to " + std::to_string(format) +
                          "; use the program that wrote it, give another directory, or remove the file");
@@ -175,7 +159,7 @@ std::int64_t check_store_format(SqliteConnection& connection, const std::filesys
 }
 
 void check_store_version(SqliteConnection& connection, const std::filesystem::path& file) {
-  const std::string found = text_of(connection, "SELECT value FROM store WHERE what = 'version'");
+  const std::string found = value_of(connection, "version").value_or("");
   if (found != version) {
     throw sim::UserError(file.string() + ": was written by version " + found + ", but this is version " +
                          std::string(version) + ", whose results could differ; use version " + found +
@@ -183,8 +167,8 @@ void check_store_version(SqliteConnection& connection, const std::filesystem::pa
   }
   // Stores of older formats can be read but not written. The build holds a hash of the sources, because a
   // program that was changed may give other results.
-  if (connection.integer("PRAGMA user_version") != format ||
-      text_of(connection, "SELECT value FROM store WHERE what = 'build'") != build_of_program() ||
+  if (connection.value<std::int64_t>("PRAGMA user_version") != format ||
+      value_of(connection, "build") != build_of_program() ||
       !has_columns(connection, "results", first_result_counter, sweep_columns()) ||
       !has_columns(connection, "frame_results", first_frame_counter, frame_columns())) {
     throw sim::UserError(file.string() + ": was written by another build of version " + found +
@@ -202,20 +186,19 @@ void create_store(SqliteConnection& connection) {
       "CREATE TABLE frame_results (frame INTEGER PRIMARY KEY, scene TEXT NOT NULL, scene_hash TEXT NOT NULL, "
       "image_hash TEXT NOT NULL, hit_hash TEXT NOT NULL, checksum INTEGER" +
       counters_sql(frame_columns()) + ")");
-  SqliteStatement store(connection, "INSERT INTO store VALUES (?, ?)");
-  const std::string format_text = std::to_string(format);
-  store.bind(1, std::string_view("format")).bind(2, std::string_view(format_text)).run();
-  store.bind(1, std::string_view("version")).bind(2, std::string_view(version)).run();
-  store.bind(1, std::string_view("build")).bind(2, build_of_program()).run();
-  SqliteStatement wait(connection, "INSERT INTO waits VALUES (?, ?)");
+  SqliteStatement store(connection, insert_sql("store", 2));
+  store.run({"format", std::to_string(format)});
+  store.run({"version", std::string(version)});
+  store.run({"build", std::string(build_of_program())});
+  SqliteStatement wait(connection, insert_sql("waits", 2));
   std::int64_t number = 0;
   for (const std::string_view name : sweep_histogram_names()) {
-    wait.bind(1, number++).bind(2, name).run();
+    wait.run({number++, std::string(name)});
   }
-  SqliteStatement bucket(connection, "INSERT INTO buckets VALUES (?, ?)");
+  SqliteStatement bucket(connection, insert_sql("buckets", 2));
   const std::size_t last = sim::LogHistogram::bucket_of(INT64_MAX);
   for (std::size_t i = 0; i <= last; ++i) {
-    bucket.bind(1, sim::LogHistogram::lowest_of(i)).bind(2, sim::LogHistogram::highest_of(i)).run();
+    bucket.run({sim::LogHistogram::lowest_of(i), sim::LogHistogram::highest_of(i)});
   }
 }
 
@@ -229,11 +212,9 @@ void create_points(SqliteConnection& connection, const SweepPlan& plan) {
   }
   connection.execute(table + ")");
   connection.execute(summary_view(plan.axes));
-  SqliteStatement insert(connection, "INSERT INTO columns VALUES (?, ?, ?, ?)");
+  SqliteStatement insert(connection, insert_sql("columns", 4));
   for (const StoreColumn& column : store_columns(plan.axes)) {
-    insert.bind(1, std::string_view(column.table)).bind(2, std::string_view(column.name));
-    insert.bind(3, std::string_view(column.unit)).bind(4, std::string_view(column.description));
-    insert.run();
+    insert.run({column.table, column.name, column.unit, column.description});
   }
 }
 

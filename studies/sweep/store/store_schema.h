@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/tables/sqlite_connection.h"
@@ -9,8 +11,8 @@
 namespace marti::studies {
 
 /// Where the counters of the tables begin, after the columns that are no counters.
-inline constexpr int first_result_counter = 2;
-inline constexpr int first_frame_counter = 6;
+inline constexpr std::size_t first_result_counter = 2;
+inline constexpr std::size_t first_frame_counter = 6;
 
 /// The file itself. Throws UserError when it is there but is not a whole SQLite database, before SQLite has
 /// touched it.
@@ -18,6 +20,9 @@ const std::filesystem::path& check_store_file(const std::filesystem::path& file)
 
 /// Whether nothing was ever written into the database: it is new.
 [[nodiscard]] bool is_empty_database(SqliteConnection& connection);
+
+/// What table `store` says: of "format", "version", "build" or "checksum".
+[[nodiscard]] std::optional<std::string> value_of(SqliteConnection& connection, const std::string& what);
 
 /// Its format. Throws UserError unless the database is a store of one that this program reads.
 std::int64_t check_store_format(SqliteConnection& connection, const std::filesystem::path& file);

@@ -3,18 +3,30 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 
 #include "studies/tables/sqlite_connection.h"
 
 namespace marti::studies {
 
+/// A table of results, and what belongs to each of its rows: the histograms of a machine, the notes of a
+/// frame.
+struct ResultTable {
+  std::string_view name;
+  std::string_view id;     ///< its first column
+  std::string_view parts;  ///< the SQL that selects, for an id, what belongs to its row
+};
+inline constexpr ResultTable machine_results = {
+    "results", "machine",
+    "SELECT wait, lowest, highest, count FROM wait_buckets WHERE machine = ? ORDER BY wait, lowest"};
+inline constexpr ResultTable frame_results = {
+    "frame_results", "frame", "SELECT ordinal, note FROM frame_notes WHERE frame = ? ORDER BY ordinal"};
+
 /// The checksums of one table of results. Each covers the values of a row as they stand in the store, with
-/// their types, and what belongs to the row: the histograms of a machine, the notes of a frame. So a program
-/// that has other counters can check a store, too.
+/// their types, and what belongs to the row. So a program that has other counters can check a store, too.
 class RowSums {
  public:
-  enum class Kind : std::uint8_t { machines, frames };
-  RowSums(SqliteConnection& connection, Kind kind);
+  RowSums(SqliteConnection& connection, const ResultTable& table);
 
   /// Writes the checksum of the row with this id, which the open transaction has written.
   void seal(std::int64_t id);
@@ -22,10 +34,10 @@ class RowSums {
   void check(const std::filesystem::path& file);
 
  private:
-  [[nodiscard]] std::int64_t sum_of(SqliteStatement& row);
+  [[nodiscard]] Cell sum_of(const SqliteStatement& row);
 
   SqliteConnection& connection_;
-  Kind kind_;
+  ResultTable table_;
   SqliteStatement row_;
   SqliteStatement parts_;
   SqliteStatement seal_;

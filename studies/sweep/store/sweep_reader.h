@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +12,8 @@
 #include <vector>
 
 #include "studies/sweep/plan/sweep_row.h"
+#include "studies/sweep/store/store_rows.h"
+#include "studies/tables/sqlite_connection.h"
 #include "studies/tables/table.h"
 
 namespace marti::studies {
@@ -35,13 +36,11 @@ class SweepReader {
   /// Throws UserError when the file is missing, is not a store, or is one of another format. A store of
   /// another version of the program can be read: counters that it lacks have no value.
   explicit SweepReader(const std::filesystem::path& file);
-  ~SweepReader();
-  SweepReader(const SweepReader&) = delete;
-  SweepReader& operator=(const SweepReader&) = delete;
 
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   /// The version of the program that wrote the store.
-  [[nodiscard]] const std::string& version() const;
-  [[nodiscard]] const std::vector<std::string>& axes() const;
+  [[nodiscard]] const std::string& version() const { return version_; }
+  [[nodiscard]] const std::vector<std::string>& axes() const { return axes_; }
   [[nodiscard]] std::vector<StoredPoint> points() const;
   /// The machine that all are compared with.
   [[nodiscard]] std::optional<std::int64_t> compare() const;
@@ -58,7 +57,7 @@ class SweepReader {
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> settings(std::int64_t machine) const;
 
   /// The names of all figures of a point: axes, cost, what is derived (view summary), and all counters.
-  [[nodiscard]] std::vector<std::string> figures() const;
+  [[nodiscard]] const std::vector<std::string>& figures() const { return figures_; }
   /// Calls `visit` for each point of the plan in order, with the figures of these names; a figure has no
   /// value where the machine has no such part, has not been timed yet, or the denominator is 0. Throws
   /// UserError for an unknown name, with the nearest known one.
@@ -66,8 +65,17 @@ class SweepReader {
                       const std::function<void(const StoredPoint&, std::span<const Cell>)>& visit) const;
 
  private:
-  class Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  [[nodiscard]] std::vector<std::string> keys(const std::string& sql) const;
+
+  // Reading moves SQLite's cursors.
+  mutable SqliteConnection connection_;
+  mutable std::optional<RowReader> rows_;  // made once the tables are known to exist
+  mutable std::optional<SqliteStatement> settings_;
+  std::filesystem::path file_;
+  std::string version_;
+  std::vector<std::string> axes_;
+  std::vector<std::string> figures_;
+  std::size_t summary_figures_ = 0;  // so many of `figures_`, from the first
 };
 
 }  // namespace marti::studies

@@ -3,15 +3,10 @@
 #include <fmt/chrono.h>
 #include <unistd.h>
 
-#include <array>
 #include <ctime>
-#include <optional>
 #include <unordered_set>
 
 #include "sim/error.h"
-#include "studies/sweep/store/store_lock.h"
-#include "studies/sweep/store/store_plan.h"
-#include "studies/sweep/store/store_rows.h"
 #include "studies/sweep/store/store_schema.h"
 #include "studies/sweep/store/store_sums.h"
 #include "studies/tables/provenance.h"
@@ -22,158 +17,116 @@ namespace {
 
 std::string now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
-std::string host_name() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
-
 }  // namespace
 
-class SweepStore::Implementation {
- public:
-  Implementation(const std::filesystem::path& file, const SweepPlan& plan)
-      : lock_(file), connection_(check_store_file(file), SqliteConnection::Access::write) {
-    const bool is_new = is_empty_database(connection_);
-    if (!is_new) {
-      const std::int64_t format = check_store_format(connection_, file);
-      check_store_version(connection_, file);
-      check_whole(connection_, file, format);
+SweepStore::SweepStore(const std::filesystem::path& file, const SweepPlan& plan, bool checked) {
+  lock_.emplace(file);
+  connection_.emplace(check_store_file(file), SqliteConnection::Access::write);
+  const bool is_new = is_empty_database(*connection_);
+  if (!is_new) {
+    const std::int64_t format = check_store_format(*connection_, file);
+    check_store_version(*connection_, file);
+    if (!checked) {
+      check_whole(*connection_, file, format);
     }
-    begin_log();
-    SqliteTransaction transaction(connection_);
+  }
+  begin_log();
+  connection_->transact([&] {
     if (is_new) {
-      create_store(connection_);
+      create_store(*connection_);
     }
-    ids_ = enter_plan(connection_, plan);
-    seal_plan(connection_);
+    ids_ = enter_plan(*connection_, plan);
+    seal_plan(*connection_);
     begin_session();
-    transaction.commit();
-    rows_.emplace(connection_);
-  }
+  });
+  writer_.emplace(*connection_);
+  reader_.emplace(*connection_);
+}
 
-  [[nodiscard]] std::vector<bool> machines_done() {
-    return done("SELECT machine FROM results", ids_.machines);
+// What is committed to the log survives the end of the program; only a power cut may take the last commits.
+// Going to a log and back changes two bytes of the first page, which one write of one sector does. SQLite's
+// journal for it would stand in the way of readers if the program were killed in between, so there is none.
+void SweepStore::begin_log() {
+  if (connection_->value<std::string>("PRAGMA journal_mode") != "wal") {
+    connection_->execute("PRAGMA journal_mode = OFF; PRAGMA journal_mode = WAL");
   }
-  [[nodiscard]] std::vector<bool> frames_done() {
-    return done("SELECT frame FROM frame_results", ids_.frames);
-  }
+  connection_->execute("PRAGMA synchronous = NORMAL");
+}
 
-  void add(std::size_t frame, const FrameRow& row, std::int64_t nanoseconds) {
-    const std::int64_t id = ids_.frames.at(frame);
-    if (rows_->has_frame(id)) {
-      sim::ensure(RowReader(connection_).find_frame(id) == row, "the same frame has given two results");
-      return;
-    }
-    add_with_cost(id, row, "host_frames", nanoseconds);
-  }
-
-  void add(std::size_t machine, const SweepRow& row, std::int64_t nanoseconds) {
-    const std::int64_t id = ids_.machines.at(machine);
-    if (rows_->has_machine(id)) {
-      sim::ensure(RowReader(connection_).find_machine(id) == row, "the same machine has given two results");
-      return;
-    }
-    add_with_cost(id, row, "host_machines", nanoseconds);
-  }
-
-  void close() {
-    rows_.reset();
-    SqliteStatement end(connection_, "UPDATE host_sessions SET ended = ? WHERE id = ?");
-    const std::string ended = now();
-    end.bind(1, std::string_view(ended)).bind(2, session_).run();
-    connection_.execute("PRAGMA wal_checkpoint(TRUNCATE)");
-    // Ends the log, without a journal as at its beginning. A reader may still need it: whoever opens the
-    // store next then does without it again.
-    try {
-      connection_.execute("PRAGMA busy_timeout = 0; PRAGMA journal_mode = OFF");
-    } catch (const sim::UserError&) {
-      return;
-    }
-  }
-
- private:
-  // What is committed to the log survives the end of the program; only a power cut may take the last commits.
-  // Going to a log and back changes two bytes of the first page, which one write of one sector does. SQLite's
-  // journal for it would stand in the way of readers if the program were killed in between, so there is none.
-  void begin_log() {
-    if (connection_.value("PRAGMA journal_mode") != Cell("wal")) {
-      connection_.execute("PRAGMA journal_mode = OFF; PRAGMA journal_mode = WAL");
-    }
-    connection_.execute("PRAGMA synchronous = NORMAL");
-  }
-
-  [[nodiscard]] std::vector<bool> done(const std::string& query, const std::vector<std::int64_t>& ids) {
-    std::unordered_set<std::int64_t> there;
-    SqliteStatement rows(connection_, query);
-    while (rows.next()) {
-      there.insert(rows.integer(0));
-    }
-    std::vector<bool> result;
-    result.reserve(ids.size());
-    for (const std::int64_t id : ids) {
-      result.push_back(there.contains(id));
-    }
-    return result;
-  }
-
-  template <class Row>
-  void add_with_cost(std::int64_t id, const Row& row, const std::string& costs, std::int64_t nanoseconds) {
-    SqliteTransaction transaction(connection_);
-    rows_->add(id, row);
-    SqliteStatement cost(connection_, "INSERT INTO " + costs + " VALUES (?, ?, ?)");
-    cost.bind(1, id).bind(2, session_).bind(3, nanoseconds).run();
-    transaction.commit();
-  }
-
-  void begin_session() {
-    const Table host = host_table();
-    const auto property = [&](std::string_view what) {
-      for (const std::vector<Cell>& row : host.rows()) {
-        if (std::get<std::string>(row[0]) == what) {
-          return std::get<std::string>(row[1]);
-        }
+void SweepStore::begin_session() {
+  session_ =
+      connection_->value<std::int64_t>("SELECT COALESCE(MAX(id), 0) + 1 FROM host_sessions").value_or(1);
+  std::vector<Cell> cells = {session_, now(), Cell(), host_name(), std::int64_t{getpid()}};
+  const Table host = host_table();
+  for (const char* what : {"processor", "system", "threads"}) {
+    for (const std::vector<Cell>& row : host.rows()) {
+      if (row[0] == Cell(what)) {
+        cells.push_back(row[1]);
       }
-      return std::string("unknown");
-    };
-    session_ = connection_.integer("SELECT COALESCE(MAX(id), 0) + 1 FROM host_sessions");
-    SqliteStatement session(connection_, "INSERT INTO host_sessions VALUES (?, ?, NULL, ?, ?, ?, ?, ?)");
-    const std::string began = now();
-    const std::string name = host_name();
-    const std::string processor = property("processor");
-    const std::string system = property("system");
-    const std::string threads = property("threads");
-    session.bind(1, session_).bind(2, std::string_view(began)).bind(3, std::string_view(name));
-    session.bind(4, std::int64_t{getpid()}).bind(5, std::string_view(processor));
-    session.bind(6, std::string_view(system)).bind(7, std::string_view(threads)).run();
+    }
   }
+  SqliteStatement(*connection_, insert_sql("host_sessions", cells.size())).run(cells);
+}
 
-  StoreLock lock_;  // outlives the connection
-  SqliteConnection connection_;
-  std::optional<RowWriter> rows_;  // made when the tables are there
-  StoreIds ids_;
-  std::int64_t session_ = 0;
-};
+std::vector<bool> SweepStore::done() { return done("SELECT machine FROM results", ids_.machines); }
 
-SweepStore::SweepStore(const std::filesystem::path& file, const SweepPlan& plan)
-    : implementation_(std::make_unique<Implementation>(file, plan)) {}
+std::vector<bool> SweepStore::frames_done() { return done("SELECT frame FROM frame_results", ids_.frames); }
 
-SweepStore::~SweepStore() = default;
-
-std::vector<bool> SweepStore::done() const { return implementation_->machines_done(); }
-
-std::vector<bool> SweepStore::frames_done() const { return implementation_->frames_done(); }
+std::vector<bool> SweepStore::done(const std::string& query, const std::vector<std::int64_t>& ids) {
+  std::unordered_set<std::int64_t> there;
+  SqliteStatement rows(*connection_, query);
+  while (rows.next()) {
+    there.insert(rows.integer(0));
+  }
+  std::vector<bool> result;
+  result.reserve(ids.size());
+  for (const std::int64_t id : ids) {
+    result.push_back(there.contains(id));
+  }
+  return result;
+}
 
 void SweepStore::add_frame(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) {
-  implementation_->add(frame, row, cpu_nanoseconds);
+  const std::int64_t id = ids_.frames.at(frame);
+  if (const std::optional<FrameRow> known = reader_->find_frame(id)) {
+    sim::ensure(known == row, "the same frame has given two results");
+    return;
+  }
+  connection_->transact([&] {
+    writer_->add(id, row);
+    add_cost("host_frames", id, cpu_nanoseconds);
+  });
 }
 
 void SweepStore::add_result(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds) {
-  implementation_->add(machine, row, cpu_nanoseconds);
+  const std::int64_t id = ids_.machines.at(machine);
+  if (const std::optional<SweepRow> known = reader_->find_machine(id)) {
+    sim::ensure(known == row, "the same machine has given two results");
+    return;
+  }
+  connection_->transact([&] {
+    writer_->add(id, row);
+    add_cost("host_machines", id, cpu_nanoseconds);
+  });
+}
+
+void SweepStore::add_cost(const std::string& table, std::int64_t id, std::int64_t cpu_nanoseconds) {
+  SqliteStatement(*connection_, insert_sql(table, 3)).run({id, session_, cpu_nanoseconds});
 }
 
 void SweepStore::close() {
-  implementation_->close();
-  implementation_.reset();
+  writer_.reset();
+  reader_.reset();
+  SqliteStatement(*connection_, "UPDATE host_sessions SET ended = ? WHERE id = ?").run({now(), session_});
+  connection_->execute("PRAGMA wal_checkpoint(TRUNCATE)");
+  try {
+    // Ends the log, without a journal as at its beginning.
+    connection_->execute("PRAGMA busy_timeout = 0; PRAGMA journal_mode = OFF");
+  } catch (const sim::UserError&) {
+    // A reader still needs the log: the process that opens the store next ends it.
+  }
+  connection_.reset();
+  lock_.reset();
 }
 
 }  // namespace marti::studies

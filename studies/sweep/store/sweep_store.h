@@ -3,12 +3,16 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/sweep/plan/sweep_row.h"
+#include "studies/sweep/store/store_lock.h"
+#include "studies/sweep/store/store_plan.h"
+#include "studies/sweep/store/store_rows.h"
+#include "studies/tables/sqlite_connection.h"
 
 namespace marti::studies {
 
@@ -20,15 +24,14 @@ class SweepStore {
   /// Opens the file, or makes it, and enters what the plan asks for in one transaction: older results stay.
   /// Refuses a file that is not a store, one of another version of the store or of the program (whose results
   /// could differ), and one that another process has open.
-  SweepStore(const std::filesystem::path& file, const SweepPlan& plan);
-  ~SweepStore();
-  SweepStore(const SweepStore&) = delete;
-  SweepStore& operator=(const SweepStore&) = delete;
+  /// `checked`: a SweepReader has just found that the file is not damaged, so that it is not read again for
+  /// that.
+  SweepStore(const std::filesystem::path& file, const SweepPlan& plan, bool checked = false);
 
   /// For each machine of the plan: is its result there?
-  [[nodiscard]] std::vector<bool> done() const;
+  [[nodiscard]] std::vector<bool> done();
   /// For each frame of the plan: is its row there?
-  [[nodiscard]] std::vector<bool> frames_done() const;
+  [[nodiscard]] std::vector<bool> frames_done();
 
   // Each is committed when it returns. A row that is there already must be equal, else InternalError: the
   // same machine has given two results. `cpu_nanoseconds` is what the host took; it is kept apart from what
@@ -40,8 +43,17 @@ class SweepStore {
   void close();
 
  private:
-  class Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  void begin_log();
+  void begin_session();
+  [[nodiscard]] std::vector<bool> done(const std::string& query, const std::vector<std::int64_t>& ids);
+  void add_cost(const std::string& table, std::int64_t id, std::int64_t cpu_nanoseconds);
+
+  std::optional<StoreLock> lock_;  // outlives the connection, as it stands before it
+  std::optional<SqliteConnection> connection_;
+  std::optional<RowWriter> writer_;  // these are made when the tables are there
+  std::optional<RowReader> reader_;
+  StoreIds ids_;
+  std::int64_t session_ = 0;
 };
 
 }  // namespace marti::studies

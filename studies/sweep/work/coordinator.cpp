@@ -72,11 +72,6 @@ std::int64_t Coordinator::nanoseconds_left() {
   return schedule_.nanoseconds_left();
 }
 
-bool Coordinator::finished() {
-  const std::lock_guard lock(mutex_);
-  return stopped_ || schedule_.finished();
-}
-
 std::size_t Coordinator::saved() {
   const std::lock_guard lock(mutex_);
   return machines_ - schedule_.machines_left();

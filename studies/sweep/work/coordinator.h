@@ -14,8 +14,9 @@
 
 namespace marti::studies {
 
-/// Thread-safe. Each result is in the store before the call that brings it returns.
-class Coordinator {
+/// Thread-safe. Each result is in the store before the call that brings it returns. As a TaskSource it gives
+/// tasks to this process, which is place 0.
+class Coordinator : public TaskSource {
  public:
   /// `over(frame)` is called once for each frame whose machines are all timed, by the thread that brought the
   /// last.
@@ -25,13 +26,12 @@ class Coordinator {
   /// The next task of a place, see Schedule::next. Without `wait` it returns at once, perhaps with a task
   /// `wait`.
   [[nodiscard]] SweepTask next(std::size_t place, std::int64_t nanoseconds, bool wait);
-  void traced(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds);
-  void timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds);
-  void stop();
+  SweepTask next() override { return next(0, 0, true); }
+  void traced(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) override;
+  void timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds) override;
+  void stop() override;
   /// As Schedule::nanoseconds_left.
   [[nodiscard]] std::int64_t nanoseconds_left();
-  /// Whether nothing is left to do, or stop() was called.
-  [[nodiscard]] bool finished();
   /// Machines of the plan that are saved.
   [[nodiscard]] std::size_t saved();
   /// Closes the store for good, once nobody is writing to it: for a program that is about to be ended.
@@ -49,24 +49,6 @@ class Coordinator {
   Schedule schedule_;
   std::size_t machines_;
   bool stopped_ = false;
-};
-
-/// The tasks of one place of this process.
-class LocalSource : public TaskSource {
- public:
-  LocalSource(Coordinator& coordinator, std::size_t place) : coordinator_(coordinator), place_(place) {}
-  SweepTask next() override { return coordinator_.next(place_, 0, true); }
-  void traced(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) override {
-    coordinator_.traced(frame, row, cpu_nanoseconds);
-  }
-  void timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds) override {
-    coordinator_.timed(machine, row, cpu_nanoseconds);
-  }
-  void stop() override { coordinator_.stop(); }
-
- private:
-  Coordinator& coordinator_;
-  std::size_t place_;
 };
 
 }  // namespace marti::studies

@@ -43,7 +43,7 @@ FrameLog trace(const SweepSite& site, const SweepFrame& frame) {
 }
 
 // Tracing uses all of the computer's threads, so what it takes is the time that passes.
-void do_trace(const SweepSite& site, TaskSource& source, const SweepTask& task) {
+void do_trace(SweepSite& site, TaskSource& source, const SweepTask& task) {
   const auto begin = std::chrono::steady_clock::now();
   const SweepFrame& frame = site.plan.frames[task.frame];
   FrameLog log = trace(site, frame);
@@ -65,7 +65,7 @@ std::string name_of(const SweepMachine& machine) {
   return name;
 }
 
-void do_time(const SweepSite& site, TaskSource& source, const SweepTask& task) {
+void do_time(SweepSite& site, TaskSource& source, const SweepTask& task) {
   const std::shared_ptr<const FrameLog> log =
       site.logs.take(task.frame, [&] { return trace(site, site.plan.frames[task.frame]); });
   for (const std::size_t number : task.machines) {
@@ -91,9 +91,7 @@ void do_time(const SweepSite& site, TaskSource& source, const SweepTask& task) {
   }
 }
 
-}  // namespace
-
-void work(const SweepSite& site, TaskSource& source) {
+void take_tasks(SweepSite& site, TaskSource& source) {
   for (;;) {
     const SweepTask task = source.next();
     switch (task.kind) {
@@ -111,14 +109,16 @@ void work(const SweepSite& site, TaskSource& source) {
   }
 }
 
-void work_together(const SweepSite& site, TaskSource& source, unsigned workers) {
+}  // namespace
+
+void work_together(SweepSite& site, TaskSource& source, unsigned workers) {
   std::mutex mutex;
   std::exception_ptr first;
   {
     std::vector<std::jthread> threads;
     const auto run = [&] {
       try {
-        work(site, source);
+        take_tasks(site, source);
       } catch (...) {
         const std::lock_guard lock(mutex);
         if (first == nullptr) {

@@ -1,6 +1,9 @@
 // One worker of a sweep: takes tasks, does them, brings the results.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/sweep/work/log_shelf.h"
 #include "studies/sweep/work/memory_gate.h"
@@ -11,19 +14,29 @@ namespace marti::studies {
 
 /// What the workers of one process share.
 struct SweepSite {
+  /// Half of the memory is for work logs; stripped logs and machines that are being timed share the rest.
+  SweepSite(const SweepPlan& sweep, std::uint64_t memory_limit)
+      : plan(sweep),
+        logs(memory_limit / 2),
+        strips(memory_limit / 4),
+        machines(memory_limit - memory_limit / 2 - memory_limit / 4) {}
+
+  /// Says that nobody needs that frame's logs any more.
+  void drop(std::size_t frame) {
+    strips.drop(frame);
+    logs.drop(frame);
+  }
+
   const SweepPlan& plan;
-  LogShelf& logs;
-  StripShelf& strips;
-  MemoryGate& machines;
+  LogShelf logs;
+  StripShelf strips;
+  MemoryGate machines;
 };
 
-/// Works until there is nothing to do. Throws any error; the error of a machine that cannot be timed names
-/// it. Several may work at once, each in a thread of its own: threads and not tasks of oneTBB, because they
-/// wait for each other, and oneTBB's own threads must be free to trace and strip meanwhile.
-void work(const SweepSite& site, TaskSource& source);
-
-/// Runs `workers` workers, or as many as the system has threads for, and returns when all have ended; throws
-/// what the first to fail threw.
-void work_together(const SweepSite& site, TaskSource& source, unsigned workers);
+/// Runs `workers` workers, or as many as the system has threads for, until there is nothing to do; throws
+/// what the first to fail threw. The error of a machine that cannot be timed names it. Each worker is a
+/// thread and not a task of oneTBB, because they wait for each other, and oneTBB's own threads must be free
+/// to trace and strip meanwhile.
+void work_together(SweepSite& site, TaskSource& source, unsigned workers);
 
 }  // namespace marti::studies

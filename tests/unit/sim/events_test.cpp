@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <limits>
 #include <random>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "sim/engine.h"
 #include "sim/error.h"
 #include "sim/event_queue.h"
+#include "sim/number_set.h"
 #include "sim/time.h"
 
 namespace marti::sim {
@@ -61,6 +64,57 @@ RC_GTEST_PROP(EventQueue, AgreesWithASortedListWhenPopsAndPushesMix, (std::uint6
     }
     RC_ASSERT(queue.size() == list.size());
     RC_ASSERT(queue.empty() == list.empty());
+  }
+}
+
+// Long runs with events at many distances, so that the calendar is tuned, crowded and left behind.
+RC_GTEST_PROP(EventQueue, AgreesWithASetWhileDistancesChange, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  EventQueue queue;
+  queue.reserve(random() % 3 == 0 ? 10'000 : 10);
+  std::set<std::pair<Ticks, std::uint64_t>> set;
+  Ticks now = 0;
+  std::uint32_t number = 0;
+  for (int phase = 0; phase < 4; ++phase) {
+    const Ticks distance = Ticks{1} << (random() % 40);
+    const std::size_t pending = 1 + random() % 300;
+    for (int step = 0; step < 3000; ++step) {
+      while (set.size() < pending) {
+        const Ticks ahead = random() % 8 == 0 ? 0 : static_cast<Ticks>(random()) & (2 * distance - 1);
+        const Event event = Event::make(now + ahead, static_cast<std::uint8_t>(random() % 4), number++);
+        queue.push(event);
+        set.emplace(event.time, event.order);
+      }
+      RC_ASSERT(queue.size() == set.size());
+      const Event popped = queue.pop();
+      RC_ASSERT(popped.time == set.begin()->first);
+      RC_ASSERT(popped.order == set.begin()->second);
+      now = popped.time;
+      set.erase(set.begin());
+    }
+  }
+}
+
+TEST(NumberSet, FindsTheNextMember) {
+  std::mt19937_64 random(1);
+  for (const std::uint32_t size : {1U, 64U, 65U, 4096U, 5000U, NumberSet::most}) {
+    NumberSet set(size);
+    std::set<std::uint32_t> plain;
+    for (int step = 0; step < 2000; ++step) {
+      const auto number = static_cast<std::uint32_t>(random() % size);
+      if (random() % 3 != 0) {
+        set.insert(number);
+        plain.insert(number);
+      } else {
+        set.erase(number);
+        plain.erase(number);
+      }
+      if (!plain.empty()) {
+        const auto from = static_cast<std::uint32_t>(random() % size);
+        const auto found = plain.lower_bound(from);
+        ASSERT_EQ(set.next(from), found == plain.end() ? *plain.begin() : *found);
+      }
+    }
   }
 }
 

@@ -1,4 +1,4 @@
-// A row holds the counts of its machine, and survives encoding and decoding.
+// A row holds the counts of its machine.
 #include "studies/sweep/plan/sweep_row.h"
 
 #include <gtest/gtest.h>
@@ -192,41 +192,6 @@ TEST(SweepRows, ColumnsAreDescribedOnce) {
     }
   }
   EXPECT_EQ(sweep_columns()[0].name, "end");
-}
-
-RC_GTEST_PROP(SweepRows, ComeBackFromTheirBytes, (std::uint64_t seed)) {
-  test::Random random(seed);
-  const SweepRow row = test::random_sweep_row(random);
-  RC_ASSERT(decode_sweep_row(encode(row)) == row);
-  FrameRow frame = test::made_frame_row(seed % 3);
-  frame.scene = std::string(seed % 40, '\0');
-  RC_ASSERT(decode_frame_row(encode(frame)) == frame);
-}
-
-// Garbled bytes are refused or are the bytes of another row; nothing else happens.
-template <class Decode>
-void garble(const std::string& bytes, std::uint64_t seed, const Decode& decode) {
-  test::Random random(seed);
-  const std::size_t cut = random() % bytes.size();
-  RC_ASSERT_THROWS_AS(decode(bytes.substr(0, cut)), sim::InternalError);
-  RC_ASSERT_THROWS_AS(decode(bytes + '\0'), sim::InternalError);
-  std::string other = bytes;
-  other[random() % other.size()] ^= static_cast<char>(1 + random() % 255);
-  try {
-    const auto row = decode(other);
-    RC_ASSERT(encode(row) == other);
-  } catch (const sim::InternalError&) {
-    return;
-  }
-}
-
-RC_GTEST_PROP(SweepRows, BytesThatAreNoRowAreRefused, (std::uint64_t seed)) {
-  test::Random random(seed);
-  const auto sweep = [](std::string_view bytes) { return decode_sweep_row(bytes); };
-  const auto frame = [](std::string_view bytes) { return decode_frame_row(bytes); };
-  garble(encode(test::made_frame_row(seed % 3)), random(), frame);
-  garble(encode(test::random_sweep_row(random)), random(), sweep);
-  RC_ASSERT_THROWS_AS(decode_sweep_row(encode(test::made_frame_row(0))), sim::InternalError);
 }
 
 }  // namespace

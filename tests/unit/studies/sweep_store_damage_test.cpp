@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include "sim/files.h"
+#include "studies/sweep/plan/byte_codec.h"
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "studies/tables/sqlite_connection.h"
@@ -52,7 +53,7 @@ std::string figures_of(const fs::path& file) {
     }
     const auto row = reader.read_result(point.machine);
     const auto frame = reader.read_frame(point.machine);
-    text += (row ? encode(*row) : "") + (frame ? encode(*frame) : "");
+    text += ByteWriter().write(row, frame).take();
     for (const auto& [key, value] : reader.settings(point.machine)) {
       text += key + "=" + value + ";";
     }

@@ -179,7 +179,7 @@ std::string shown(const fs::path& file, std::size_t& done) {
   std::string text;
   const std::string message = user_error_of([&] {
     done = is_begun(file) ? SweepReader(file).machines_done().size() : 0;  // as --plan does
-    text = csv_of(points_table(file)) + compare_sweeps(file, file, {});
+    text = csv_of(points_table(SweepReader(file))) + compare_sweeps(file, file, {});
     text += read_report(file.parent_path()).title;
   });
   return message == "no UserError" ? text : message;

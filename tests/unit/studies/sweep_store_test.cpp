@@ -48,7 +48,7 @@ void execute(const fs::path& file, const std::string& sql) {
 
 std::int64_t count(const fs::path& file, const std::string& query) {
   SqliteConnection connection(file, SqliteConnection::Access::read);
-  return connection.integer(query);
+  return connection.value<std::int64_t>(query).value_or(0);
 }
 
 TEST(SweepStore, KnowsWhatIsDone) {

@@ -1,0 +1,104 @@
+// The pending events as a 4-ary heap of 16-byte keys.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "sim/event.h"
+#include "sim/large_pages.h"
+
+namespace marti::sim {
+
+/// A priority queue of events. `pop` leaves a hole at the root that a following `push` fills, because a
+/// handler nearly always posts one event: that is one pass down the heap instead of two.
+class EventHeap {
+ public:
+  [[nodiscard]] bool empty() const { return heap_.size() == (hole_ ? 1U : 0U); }
+  [[nodiscard]] std::size_t size() const { return heap_.size() - (hole_ ? 1U : 0U); }
+  void reserve(std::size_t events) { heap_.reserve(events); }
+
+  void push(const Event& event) {
+    if (hole_) {
+      hole_ = false;
+      sift_down(event);
+      return;
+    }
+    heap_.push_back(event);
+    std::size_t at = heap_.size() - 1;
+    while (at > 0) {
+      const std::size_t parent = (at - 1) / arity;
+      if (!(event < heap_[parent])) {
+        break;
+      }
+      heap_[at] = heap_[parent];
+      at = parent;
+    }
+    heap_[at] = event;
+  }
+
+  /// The earliest event. The heap must not be empty.
+  [[nodiscard]] const Event& front() {
+    fill_hole();
+    return heap_.front();
+  }
+
+  /// Calls visit(event) for the few events that may be next unless an earlier one is pushed.
+  template <class Visit>
+  void each_likely_next(const Visit& visit) const {
+    for (std::size_t at = 1; at <= arity && at < heap_.size(); ++at) {
+      visit(heap_[at]);
+    }
+  }
+
+  /// Removes and returns the earliest event. The heap must not be empty.
+  Event pop() {
+    fill_hole();
+    hole_ = true;
+    return heap_.front();
+  }
+
+ private:
+  static constexpr std::size_t arity = 4;
+
+  void fill_hole() {
+    if (hole_) {
+      hole_ = false;
+      const Event last = heap_.back();
+      heap_.pop_back();
+      sift_down(last);
+    }
+  }
+
+  // Moves the root's hole down until `event` fits in it.
+  void sift_down(const Event& event) {
+    const std::size_t size = heap_.size();
+    std::size_t at = 0;
+    for (;;) {
+      const std::size_t first = at * arity + 1;
+      if (first >= size) {
+        break;
+      }
+      std::size_t least = first;
+      if (first + arity <= size) [[likely]] {
+        const std::size_t left = heap_[first + 1] < heap_[first] ? first + 1 : first;
+        const std::size_t right = heap_[first + 3] < heap_[first + 2] ? first + 3 : first + 2;
+        least = heap_[right] < heap_[left] ? right : left;
+      } else {
+        for (std::size_t child = first + 1; child < size; ++child) {
+          least = heap_[child] < heap_[least] ? child : least;
+        }
+      }
+      if (!(heap_[least] < event)) {
+        break;
+      }
+      heap_[at] = heap_[least];
+      at = least;
+    }
+    heap_[at] = event;
+  }
+
+  LargeVector<Event> heap_;
+  bool hole_ = false;
+};
+
+}  // namespace marti::sim
