@@ -171,7 +171,9 @@ class DynamicNodes final : public PacketNodes<DynamicNodes<Caches>, DynamicCurso
 
   void read(std::uint32_t node) {
     DynamicCursor& cursor = cursors_[node];
+    const sim::Ticks from = cursor.time;
     if (!walker_.miss(node, cursor, statistics_[node])) {
+      watch(node, NodeState::working, from, for_pixel(cursor));
       run(node);
       return;
     }

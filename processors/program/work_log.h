@@ -162,8 +162,4 @@ void check_log_capacity(std::size_t nodes, std::size_t materials, std::size_t li
 /// Counts the whole log in one pass.
 [[nodiscard]] LogTotals totals_of(const WorkLog& log);
 
-/// Throws InternalError unless every operand names something that exists; for logs read from elsewhere
-/// and for tests.
-void validate(const WorkLog& log);
-
 }  // namespace marti::processors

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <list>
 #include <set>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -177,9 +176,7 @@ CaseOutcome machines_of_all_lines() {
 }  // namespace
 
 void add_cache_cases(std::vector<StabilityCase>& cases) {
-  const auto add = [&](std::string id, std::string risk, std::string oracle, auto run) {
-    cases.push_back({std::move(id), CaseGroup::machine, std::move(risk), std::move(oracle), run});
-  };
+  const CaseAdder add(cases, CaseGroup::machine);
   add("cache-one-line", "a cache of one line, of 1 byte to the whole database",
       "misses: 1 and one for each change of line", one_line);
   add("cache-of-everything", "a cache as large as the database, lines of 1 byte to all of it",
@@ -187,10 +184,9 @@ void add_cache_cases(std::vector<StabilityCase>& cases) {
   add("cache-stack", "LRU of 1 to 1,024 lines: a larger cache misses more",
       "Mattson's stack distances, exactly", stack_distances);
   add("caches-in-machines", "nodes with caches from one line to more than the database",
-      "references are equal, misses never below the distinct lines",
-      [](const CaseSize&) { return machines_of_all_caches(); });
+      "references are equal, misses never below the distinct lines", machines_of_all_caches);
   add("lines-in-machines", "lines of 1 byte to 1 MiB in a machine", "every pixel is written, every law holds",
-      [](const CaseSize&) { return machines_of_all_lines(); });
+      machines_of_all_lines);
 }
 
 }  // namespace marti::studies

@@ -71,10 +71,7 @@ Tally disagreements(std::vector<accel::TriangleCorners> corners, std::uint32_t r
   const auto triangles = std::make_shared<const TriangleSet>(std::move(corners));
   const accel::BruteForce brute(triangles);
   const auto structures = build_structures(triangles, deep);
-  const Tracer oracle = [&](const Ray& ray) {
-    accel::NullVisitor visitor;
-    return brute.closest(ray, visitor);
-  };
+  const Tracer oracle = tracer_of(brute);
   Tally all;
   for (const Aim aim : all_aims) {
     all += disagreements(*triangles, oracle, structures, structures[0]->bounds(), aim,

@@ -16,6 +16,15 @@ namespace marti::studies {
 /// Something that traces rays: a structure, a kernel alone, or one that is broken on purpose.
 using Tracer = std::function<accel::Hit(const accel::Ray&)>;
 
+/// A structure as a tracer; it must stay.
+template <class Structure>
+Tracer tracer_of(const Structure& structure) {
+  return [&structure](const accel::Ray& ray) {
+    accel::NullVisitor visitor;
+    return structure.closest(ray, visitor);
+  };
+}
+
 /// Every kind of structure, in several shapes: as configured by default, as deep as they go, with the other
 /// walks, matched, lazy. Brute force is not among them. Few of them with `deep` false: for large scenes.
 [[nodiscard]] std::vector<std::unique_ptr<accel::Structure>> build_structures(

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -14,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "accel/precision.h"
+#include "scenes/gltf_export.h"
 #include "scenes/open.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
@@ -40,32 +42,6 @@ CaseOutcome bad_vertex(double value) {
       "triangle 7 has a coordinate that is not a number");
 }
 
-/// A binary glTF of `corners`, three to a triangle, as floats.
-std::string glb_of(const std::vector<float>& coordinates) {
-  const std::size_t bytes = coordinates.size() * sizeof(float);
-  std::string json = fmt::format(
-      R"({{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],)"
-      R"("meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],)"
-      R"("accessors":[{{"bufferView":0,"componentType":5126,"count":{},"type":"VEC3",)"
-      R"("min":[0,0,0],"max":[1,1,1]}}],)"
-      R"("bufferViews":[{{"buffer":0,"byteLength":{}}}],"buffers":[{{"byteLength":{}}}]}})",
-      coordinates.size() / 3, bytes, bytes);
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  std::string data(bytes, '\0');
-  std::memcpy(data.data(), coordinates.data(), bytes);
-  const auto word = [](std::size_t value) {
-    std::string text(4, '\0');
-    for (std::size_t k = 0; k < 4; ++k) {
-      text[k] = static_cast<char>((value >> (8 * k)) & 0xffU);
-    }
-    return text;
-  };
-  std::string file = "glTF" + word(2) + word(12 + 8 + json.size() + 8 + data.size());
-  file += word(json.size()) + "JSON" + json;
-  file += word(data.size()) + std::string("BIN\0", 4) + data;
-  return file;
-}
-
 /// A directory of its own among the temporary files, removed with this object.
 class OwnDirectory {
  public:
@@ -87,11 +63,19 @@ class OwnDirectory {
   std::string path_;
 };
 
-/// The scene of a file of these coordinates.
-scenes::Scene opened(const std::vector<float>& coordinates) {
+/// The scene as a file has it, in floats; with `value` for one coordinate of triangle `bad`.
+scenes::Scene through_a_file(const scenes::Scene& scene, std::size_t bad = 0,
+                             std::optional<float> value = {}) {
   const OwnDirectory directory;
   const std::filesystem::path path = directory.path() / "case.glb";
-  sim::write_file(path, glb_of(coordinates));
+  scenes::export_glb(scene, path);
+  if (value) {
+    const glm::vec3 corner(scene.positions[3 * bad + 1]);
+    std::string bytes = sim::read_file(path, std::int64_t{1} << 30);
+    const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(&corner), sizeof corner));
+    std::memcpy(bytes.data() + at + sizeof(float), &*value, sizeof(float));
+    sim::write_file(path, bytes);
+  }
   return scenes::open_scene(path.string(), {}, {});
 }
 
@@ -99,22 +83,22 @@ scenes::Scene opened(const std::vector<float>& coordinates) {
 /// note.
 CaseOutcome gltf_with(float value, const CaseSize& size) {
   constexpr std::size_t triangles = 10'000;
+  constexpr std::size_t bad = 1234;
   Random random(62);
-  std::vector<float> coordinates;
-  for (std::size_t k = 0; k < triangles; ++k) {
+  scenes::Scene all;
+  all.materials.emplace_back();
+  for (std::uint32_t k = 0; k < triangles; ++k) {
     const glm::dvec3 a = random.in_box(glm::dvec3(0.05), glm::dvec3(0.95));
     for (const glm::dvec3& p : {a, a + 0.02 * random.direction(), a + 0.02 * random.direction()}) {
-      for (int axis = 0; axis < 3; ++axis) {
-        coordinates.push_back(static_cast<float>(p[axis]));
-      }
+      all.positions.push_back(p);
     }
+    all.triangles.push_back({{3 * k, 3 * k + 1, 3 * k + 2}, 0, k});
   }
-  constexpr std::size_t bad = 1234;
-  std::vector<float> rest = coordinates;
-  rest.erase(rest.begin() + 9 * bad, rest.begin() + 9 * (bad + 1));
-  coordinates[9 * bad + 4] = value;
-  const scenes::Scene scene = opened(coordinates);
-  const scenes::Scene expected = opened(rest);
+  all.polygons = triangles;
+  scenes::Scene rest = all;
+  rest.triangles.erase(rest.triangles.begin() + bad);
+  const scenes::Scene scene = through_a_file(all, bad, value);
+  const scenes::Scene expected = through_a_file(rest);
   const auto a = std::make_shared<const TriangleSet>(scene);
   const auto b = std::make_shared<const TriangleSet>(expected);
   const accel::Octree with = accel::Octree::build(a);
@@ -174,32 +158,27 @@ CaseOutcome recommendation() {
 }  // namespace
 
 void add_input_cases(std::vector<StabilityCase>& cases) {
-  const auto add = [&](std::string id, std::string risk, std::string oracle, auto run) {
-    cases.push_back({std::move(id), CaseGroup::geometry, std::move(risk), std::move(oracle), run});
-  };
+  const CaseAdder add(cases, CaseGroup::geometry);
   add("nan-vertex", "a coordinate that is no number poisons the bounds of the whole tree",
-      "refused, with the triangle's number", [](const CaseSize&) { return bad_vertex(not_a_number); });
+      "refused, with the triangle's number", [] { return bad_vertex(not_a_number); });
   add("infinite-vertex", "an infinite coordinate makes every cell infinite",
-      "refused, with the triangle's number", [](const CaseSize&) { return bad_vertex(-infinity); });
+      "refused, with the triangle's number", [] { return bad_vertex(-infinity); });
   add("gltf-nan", "one NaN among 10,000 triangles of a file", "hits of the file without it, and one note",
       [](const CaseSize& size) { return gltf_with(std::numeric_limits<float>::quiet_NaN(), size); });
   add("gltf-infinity", "one infinity among 10,000 triangles of a file",
       "hits of the file without it, and one note",
       [](const CaseSize& size) { return gltf_with(std::numeric_limits<float>::infinity(), size); });
-  add("direction-zero", "a ray that goes nowhere walks for ever", "an error, in every structure",
-      [](const CaseSize&) {
-        return bad_ray({{0, 0, 0}, {0, -0.0, 0}});
-      });
-  add("direction-nan", "a direction that is no number walks for ever", "an error, in every structure",
-      [](const CaseSize&) {
-        return bad_ray({{0, 0, 0}, {1, not_a_number, 0}});
-      });
-  add("origin-infinite", "an origin at infinity walks for ever", "an error, in every structure",
-      [](const CaseSize&) {
-        return bad_ray({{infinity, 0, 0}, {1, 0, 0}});
-      });
+  add("direction-zero", "a ray that goes nowhere walks for ever", "an error, in every structure", [] {
+    return bad_ray({{0, 0, 0}, {0, -0.0, 0}});
+  });
+  add("direction-nan", "a direction that is no number walks for ever", "an error, in every structure", [] {
+    return bad_ray({{0, 0, 0}, {1, not_a_number, 0}});
+  });
+  add("origin-infinite", "an origin at infinity walks for ever", "an error, in every structure", [] {
+    return bad_ray({{infinity, 0, 0}, {1, 0, 0}});
+  });
   add("advice", "doubles are advised where floats would do, or not where they lose triangles",
-      "teapot at 0 and 1e3: no; at 1e6 and 1e9: yes", [](const CaseSize&) { return recommendation(); });
+      "teapot at 0 and 1e3: no; at 1e6 and 1e9: yes", recommendation);
 }
 
 }  // namespace marti::studies

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -22,17 +21,7 @@ using accel::Ray;
 using accel::RaySetup;
 using accel::TriangleCorners;
 
-int sign(double x) { return x > 0.0 ? 1 : (x < 0.0 ? -1 : 0); }
-
 double edge(double ax, double ay, double bx, double by) { return ax * by - ay * bx; }
-
-/// The sign of a * b - c * d, exact barring underflow: where the rounded products are equal their rounding
-/// errors decide. Not inlined: a product that is also used here would not be contracted there.
-[[gnu::noinline]] int exact_sign(double a, double b, double c, double d) {
-  const volatile double p = a * b;
-  const volatile double q = c * d;
-  return p != q ? sign(p - q) : sign(std::fma(a, b, -p) - std::fma(c, d, -q));
-}
 
 /// Calls visit(ax, ay, bx, by) for pairs of vectors that are collinear but for rounding.
 template <class Visit>
@@ -218,9 +207,7 @@ CaseOutcome closed_mesh_in_floats(const CaseSize& size) {
 }  // namespace
 
 void add_kernel_cases(std::vector<StabilityCase>& cases) {
-  const auto add = [&](std::string id, std::string risk, std::string oracle, auto run) {
-    cases.push_back({std::move(id), CaseGroup::geometry, std::move(risk), std::move(oracle), run});
-  };
+  const CaseAdder add(cases, CaseGroup::geometry);
   add("edge-signs", "products contracted to fused multiply-adds give edge functions wrong signs",
       "sign by two-products, exact", edge_signs);
   add("edge-antisymmetry", "two triangles see their common edge differently",

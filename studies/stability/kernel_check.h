@@ -2,12 +2,23 @@
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 #include "accel/watertight.h"
 #include "studies/stability/hostile.h"
 
 namespace marti::studies {
+
+inline int sign(double x) { return x > 0.0 ? 1 : (x < 0.0 ? -1 : 0); }
+
+/// The sign of a * b - c * d, exact barring underflow: where the rounded products are equal their rounding
+/// errors decide. Not inlined: a product that is also used here would not be contracted there.
+[[gnu::noinline]] inline int exact_sign(double a, double b, double c, double d) {
+  const volatile double p = a * b;
+  const volatile double q = c * d;
+  return p != q ? sign(p - q) : sign(std::fma(a, b, -p) - std::fma(c, d, -q));
+}
 
 /// The hit of one triangle.
 template <class Real = double>

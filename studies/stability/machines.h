@@ -1,6 +1,7 @@
 // The machines that the stability study times, and a frame small enough to be timed thousands of times.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,13 @@ namespace marti::studies {
 struct NamedTiming {
   std::string name;
   processors::MachineConfig machine;
+
+  /// The name as the end of a case's id.
+  [[nodiscard]] std::string id() const {
+    std::string text = name;
+    std::replace(text.begin(), text.end(), ' ', '-');
+    return text;
+  }
 };
 
 /// A machine of every kind of scheme, memory and interconnect, of six nodes. The

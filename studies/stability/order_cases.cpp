@@ -201,10 +201,7 @@ CaseOutcome full_counters() {
 }  // namespace
 
 void add_order_cases(std::vector<StabilityCase>& cases) {
-  const auto add = [&](std::string id, std::string risk, std::string oracle, auto run) {
-    cases.push_back({std::move(id), CaseGroup::machine, std::move(risk), std::move(oracle),
-                     [run](const CaseSize&) { return run(); }});
-  };
+  const CaseAdder add(cases, CaseGroup::machine);
   add("orders-of-posting", "2,000 events at 20 instants posted in 100 orders", "a sorted list",
       orders_of_posting);
   add("orders-of-starting", "the nodes' first events posted in other orders",

@@ -27,6 +27,18 @@ scenes::Scene scene_of(const PlacedSphere& mesh) {
   return scene;
 }
 
+processors::Surface<double> surface_of(const scenes::Scene& scene, const Ray& eye, const Hit& hit) {
+  const double weights[3] = {hit.u, hit.v, hit.w};
+  return processors::surface_at(scene, hit.primitive, weights, Vec(eye.direction));
+}
+
+Ray leaving(const processors::Surface<double>& surface, const Vec& direction) {
+  const Vec origin = processors::leave(surface, direction);
+  Ray ray{{origin.x, origin.y, origin.z}, {direction.x, direction.y, direction.z}};
+  ray.t_min = std::numeric_limits<double>::denorm_min();
+  return ray;
+}
+
 /// A convex mesh: from its surface every ray outwards is free, and every ray inwards hits.
 CaseOutcome convex(double offset, double scale, const CaseSize& size) {
   const PlacedSphere mesh(4, offset, scale);
@@ -44,18 +56,13 @@ CaseOutcome convex(double offset, double scale, const CaseSize& size) {
     if (!hit.found()) {
       continue;
     }
-    const double weights[3] = {hit.u, hit.v, hit.w};
-    const processors::Surface<double> surface =
-        processors::surface_at(scene, hit.primitive, weights, Vec(eye.direction));
+    const processors::Surface<double> surface = surface_of(scene, eye, hit);
     Vec direction(random.direction());
     const double cosine = processors::dot(surface.geometric, direction);
     if (std::abs(cosine) < 0.01) {
       continue;  // grazing: whether a triangle of a rounded mesh is met is a matter of that rounding
     }
-    const Vec origin = processors::leave(surface, direction);
-    Ray ray{{origin.x, origin.y, origin.z}, {direction.x, direction.y, direction.z}};
-    ray.t_min = std::numeric_limits<double>::denorm_min();
-    const bool found = octree.closest(ray, visitor).found();
+    const bool found = octree.closest(leaving(surface, direction), visitor).found();
     (cosine > 0.0 ? outwards : inwards).add(found == (cosine < 0.0));
   }
   CaseOutcome outcome = none_wrong({outwards.wrong + inwards.wrong, outwards.of + inwards.of}, "rays wrong");
@@ -82,13 +89,7 @@ CaseOutcome thin_gap(double height) {
     accel::NullVisitor visitor;
     const Ray eye{{0.2, 0.1, height - 1.0}, {0.05, 0.03, 1.0}};
     const Hit hit = octree.closest(eye, visitor);
-    const double weights[3] = {hit.u, hit.v, hit.w};
-    processors::Surface<double> surface =
-        processors::surface_at(scene, hit.primitive, weights, Vec(eye.direction));
-    const Vec up(0.05, 0.03, 1.0);
-    const Vec origin = processors::leave(surface, up);
-    Ray ray{{origin.x, origin.y, origin.z}, {up.x, up.y, up.z}};
-    ray.t_min = std::numeric_limits<double>::denorm_min();
+    const Ray ray = leaving(surface_of(scene, eye, hit), Vec(0.05, 0.03, 1.0));
     if (hit.primitive != 0 || octree.closest(ray, visitor).primitive != 1) {
       break;
     }
@@ -102,6 +103,7 @@ CaseOutcome thin_gap(double height) {
 }  // namespace
 
 void add_origin_cases(std::vector<StabilityCase>& cases) {
+  const CaseAdder add(cases, CaseGroup::geometry);
   struct Place {
     const char* id;
     double offset;
@@ -110,17 +112,14 @@ void add_origin_cases(std::vector<StabilityCase>& cases) {
   for (const Place& place :
        {Place{"origins", 0.0, 1.0}, Place{"origins-at-1e4", 1e4, 1.0}, Place{"origins-at-1e5", 1e5, 1.0},
         Place{"origins-small", 0.0, 1e-5}, Place{"origins-large", 0.0, 1e5}}) {
-    cases.push_back(
-        {place.id, CaseGroup::geometry,
-         fmt::format("rays from a surface of size {:g} at {:g} hit it again, or jump over the next",
-                     place.scale, place.offset),
-         "convex mesh: outwards free, inwards a hit",
-         [place](const CaseSize& size) { return convex(place.offset, place.scale, size); }});
+    add(place.id,
+        fmt::format("rays from a surface of size {:g} at {:g} hit it again, or jump over the next",
+                    place.scale, place.offset),
+        "convex mesh: outwards free, inwards a hit",
+        [place](const CaseSize& size) { return convex(place.offset, place.scale, size); });
   }
-  cases.push_back({"thin-gap", CaseGroup::geometry,
-                   "a ray from one sheet jumps over the next one just above it",
-                   "gaps from 2^8 steps of a double on are seen",
-                   [](const CaseSize& /*size*/) { return thin_gap(16.5); }});
+  add("thin-gap", "a ray from one sheet jumps over the next one just above it",
+      "gaps from 2^8 steps of a double on are seen", [] { return thin_gap(16.5); });
 }
 
 }  // namespace marti::studies

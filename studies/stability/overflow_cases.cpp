@@ -1,5 +1,4 @@
 // Cases near the end of time: 2^63 ticks.
-#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -89,8 +88,7 @@ CaseOutcome long_durations() {
           const MachineResult result = processors::replay(small_log(), machine);
           processors::check_bounds(machine, result);
           good = result.end >= 0;
-        } catch (const sim::UserError&) {
-          good = true;
+        } catch (const sim::UserError&) {  // refused, which is as good
         } catch (const sim::InternalError& error) {
           objections += fmt::format("; {} of 2^{} ({}): {}", duration.name, bits, one.name, error.what());
           good = false;
@@ -112,19 +110,16 @@ CaseOutcome sums_of_times() {
 }  // namespace
 
 void add_overflow_cases(std::vector<StabilityCase>& cases) {
+  const CaseAdder add(cases, CaseGroup::machine);
   for (const NamedTiming& one : machines_of_every_kind()) {
-    std::string id = "end-of-time-" + one.name;
-    std::replace(id.begin(), id.end(), ' ', '-');
-    cases.push_back({id, CaseGroup::machine,
-                     "durations times 2 to 2^61 (" + one.name + "): times near 2^63 ticks wrap",
-                     "multiplied exactly, or refused as the user's input",
-                     [machine = one.machine](const CaseSize&) { return up_to_the_end(machine); }});
+    add("end-of-time-" + one.id(), "durations times 2 to 2^61 (" + one.name + "): times near 2^63 ticks wrap",
+        "multiplied exactly, or refused as the user's input",
+        [machine = one.machine] { return up_to_the_end(machine); });
   }
-  cases.push_back({"long-durations", CaseGroup::machine, "one duration of 2^60 cycles overflows some sum",
-                   "a time, or refused as the user's input",
-                   [](const CaseSize&) { return long_durations(); }});
-  cases.push_back({"last-tick", CaseGroup::machine, "an event after 2^63 - 10^6 is scheduled in the past",
-                   "refused as the user's input", [](const CaseSize&) { return sums_of_times(); }});
+  add("long-durations", "one duration of 2^60 cycles overflows some sum",
+      "a time, or refused as the user's input", long_durations);
+  add("last-tick", "an event after 2^63 - 10^6 is scheduled in the past", "refused as the user's input",
+      sums_of_times);
 }
 
 }  // namespace marti::studies

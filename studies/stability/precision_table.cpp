@@ -96,21 +96,20 @@ Table precision_table(const std::vector<PrecisionRow>& rows) {
 }
 
 void add_precision_cases(std::vector<StabilityCase>& cases) {
-  cases.push_back({"doubles-at-offsets", CaseGroup::geometry,
-                   "a teapot moved by 1e3, 1e6 and 1e9 loses hits in doubles",
-                   "the ids of the teapot at the origin, all of them", [](const CaseSize& size) {
-                     Tally tally;
-                     for (const PrecisionRow& row : compare_precisions(size.rays, false)) {
-                       tally += {row.rays - row.double_agree, row.rays};
-                     }
-                     return none_wrong(tally, "rays differ");
-                   }});
-  cases.push_back(
-      {"floats-at-origin", CaseGroup::geometry, "floats lose hits even of a scene that asks for no more",
-       "ids in doubles, but for rays within rounding of an edge", [](const CaseSize& size) {
-         const PrecisionRow row = compare_precisions(size.rays / 4).front();
-         return error_within(1.0 - share(row.float_agree, row.rays), 1e-2, "share of rays that differ");
-       }});
+  const CaseAdder add(cases, CaseGroup::geometry);
+  add("doubles-at-offsets", "a teapot moved by 1e3, 1e6 and 1e9 loses hits in doubles",
+      "the ids of the teapot at the origin, all of them", [](const CaseSize& size) {
+        Tally tally;
+        for (const PrecisionRow& row : compare_precisions(size.rays, false)) {
+          tally += {row.rays - row.double_agree, row.rays};
+        }
+        return none_wrong(tally, "rays differ");
+      });
+  add("floats-at-origin", "floats lose hits even of a scene that asks for no more",
+      "ids in doubles, but for rays within rounding of an edge", [](const CaseSize& size) {
+        const PrecisionRow row = compare_precisions(size.rays / 4).front();
+        return error_within(1.0 - share(row.float_agree, row.rays), 1e-2, "share of rays that differ");
+      });
 }
 
 }  // namespace marti::studies

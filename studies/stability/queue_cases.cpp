@@ -31,19 +31,8 @@ CaseOutcome cyclic(const std::vector<std::uint32_t>& node_counts, std::int64_t b
     const Cyclic machine(nodes, reads, bank_cycles);
     const sim::Ticks n = nodes;
     const MachineResult result = processors::replay(machine.log, machine.machine);
-    // All nodes first ask at the same time, so node i waits for i others. After that either the bus is free
-    // in time, or every read waits until the bus has served all other nodes.
-    const sim::Ticks each = std::max<sim::Ticks>(0, n * machine.service - machine.service - machine.think);
-    for (std::uint32_t i = 0; i < nodes; ++i) {
-      const sim::Ticks wait = i * machine.service + (reads - 1) * each;
-      const processors::NodeStatistics& node = result.nodes[i];
-      off += static_cast<double>(
-          std::llabs(node.time[static_cast<std::size_t>(processors::Activity::interconnect_wait)] - wait));
-      off += static_cast<double>(
-          std::llabs(node.finish - (reads * (machine.think + machine.service) + wait + machine.after)));
-    }
-    off += static_cast<double>(std::llabs(result.clusters[0].interconnect.waits.sum -
-                                          (n * (n - 1) / 2 * machine.service + n * (reads - 1) * each)));
+    const sim::Ticks each = machine.wait_of_later_rounds();
+    off += static_cast<double>(machine.off(result, reads));
     const double span = static_cast<double>(reads) * static_cast<double>(machine.think + machine.service) +
                         static_cast<double>((n - 1) * machine.service + (reads - 1) * each);
     utilisation = static_cast<double>(n * reads * machine.service) / span;
@@ -212,15 +201,13 @@ CaseOutcome littles_law(const CaseSize& size) {
 }  // namespace
 
 void add_queue_cases(std::vector<StabilityCase>& cases) {
-  const auto add = [&](std::string id, std::string risk, std::string oracle, auto run) {
-    cases.push_back({std::move(id), CaseGroup::machine, std::move(risk), std::move(oracle), run});
-  };
+  const CaseAdder add(cases, CaseGroup::machine);
   add("cyclic-light", "1 to 17 nodes that wait for a bus now and then",
-      "D/D/1//N in closed form, to the tick", [](const CaseSize&) {
+      "D/D/1//N in closed form, to the tick", [] {
         return cyclic({1, 2, 3, 16, 17}, 1);
       });
   add("cyclic-saturated", "64 to 256 nodes on one bus: utilisation towards 1",
-      "D/D/1//N in closed form, to the tick", [](const CaseSize&) {
+      "D/D/1//N in closed form, to the tick", [] {
         return cyclic({64, 256}, 13);
       });
   add("saturated-bus", "the largest machine on one bus, all nodes in one queue",
@@ -232,23 +219,22 @@ void add_queue_cases(std::vector<StabilityCase>& cases) {
     add(id,
         fmt::format("closed network of {} customers, think over service {:g}: digits cancel", customers,
                     ratio),
-        "the recursion in long double, and another algorithm",
-        [customers = customers, ratio = ratio](const CaseSize&) {
+        "the recursion in long double, and another algorithm", [customers = customers, ratio = ratio] {
           return repairman(static_cast<std::uint64_t>(customers), ratio);
         });
   }
   add("mean-values-64-banks", "mean values of 65,536 customers at 64 banks lose their digits",
-      "N / ((N + K - 1) D), exact", [](const CaseSize&) { return balanced_banks(65'536); });
+      "N / ((N + K - 1) D), exact", [] { return balanced_banks(65'536); });
   add("network-bounds", "2,000 random networks, times from 1e-9 to 1e9", "asymptotic and balanced-job bounds",
-      [](const CaseSize&) { return bounds_hold(); });
+      bounds_hold);
   add("open-fixed-half", "random arrivals at a bank, load 0.5", "Pollaczek-Khinchine (M/D/1)",
-      [](const CaseSize&) { return fixed_service(0.5, 0.01); });
+      [] { return fixed_service(0.5, 0.01); });
   add("open-fixed-0.9", "random arrivals at a bank, load 0.9", "Pollaczek-Khinchine (M/D/1)",
-      [](const CaseSize&) { return fixed_service(0.9, 0.08); });
+      [] { return fixed_service(0.9, 0.08); });
   add("open-two-sizes", "messages of two sizes on a bus, load 0.7", "Pollaczek-Khinchine (M/G/1)",
-      [](const CaseSize&) { return two_sizes(0.7, 0.05); });
+      [] { return two_sizes(0.7, 0.05); });
   add("open-by-tick", "an arrival in every tick by chance, service of 8 ticks", "p D (D - 1) / (2 (1 - p D))",
-      [](const CaseSize&) { return tick_by_tick(); });
+      tick_by_tick);
   add("littles-law", "waits that are summed apart from the queue they are in",
       "area under the queue's length, in whole ticks", littles_law);
 }

@@ -147,19 +147,17 @@ CaseOutcome narrow_bus() {
 }  // namespace
 
 void add_scale_cases(std::vector<StabilityCase>& cases) {
-  const auto add = [&](std::string id, std::string risk, std::string oracle, auto run) {
-    cases.push_back({std::move(id), CaseGroup::machine, std::move(risk), std::move(oracle), run});
-  };
+  const CaseAdder add(cases, CaseGroup::machine);
   add("node-counts", "1, 2, 3, 16, 17, 1,024 and the most nodes, most of them without work",
       "the log's steps, all and once; every node's time adds up to the end", node_counts);
   add("no-nan-printed", "nodes without references divide 0 by 0", "no nan or inf in summary and JSON",
       printed);
   add("packet-shapes", "packets of a pixel, of more than the image, not dividing it",
-      "the log's steps, all and once", [](const CaseSize&) { return packet_shapes(); });
+      "the log's steps, all and once", packet_shapes);
   add("perfect-memory", "memory that takes no time", "the frame is the most that one node computes",
-      [](const CaseSize&) { return perfect_memory(); });
+      perfect_memory);
   add("bus-widths", "a bus of 1 byte to 4 KiB a beat, 1 and 64 banks",
-      "busy time is beats and addresses, to the tick", [](const CaseSize&) { return narrow_bus(); });
+      "busy time is beats and addresses, to the tick", narrow_bus);
 }
 
 }  // namespace marti::studies

@@ -142,9 +142,7 @@ CaseOutcome stadium(const CaseSize& size) {
 }  // namespace
 
 void add_scene_cases(std::vector<StabilityCase>& cases) {
-  const auto add = [&](std::string id, std::string risk, std::string oracle, auto run) {
-    cases.push_back({std::move(id), CaseGroup::geometry, std::move(risk), std::move(oracle), run});
-  };
+  const CaseAdder add(cases, CaseGroup::geometry);
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name(1, "xyz"[axis]);
     add("flat-" + name, "a scene without extent along " + name + " has cells without volume",

@@ -6,6 +6,8 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "studies/tables/text_units.h"  // grouped(), which every case uses
@@ -67,6 +69,27 @@ struct Tally {
 
 /// All cases, in the order of the table.
 [[nodiscard]] std::vector<StabilityCase> stability_cases();
+
+/// Appends cases of one group. A case that has no size is a function without an argument.
+class CaseAdder {
+ public:
+  CaseAdder(std::vector<StabilityCase>& cases, CaseGroup group) : cases_(cases), group_(group) {}
+
+  template <class Run>
+  void operator()(std::string id, std::string risk, std::string oracle, Run run) const {
+    std::function<CaseOutcome(const CaseSize&)> sized;
+    if constexpr (std::is_invocable_v<Run, const CaseSize&>) {
+      sized = run;
+    } else {
+      sized = [run](const CaseSize& /*size*/) { return run(); };
+    }
+    cases_.push_back({std::move(id), group_, std::move(risk), std::move(oracle), std::move(sized)});
+  }
+
+ private:
+  std::vector<StabilityCase>& cases_;
+  CaseGroup group_;
+};
 
 // The cases of each file; they append.
 void add_kernel_cases(std::vector<StabilityCase>& cases);

@@ -24,14 +24,9 @@ CaseOutcome rays_of(Aim aim, const CaseSize& size) {
   const auto triangles = std::make_shared<const TriangleSet>(hostile_soup(0.0, 21));
   const accel::BruteForce brute(triangles);
   const auto structures = build_structures(triangles);
-  return none_wrong(disagreements(
-                        *triangles,
-                        [&](const Ray& ray) {
-                          accel::NullVisitor visitor;
-                          return brute.closest(ray, visitor);
-                        },
-                        structures, structures[0]->bounds(), aim, size.rays, 22),
-                    "rays differ");
+  return none_wrong(
+      disagreements(*triangles, tracer_of(brute), structures, structures[0]->bounds(), aim, size.rays, 22),
+      "rays differ");
 }
 
 CaseOutcome moved_and_scaled(double offset, double scale, const CaseSize& size) {
@@ -74,9 +69,7 @@ CaseOutcome mailboxes(const CaseSize& size) {
 }  // namespace
 
 void add_structure_cases(std::vector<StabilityCase>& cases) {
-  const auto add = [&](std::string id, std::string risk, std::string oracle, auto run) {
-    cases.push_back({std::move(id), CaseGroup::geometry, std::move(risk), std::move(oracle), run});
-  };
+  const CaseAdder add(cases, CaseGroup::geometry);
   struct Rays {
     Aim aim;
     const char* id;

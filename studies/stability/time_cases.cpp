@@ -79,7 +79,7 @@ CaseOutcome stiff(std::int64_t ratio) {
 }
 
 /// Many nodes behind a bus a thousand million times slower than they.
-CaseOutcome stiff_and_crowded(const CaseSize& /*size*/) {
+CaseOutcome stiff_and_crowded() {
   MachineConfig machine;
   machine.nodes = 64;
   machine.packets = {1, 1, processors::PacketOrder::scanline};
@@ -144,17 +144,12 @@ CaseOutcome without_one_time() {
 }  // namespace
 
 void add_time_cases(std::vector<StabilityCase>& cases) {
-  const auto add = [&](std::string id, std::string risk, std::string oracle, auto run) {
-    cases.push_back({std::move(id), CaseGroup::machine, std::move(risk), std::move(oracle), run});
-  };
+  const CaseAdder add(cases, CaseGroup::machine);
   for (const NamedTiming& one : machines_of_every_kind()) {
-    std::string id = "durations-" + one.name;
-    for (char& c : id) {
-      c = c == ' ' ? '-' : c;
-    }
-    add(id, "all durations times 10 to 1e9 (" + one.name + "): rounding or truncation changes the course",
+    add("durations-" + one.id(),
+        "all durations times 10 to 1e9 (" + one.name + "): rounding or truncation changes the course",
         "every time is multiplied exactly, events are as many",
-        [machine = one.machine](const CaseSize&) { return homogeneous(machine); });
+        [machine = one.machine] { return homogeneous(machine); });
   }
   for (const auto& [ratio, name] : {std::pair<std::int64_t, const char*>{1, "1"},
                                     {100, "1e2"},
@@ -163,17 +158,16 @@ void add_time_cases(std::vector<StabilityCase>& cases) {
     add(fmt::format("hit-to-miss-{}", name),
         fmt::format("a miss takes {} hits: the frame's time loses its small parts, or events grow", name),
         "compute + hits + misses * latency, to the tick; events as at 1:1",
-        [ratio = ratio](const CaseSize&) { return stiff(ratio); });
+        [ratio = ratio] { return stiff(ratio); });
   }
   add("slow-bank", "64 nodes behind one bank 1e9 times slower than they", "the bank is never idle",
       stiff_and_crowded);
   add("zero-latencies", "nothing takes time: events at one tick never end",
-      "ends at 0, with the hits and misses of any other latency",
-      [](const CaseSize&) { return without_time(); });
+      "ends at 0, with the hits and misses of any other latency", without_time);
   add("zero-latencies-dynamic", "nothing takes time and packets are asked for", "ends at 0, every law holds",
-      [](const CaseSize&) { return without_time_dynamic(); });
+      without_time_dynamic);
   add("one-zero-latency", "a single duration is 0 or 2^40, the others are not",
-      "hits and misses of any other latency", [](const CaseSize&) { return without_one_time(); });
+      "hits and misses of any other latency", without_one_time);
 }
 
 }  // namespace marti::studies

@@ -1,13 +1,15 @@
 // The program as its user meets it: exit status, messages, files.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "tests/cli/shell.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/wrong_configurations.h"
 
 namespace marti::test {
 namespace {
@@ -31,33 +33,6 @@ TEST(Command, StudyOfOperationsWritesItsTables) {
   EXPECT_EQ(marti("study operations --set structure.bsp_walk=push_point").status, 2) << "not used";
 }
 
-// Every walk, and mailboxes, on the same machine: the same image, other times.
-TEST(Command, WalksAndMailboxesChangeTimesAndNoImage) {
-  const TemporaryDirectory directory;
-  const fs::path config = directory.path() / "walks.toml";
-  write(config, "[machine]\nnodes = 4\n");
-  const auto run = [&](const std::string& options) {
-    const Outcome outcome = marti("run " + quoted(config) + small_teapot + " --json" + options);
-    EXPECT_EQ(outcome.status, 0) << outcome.output;
-    return nlohmann::json::parse(outcome.output);
-  };
-  const auto plain = run(" --set structure.kind=bsp");
-  const auto push = run(" --set structure.kind=bsp --set structure.bsp_walk=push_point");
-  const auto mailed = run(" --set structure.kind=bsp --set structure.mailboxes=true");
-  const auto matched = run(" --set structure.kind=grid --set structure.grid_resolution=octree_cells");
-  for (const auto& other : {push, mailed, matched}) {
-    EXPECT_EQ(other["image"]["hit_hash"], plain["image"]["hit_hash"]);
-    EXPECT_NE(other["machine"]["frame_time_ps"], plain["machine"]["frame_time_ps"]);
-  }
-  EXPECT_EQ(push["structure"]["traversal"], "bsp, push-point");
-  EXPECT_EQ(push["work_log"]["leaves"], plain["work_log"]["leaves"]);
-  EXPECT_GT(push["work_log"]["branches"], plain["work_log"]["branches"]);
-  EXPECT_EQ(mailed["work_log"]["lookups"], plain["work_log"]["tests"]);
-  EXPECT_LT(mailed["work_log"]["tests"], plain["work_log"]["tests"]);
-  EXPECT_EQ(mailed["machine"]["steps"]["lookups"], mailed["work_log"]["lookups"]);
-  EXPECT_EQ(matched["structure"]["notes"].size(), 1U);
-}
-
 // OpenImageIO's libraries are most of a short run's time, so only what writes or reads an image loads them.
 TEST(Command, OnlyImagesLoadOpenImageIO) {
   const TemporaryDirectory directory;
@@ -79,24 +54,6 @@ TEST(Command, OnlyImagesLoadOpenImageIO) {
   EXPECT_EQ(libraries("run", run).find("OpenImageIO"), std::string::npos);
   const std::string images = libraries("images", run + " -o " + quoted(directory.path() / "out"));
   EXPECT_NE(images.find("OpenImageIO"), std::string::npos);
-}
-
-TEST(Command, EveryShippedConfigurationRuns) {
-  int configurations = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(MARTI_SOURCE) / "configs")) {
-    const std::string text = entry.path().extension() == ".toml" ? read(entry.path()) : "[paper]";
-    // Configurations of studies are run by the tests of the studies.
-    const auto is_of = [&](const char* section) { return text.find(section) != std::string::npos; };
-    if (!is_of("[paper]") && !is_of("[schemes]") && !is_of("[error]")) {
-      ++configurations;
-      const Outcome outcome = marti("run " + quoted(entry.path()) + small_teapot + " --set frames.count=1");
-      EXPECT_EQ(outcome.status, 0) << entry.path() << "\n" << outcome.output;
-      for (const char* line : {"frame time", "speed-up", "hit ratio", "limited by"}) {
-        EXPECT_NE(outcome.output.find(line), std::string::npos) << entry.path() << " lacks " << line;
-      }
-    }
-  }
-  EXPECT_GE(configurations, 20);
 }
 
 TEST(Command, ARunWritesItsFilesAndTheSameBytesAgain) {
@@ -138,92 +95,16 @@ TEST(Command, JsonHoldsTheConservationLaws) {
   EXPECT_EQ(machine["per_cluster"][0]["interconnect"]["reads"].get<std::int64_t>(), misses);
 }
 
-struct Wrong {
-  const char* text;
-  std::vector<std::string> complaint;  // parts of the message
-};
-
+// All of them are refused in tests/fuzz, by the library; here is what the program adds.
 TEST(Command, WrongConfigurationsGetOneMessageWithFileLineAndKey) {
   const TemporaryDirectory directory;
   const fs::path config = directory.path() / "wrong.toml";
-  const std::vector<Wrong> cases = {
-      {"[cache]\nsiz = \"16 KiB\"\n", {"wrong.toml:2", "cache.siz", "cache.size"}},
-      {"[cache]\nsize = \"17 B\"\n", {"wrong.toml:2", "cache.size", "line"}},
-      {"[cache]\nsize = true\n", {"wrong.toml:2", "cache.size"}},
-      {"[machine]\nscheme = \"pipeline\"\nnodes = 2\n", {"wrong.toml:3", "machine.nodes", "at least 3"}},
-      {"[machine]\nscheme = \"pipeline\"\n[pipeline]\nsearch = 3\n",
-       {"pipeline.nearest", "all three stages"}},
-      {"[machine]\nscheme = \"pipeline\"\n[pipeline]\nsearch = 3\nnearest = 3\nshade = 3\n",
-       {"wrong.toml:4", "pipeline.search", "9", "machine.nodes = 16"}},
-      {"[machine]\nscheme = \"pipeline\"\n[pipeline]\nin_flight = 1000\n",
-       {"wrong.toml:4", "pipeline.in_flight", "more than 118"}},
-      {"[machine]\nscheme = \"pipeline\"\n[host]\nassignment = \"blocks\"\n",
-       {"wrong.toml:4", "host.assignment", "machine.scheme"}},
-      {"[machine]\nscheme = \"pipeline\"\n[build]\nsharing = \"shared\"\n",
-       {"wrong.toml:4", "build.sharing", "must be given"}},
-      {"[pipeline]\nqueue = 4\n", {"wrong.toml:2", "pipeline.queue", "machine.scheme"}},
-      {"[messages]\nray = \"8 B\"\n", {"wrong.toml:2", "messages.ray", "machine.scheme"}},
-      {"[cache]\nline = \"24 B\"\n", {"wrong.toml:2", "cache.line", "power of two"}},
-      {"[cache]\norganisation = \"none\"\nsize = \"1 KiB\"\n", {"wrong.toml:3", "cache.size", "none"}},
-      {"[cache]\nreplacement = \"lur\"\n", {"wrong.toml:2", "cache.replacement", "lru"}},
-      {"[machine]\nnodes = 0\n", {"wrong.toml:2", "machine.nodes"}},
-      {"[machine]\nnodes = -5\n", {"wrong.toml:2", "machine.nodes"}},
-      {"[machine]\nnodes = 16777216\nclusters = 2\n", {"wrong.toml:2", "machine.nodes", "2^24"}},
-      {"[machine]\nnodes = 1.5\n", {"wrong.toml:2", "machine.nodes"}},
-      {"[image]\nwidth = 99999999999999999999\n", {"wrong.toml:2"}},
-      {"[image]\nwidth = 32768\nheight = 32768\nmax_depth = 64\n", {"memory_limit"}},
-      {"[interconnect]\nkind = \"ideal\"\nwidth = \"8 B\"\n",
-       {"wrong.toml:3", "interconnect.width", "ideal"}},
-      {"[memory]\ninterleave = \"48 B\"\n", {"wrong.toml:2", "memory.interleave", "power of two"}},
-      {"[node]\nclock = \"33\"\n", {"wrong.toml:2", "node.clock"}},
-      {"[scene]\nsource = \"teepot:12\"\n", {"teepot", "teapot"}},
-      {"[scene]\nsource = \"teapot:0\"\n", {"teapot"}},
-      {"[scene]\nsource = \"missing.glb\"\n", {"missing.glb"}},
-      {"[scene]\nsource = \"teapot:2\"\nframe = 3\n", {"frame"}},
-      {"[structure]\nkind = \"none\"\nmax_level = 3\n", {"wrong.toml:3", "structure.max_level", "none"}},
-      {"[structure]\nkind = \"grid\"\nmax_level = 3\n", {"wrong.toml:3", "structure.max_level", "grid"}},
-      {"[structure]\nkind = \"bsp\"\ngrid_density = 3.0\n",
-       {"wrong.toml:3", "structure.grid_density", "bsp"}},
-      {"[build]\nrule_k = 3.0\n", {"wrong.toml:2", "build.rule_k", "given"}},
-      {"[build]\nsharing = \"none\"\ninitial_level = \"3\"\n",
-       {"wrong.toml:3", "build.initial_level", "none"}},
-      {"[build]\nsharing = \"shared\"\ninitial_level = \"3\"\nrule_k = 3.0\n",
-       {"wrong.toml:4", "build.rule_k", "rule"}},
-      {"[build]\nsharing = \"shared\"\ninitial_level = \"0\"\n", {"wrong.toml:3", "build.initial_level"}},
-      {"[build]\nsharing = \"shared\"\ninitial_level = \"low\"\n", {"wrong.toml:3", "full", "rule", "low"}},
-      {"[structure]\nkind = \"grid\"\n[build]\nsharing = \"none\"\n",
-       {"wrong.toml:4", "build.sharing", "structure.kind", "grid"}},
-      {"[database]\nplacement = \"replicated\"\n[build]\nsharing = \"shared\"\n",
-       {"wrong.toml:4", "build.sharing", "replicated"}},
-      {"[network]\nkind = \"mesh\"\n", {"wrong.toml:2", "network.kind", "no messages"}},
-      {"[database]\ninterleave = \"64 B\"\n", {"wrong.toml:2", "database.interleave", "distributed"}},
-      {"[database]\nplacement = \"distributed\"\ninterleave = \"16 B\"\n",
-       {"wrong.toml:3", "database.interleave", "32 bytes"}},
-      {"[database]\nplacement = \"distributed\"\ninterleave = \"48 B\"\n",
-       {"wrong.toml:3", "database.interleave", "power of two"}},
-      {"[database]\nplacement = \"distributed\"\n[memory]\nbanks = 8\n",
-       {"wrong.toml:4", "memory.banks", "[local]"}},
-      {"[database]\nplacement = \"distributed\"\n[interconnect]\nkind = \"crossbar\"\n",
-       {"wrong.toml:4", "interconnect.kind", "[network]"}},
-      {"[database]\nplacement = \"distributed\"\n[network]\nkind = \"ideal\"\nwidth = \"8 B\"\n",
-       {"wrong.toml:5", "network.width", "ideal"}},
-      {"[database]\nplacement = \"distributed\"\n[build]\nsharing = \"shared\"\n",
-       {"wrong.toml:4", "build.sharing", "overtake", "private"}},
-      {"[interconnect]\nkind = \"crossbar\"\narbitration = \"round_robin\"\n",
-       {"wrong.toml:3", "interconnect.arbitration", "crossbar"}},
-      {"[interconnect]\narbitration = \"fixed_priority\"\n[build]\nsharing = \"shared\"\n",
-       {"build.sharing", "overtake", "interconnect.arbitration"}},
-      {"nodes = 3\n", {"wrong.toml:1", "nodes"}},
-      {"[cache\n", {"wrong.toml:1"}},
-      {"[cache]\nsize = \"1536 MiB\"\nline = \"1 B\"\nways = 0\n", {"wrong.toml:2", "cache.size", "2^28"}},
-      {"[machine]\nnodes = 16000000\n[cache]\nsize = \"1 MiB\"\n",
-       {"wrong.toml:2", "machine.nodes", "memory_limit"}},
-      {"[cache]\nsize = \"1 KiB\"\nsize = \"2 KiB\"\n", {"wrong.toml:3"}},
-  };
-  for (const Wrong& wrong : cases) {
+  for (std::size_t i = 0; i < wrong_configurations().size(); i += stride(8)) {
+    const WrongConfiguration& wrong = wrong_configurations()[i];
     write(config, wrong.text);
     const Outcome outcome = marti("run " + quoted(config) + " -o " + quoted(directory.path() / "out"));
     EXPECT_EQ(outcome.status, 2) << wrong.text << "\n" << outcome.output;
+    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
     for (const std::string& part : wrong.complaint) {
       EXPECT_NE(outcome.output.find(part), std::string::npos) << wrong.text << "says: " << outcome.output;
     }
@@ -333,14 +214,10 @@ TEST(Command, FramesOfAnAnimationDiffer) {
   EXPECT_EQ(third, hash(" --set frames.first=6 --set frames.rate=16")) << "the same time";
   EXPECT_EQ(hash(" --set frames.first=8"), hash(" --set frames.first=9")) << "it stands still after its end";
 
-  const Outcome all = marti("run " + quoted(config));
-  EXPECT_EQ(all.status, 2);
-  EXPECT_NE(all.output.find("animation.toml:8: frames.count: 8 frames"), std::string::npos) << all.output;
+  expect_refused("run " + quoted(config), "animation.toml:8: frames.count: 8 frames");
   for (const char* what : {"scene.source=tetra:2", "scene.animation=none"}) {
-    const Outcome still =
-        marti("run " + quoted(config) + options + " --set frames.first=1 --set " + std::string(what));
-    EXPECT_EQ(still.status, 2);
-    EXPECT_NE(still.output.find("no animation plays"), std::string::npos) << still.output;
+    expect_refused("run " + quoted(config) + options + " --set frames.first=1 --set " + std::string(what),
+                   "no animation plays");
   }
 }
 
@@ -360,20 +237,6 @@ TEST(Command, AnExportedPoseIsAStaticScene) {
   EXPECT_EQ(marti("scene info " + scene + " --time nan").status, 2);
   EXPECT_EQ(marti("scene info " + quoted(file) + " --time 1").status, 2);
   EXPECT_EQ(marti("scene info " + scene + " --animation swim").status, 2);
-}
-
-TEST(Command, BrokenGltfFilesAreRefused) {
-  const TemporaryDirectory directory;
-  const fs::path file = directory.path() / "broken.gltf";
-  for (const char* text :
-       {"", "{", "[]", "{\"asset\":{\"version\":\"2.0\"}}",
-        "{\"asset\":{\"version\":\"2.0\"},\"scene\":7,\"scenes\":[{\"nodes\":[0]}],\"nodes\":"
-        "[{\"children\":[0]}]}"}) {
-    write(file, text);
-    const Outcome outcome = marti("scene info " + quoted(file));
-    EXPECT_EQ(outcome.status, 2) << text << "\n" << outcome.output;
-    EXPECT_NE(outcome.output.find("broken.gltf"), std::string::npos) << outcome.output;
-  }
 }
 
 TEST(Command, TheVoxelCutReportsWhatItSavedAndWhatItCost) {
@@ -403,12 +266,8 @@ TEST(Command, TheVoxelCutReportsWhatItSavedAndWhatItCost) {
   EXPECT_NE(read(out / "image.png"), read(out / "exact.png"));
 
   EXPECT_NE(marti(run + cut).output.find("voxel cut"), std::string::npos);
-  const Outcome useless = marti(run + " --set image.voxel_cut_reference=true");
-  EXPECT_EQ(useless.status, 2);
-  EXPECT_NE(useless.output.find("image.voxel_cut_reference"), std::string::npos) << useless.output;
-  const Outcome bsp = marti(run + cut + " --set structure.kind=bsp");
-  EXPECT_EQ(bsp.status, 2);
-  EXPECT_NE(bsp.output.find("image.voxel_cut"), std::string::npos) << bsp.output;
+  expect_refused(run + " --set image.voxel_cut_reference=true", "image.voxel_cut_reference");
+  expect_refused(run + cut + " --set structure.kind=bsp", "image.voxel_cut");
 }
 
 TEST(Command, AnInterruptedRunLeavesNoFile) {

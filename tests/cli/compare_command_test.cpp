@@ -56,9 +56,7 @@ TEST(CompareCommand, ListsWhatDiffersBetweenTwoRuns) {
 TEST(CompareCommand, RefusesWhatItCannotCompare) {
   const TemporaryDirectory directory;
   const std::string place = quoted(directory.path());
-  const Outcome missing = marti("compare " + place + "/none " + place);
-  EXPECT_EQ(missing.status, 2) << missing.output;
-  EXPECT_NE(missing.output.find("/none: there is no such file"), std::string::npos) << missing.output;
+  expect_refused("compare " + place + "/none " + place, "/none: there is no such file");
   write(directory.path() / "result.json", "{\"marti\": {");
   EXPECT_EQ(marti("compare " + place + " " + place).status, 2);
   EXPECT_EQ(marti("compare " + place).status, 2);

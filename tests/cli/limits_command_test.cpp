@@ -11,10 +11,6 @@
 namespace marti::test {
 namespace {
 
-bool says(const Outcome& outcome, const std::string& what) {
-  return outcome.output.find(what) != std::string::npos;
-}
-
 class Limits : public ::testing::Test {
  protected:
   Limits() { write(file(), "[image]\nwidth = 24\nheight = 16\n[scene]\nsource = \"teapot:12\"\n"); }

@@ -54,47 +54,6 @@ TEST(MachineCommand, APipelineIsLimitedByItsSlowestStage) {
   EXPECT_GT(few["frame_time_ps"].get<double>(), 1.5 * more["frame_time_ps"].get<double>());
 }
 
-TEST(MachineCommand, TheImageDoesNotDependOnTheMachineNorOnTheStructure) {
-  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
-  const auto hashes = [&](const std::string& options) {
-    const Outcome outcome = marti("run --json " + quoted(config) + small_teapot + options);
-    EXPECT_EQ(outcome.status, 0) << outcome.output;
-    const nlohmann::json result = nlohmann::json::parse(outcome.output);
-    return result["image"]["image_hash"].get<std::string>() + result["image"]["hit_hash"].get<std::string>();
-  };
-  const std::string expected = hashes("");
-  EXPECT_EQ(hashes(" --set machine.nodes=3 --set cache.size=\"1 KiB\" --set packets.width=5"), expected);
-  EXPECT_EQ(hashes(" --set structure.max_objects=2 --set structure.max_level=9"), expected);
-  for (const char* kind : {"bsp", "grid", "none"}) {
-    EXPECT_EQ(hashes(std::string(" --set structure.kind=") + kind), expected) << kind;
-  }
-  EXPECT_EQ(hashes(" --set structure.kind=grid --set structure.grid_density=0.3"), expected);
-  EXPECT_NE(hashes(" --set image.max_depth=1"), expected);
-}
-
-TEST(MachineCommand, TheImageDoesNotDependOnHowTheTreeIsBuilt) {
-  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
-  const auto result = [&](const std::string& options) {
-    const Outcome outcome = marti("run --json " + quoted(config) + small_teapot + options);
-    EXPECT_EQ(outcome.status, 0) << outcome.output;
-    return nlohmann::json::parse(outcome.output);
-  };
-  const nlohmann::json given = result("");
-  EXPECT_FALSE(given["machine"].contains("build"));
-  for (const char* structure : {"octree", "bsp"}) {
-    for (const char* sharing :
-         {"none", "shared", "shared --set build.initial_level=4", "private --set build.initial_level=full"}) {
-      const nlohmann::json built =
-          result(std::string(" --set structure.kind=") + structure + " --set build.sharing=" + sharing);
-      EXPECT_EQ(built["image"]["image_hash"], given["image"]["image_hash"]) << structure << " " << sharing;
-      const nlohmann::json& build = built["machine"]["build"];
-      EXPECT_EQ(build["per_node"].size(), 16U);
-      EXPECT_GT(build["start_up_ps"].get<std::int64_t>(), 0);
-      EXPECT_EQ(build["all_levels"]["made"], build["counts"]["children"]);
-    }
-  }
-}
-
 TEST(MachineCommand, ADistributedDatabaseReportsItsMessagesAndMemories) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "distributed.toml";
   for (const char* kind : {"mesh", "ideal"}) {

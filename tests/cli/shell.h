@@ -1,6 +1,7 @@
 // Runs the program as its user does.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -33,6 +34,17 @@ inline Outcome shell(const std::string& command) {
 inline std::string quoted(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
 
 inline Outcome marti(const std::string& arguments) { return shell(quoted(MARTI_PROGRAM) + " " + arguments); }
+
+inline bool says(const Outcome& outcome, const std::string& text) {
+  return outcome.output.find(text) != std::string::npos;
+}
+
+/// The program must refuse these arguments in these words.
+inline void expect_refused(const std::string& arguments, const std::string& words) {
+  const Outcome outcome = marti(arguments);
+  EXPECT_EQ(outcome.status, 2) << arguments << "\n" << outcome.output;
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, words, outcome.output) << arguments;
+}
 
 /// Settings of a run that takes no time.
 inline const std::string small_teapot =

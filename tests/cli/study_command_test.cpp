@@ -89,9 +89,7 @@ TEST(Study, AFullDiskLeavesTheOldResults) {
 
 TEST(Study, ShippedConfigurationNamesWhatExists) {
   // Read by another command, the study's own section is not known.
-  const Outcome run = marti("run " + quoted(shipped_paper));
-  EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.output.find("paper"), std::string::npos) << run.output;
+  expect_refused("run " + quoted(shipped_paper), "paper");
 }
 
 }  // namespace

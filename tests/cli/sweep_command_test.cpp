@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "studies/tables/sqlite_connection.h"
 #include "tests/cli/sweep_files.h"
 #include "tests/support/temporary_directory.h"
 
@@ -215,16 +214,6 @@ TEST_F(SweepCommand, FindsTheBestMachineForABudget) {
   EXPECT_EQ(sweep(config, out, "--best end --within nan").status, 2);
 }
 
-// One log is in memory at a time, so both frames are traced more than once.
-TEST_F(SweepCommand, LogsThatDoNotFitAreTracedAgain) {
-  ASSERT_EQ(sweep(config, out).status, 0);
-  const fs::path little = place("little");
-  const Outcome outcome = sweep(config, little, "--set host_machine.memory_limit=1MiB --threads 4");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_EQ(results_by_key(little / "results.sqlite"), results_by_key(store));
-  EXPECT_EQ(files_in(little), files_in(out)) << "logs are in memory only";
-}
-
 TEST_F(SweepCommand, ASceneFileIsPartOfTheFrame) {
   const fs::path scene = place("scene.glb");
   ASSERT_EQ(marti("scene export teapot:2 " + quoted(scene)).status, 0);
@@ -247,9 +236,7 @@ TEST_F(SweepCommand, ASceneFileIsPartOfTheFrame) {
 }
 
 TEST_F(SweepCommand, RefusesWhatItCannotDo) {
-  const Outcome nowhere = marti("sweep " + quoted(config));
-  EXPECT_EQ(nowhere.status, 2);
-  EXPECT_TRUE(says(nowhere, "-o DIR is missing")) << nowhere.output;
+  expect_refused("sweep " + quoted(config), "-o DIR is missing");
   write(place("file"), "in the way");
   const Outcome blocked = sweep(config, place("file"));
   EXPECT_EQ(blocked.status, 2);
@@ -271,28 +258,6 @@ TEST_F(SweepCommand, RefusesWhatItCannotDo) {
   EXPECT_TRUE(says(large, "host_machine.memory_limit = 1 MiB")) << large.output;
   const Outcome closed = shell(quoted(MARTI_PROGRAM) + " sweep " + quoted(config) + " --plan > /dev/full");
   EXPECT_EQ(closed.status, 2) << closed.output;
-}
-
-TEST_F(SweepCommand, AStoreOfAnotherVersionOrKindIsRefusedAndNotTouched) {
-  ASSERT_EQ(sweep(config, out).status, 0);
-  {
-    studies::SqliteConnection connection(store, studies::SqliteConnection::Access::write);
-    connection.execute("PRAGMA journal_mode = DELETE");
-    connection.execute("UPDATE store SET value = '0.0.0' WHERE what = 'version'");
-    // Older versions wrote format 1, without checksums.
-    connection.execute("UPDATE store SET value = '1' WHERE what = 'format'; PRAGMA user_version = 1");
-  }
-  const std::string before = read(store);
-  const Outcome other = sweep(config, out);
-  EXPECT_EQ(other.status, 2);
-  EXPECT_TRUE(says(other, "0.0.0")) << other.output;
-  EXPECT_TRUE(says(other, "give another directory")) << other.output;
-  EXPECT_EQ(read(store), before);
-  write(store, "no database");
-  const Outcome none = sweep(config, out);
-  EXPECT_EQ(none.status, 2);
-  EXPECT_TRUE(says(none, "is no SQLite database")) << none.output;
-  EXPECT_EQ(read(store), "no database");
 }
 
 }  // namespace

@@ -43,9 +43,7 @@ TEST(SweepConfig, MisspeltSectionsStayErrors) {
            {"[sweep]\na = 1979-05-27\n", ":2: sweep.a: must not be a date or time"},
        }) {
     write(file, text);
-    const Outcome outcome = marti("run " + quoted(file));
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_NE(outcome.output.find(message), std::string::npos) << outcome.output;
+    expect_refused("run " + quoted(file), message);
   }
 }
 

@@ -54,8 +54,4 @@ inline std::size_t files_in(const std::filesystem::path& directory) {
   return files;
 }
 
-inline bool says(const Outcome& outcome, const std::string& text) {
-  return outcome.output.find(text) != std::string::npos;
-}
-
 }  // namespace marti::test

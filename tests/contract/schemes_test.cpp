@@ -1,16 +1,14 @@
-// The laws that every parallel scheme must obey on every machine: it takes each step of the log once; no
-// ray is lost; its figures add up; it is deterministic.
+// The laws that every kind of machine must obey: it takes each step of the log once; no ray is lost; its
+// figures add up; it is deterministic; its times scale; an observer is told all and changes nothing.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include <ostream>
 
 #include "processors/program/ray_tree.h"
-#include "processors/replay/replay.h"
-#include "sim/error.h"
+#include "tests/contract/random_cases.h"
 #include "tests/support/equal_results.h"
 #include "tests/support/logged_samples.h"
-#include "tests/support/random_flow.h"
 
 namespace marti::processors {
 namespace {
@@ -18,44 +16,15 @@ namespace {
 using test::expect_equal;
 using test::pick;
 using test::Random;
+using test::TimedCase;
 
-/// A scheme and how to make a random machine one of it.
+/// A kind of machine, and how to make a random one with a log.
 struct SchemeCase {
-  Scheme scheme;
-  void (*choose)(Random&, MachineConfig&);
+  const char* name;
+  TimedCase (*make)(Random&);
 
-  friend std::ostream& operator<<(std::ostream& out, const SchemeCase& c) {
-    return out << scheme_names[static_cast<std::size_t>(c.scheme)];
-  }
+  friend std::ostream& operator<<(std::ostream& out, const SchemeCase& c) { return out << c.name; }
 };
-
-void keep_image(Random& /*random*/, MachineConfig& machine) { machine.scheme = Scheme::image; }
-
-MachineConfig machine_of(Random& random, const SchemeCase& scheme) {
-  MachineConfig machine = test::random_machine(random);
-  scheme.choose(random, machine);
-  test::add_random_second_level(random, machine);
-  if (machine.scheme == Scheme::space && machine.l2.sharing == SecondLevel::shared) {
-    machine.l2.sharing = SecondLevel::none;  // there is no shared memory behind it
-  }
-  return machine;
-}
-
-WorkLog any_log(Random& random) {
-  const auto width = static_cast<std::uint32_t>(pick(random, 1, 8));
-  const auto height = static_cast<std::uint32_t>(pick(random, 1, 8));
-  switch (pick(random, 0, 3)) {
-    case 0:
-      return test::random_log(random, width, height);
-    case 1:
-      return test::random_tree_log(random, width, height);
-    case 2:
-      return test::random_ray_trees(random, width, height, 12, 4);
-    default:
-      return test::random_ray_trees(random, width, height, 5, 4,
-                                    static_cast<std::uint32_t>(pick(random, 2, 5)));
-  }
-}
 
 void expect_steps(const WorkLog& log, const MachineConfig& machine, const MachineResult& result) {
   const LogTotals totals = totals_of(log);
@@ -66,6 +35,9 @@ void expect_steps(const WorkLog& log, const MachineConfig& machine, const Machin
   EXPECT_EQ(steps.branches, static_cast<std::int64_t>(totals.branches));
   EXPECT_EQ(steps.leaves, static_cast<std::int64_t>(totals.leaves));
   EXPECT_EQ(steps.tests, static_cast<std::int64_t>(totals.tests));
+  const std::array<std::int64_t, 3> tests = test::tests_by_kind(log);
+  EXPECT_EQ(steps.sphere_tests, tests[1]);
+  EXPECT_EQ(steps.cone_tests, tests[2]);
   EXPECT_EQ(steps.lookups, static_cast<std::int64_t>(totals.lookups));
   EXPECT_EQ(steps.shades, static_cast<std::int64_t>(totals.shades));
   EXPECT_EQ(steps.lights, static_cast<std::int64_t>(totals.lights));
@@ -87,24 +59,27 @@ std::array<std::int64_t, memory::record_kinds> lines_of(const MachineResult& res
 
 class Schemes : public ::testing::TestWithParam<SchemeCase> {
  protected:
-  // Whether `holds` throws or fails nothing for many seeds.
+  // Whether `property` throws or fails nothing for many cases.
   template <class Property>
-  static void for_random_seeds(const char* law, const Property& property) {
+  static void for_random_cases(const char* law, const Property& property) {
     EXPECT_TRUE(rc::check(law, [&](std::uint64_t seed) {
       Random random(seed);
-      property(random);
+      TimedCase c = GetParam().make(random);
+      property(c, random);
       RC_ASSERT(!HasFailure());
     }));
   }
 };
 
 TEST_P(Schemes, TakesTheStepsOfTheLogAndItsTimesAddUp) {
-  for_random_seeds("steps are the log's, times add up", [](Random& random) {
-    const WorkLog log = any_log(random);
-    const MachineConfig machine = machine_of(random, GetParam());
-    const MachineResult result = replay(log, machine);
-    expect_steps(log, machine, result);
+  for_random_cases("steps are the log's, times add up", [](const TimedCase& c, Random& /*random*/) {
+    const MachineResult result = replay(c.log, c.machine, c.options);
+    expect_steps(c.log, c.machine, result);
     EXPECT_GE(result.end, 0);
+    if (c.machine.scheme != Scheme::image && c.log.samples > 1) {
+      EXPECT_EQ(result.host.requests, std::int64_t{c.log.width} * c.log.height * c.log.samples)
+          << "the host sends every sample";
+    }
     for (const NodeStatistics& node : result.nodes) {
       EXPECT_EQ(sum_of(node.time), result.end);
       for (const sim::Ticks part : node.time) {
@@ -115,31 +90,31 @@ TEST_P(Schemes, TakesTheStepsOfTheLogAndItsTimesAddUp) {
 }
 
 TEST_P(Schemes, TouchesTheLinesThatOneNodeTouches) {
-  for_random_seeds("references are one node's", [](Random& random) {
-    const WorkLog log = any_log(random);
-    MachineConfig machine = machine_of(random, GetParam());
-    const auto lines = lines_of(replay(log, machine));
-    machine.scheme = Scheme::image;
-    machine.clusters = 1;
-    machine.nodes = 1;
-    EXPECT_EQ(lines, lines_of(replay(log, machine)));
+  for_random_cases("references are one node's", [](TimedCase& c, Random& /*random*/) {
+    const auto lines = lines_of(replay(c.log, c.machine, c.options));
+    if (c.machine.build.sharing != Sharing::given) {
+      return;  // nodes that build read more
+    }
+    c.machine.scheme = Scheme::image;
+    c.machine.clusters = 1;
+    c.machine.nodes = 1;
+    c.machine.contexts = 1;
+    EXPECT_EQ(lines, lines_of(replay(c.log, c.machine)));
   });
 }
 
 TEST_P(Schemes, EveryRayEndsAndEveryContributionArrives) {
-  for_random_seeds("rays and contributions are conserved", [](Random& random) {
-    const WorkLog log = any_log(random);
-    const MachineConfig machine = machine_of(random, GetParam());
-    const MachineResult result = replay(log, machine);
-    if (machine.scheme == Scheme::image) {
+  for_random_cases("rays and contributions are conserved", [](const TimedCase& c, Random& /*random*/) {
+    if (c.machine.scheme == Scheme::image) {
       return;
     }
+    const MachineResult result = replay(c.log, c.machine, c.options);
     std::int64_t rays = 0;
     std::int64_t contributions = 0;
     std::vector<LoggedRay> tree;
-    for (std::uint32_t y = 0; y < log.height; ++y) {
-      for (std::uint32_t x = 0; x < log.width; ++x) {
-        for (const auto& words : test::samples_of_pixel(log, x, y)) {
+    for (std::uint32_t y = 0; y < c.log.height; ++y) {
+      for (std::uint32_t x = 0; x < c.log.width; ++x) {
+        for (const auto& words : test::samples_of_pixel(c.log, x, y)) {
           rays_of_sample(words, tree);
           rays += static_cast<std::int64_t>(tree.size());
           for (const LoggedRay& ray : tree) {
@@ -163,20 +138,43 @@ TEST_P(Schemes, EveryRayEndsAndEveryContributionArrives) {
 }
 
 TEST_P(Schemes, RunningAheadAndTheOrderOfTheFirstEventsChangeNothing) {
-  for_random_seeds("deterministic", [](Random& random) {
-    const WorkLog log = any_log(random);
-    const MachineConfig machine = machine_of(random, GetParam());
-    const MachineResult result = replay(log, machine);
-    expect_equal(result, replay(log, machine, {.step_by_step = true}));
-    expect_equal(result, replay(log, machine, {.start_seed = random() | 1U}));
+  for_random_cases("deterministic", [](TimedCase& c, Random& random) {
+    const MachineResult result = replay(c.log, c.machine, c.options);
+    c.options.step_by_step = true;
+    const MachineResult stepped = replay(c.log, c.machine, c.options);
+    expect_equal(result, stepped);
+    EXPECT_LE(result.events, stepped.events);
+    c.options.step_by_step = false;
+    c.options.start_seed = random() | 1U;
+    expect_equal(result, replay(c.log, c.machine, c.options));
+  });
+}
+
+TEST_P(Schemes, ScalingEveryDurationScalesEveryTimeExactly) {
+  for_random_cases("times scale", [](TimedCase& c, Random& random) {
+    const MachineResult base = replay(c.log, c.machine, c.options);
+    const std::int64_t scale = std::array{10L, 1'000L, 1'000'003L, 1'000'000'000L}[random() % 4];
+    for (sim::Clock* clock : {&c.machine.clock, &c.machine.interconnect.clock, &c.machine.banks.clock,
+                              &c.machine.host.clock, &c.machine.local.clock, &c.machine.network.clock}) {
+      *clock = sim::Clock::from_period(clock->period() * scale);
+    }
+    const MachineResult scaled = replay(c.log, c.machine, c.options);
+    EXPECT_EQ(scaled.end, base.end * scale);
+    EXPECT_EQ(scaled.events, base.events);
+    for (std::size_t n = 0; n < base.nodes.size(); ++n) {
+      EXPECT_EQ(scaled.nodes[n].finish, base.nodes[n].finish * scale);
+      for (std::size_t i = 0; i < activities; ++i) {
+        EXPECT_EQ(scaled.nodes[n].time[i], base.nodes[n].time[i] * scale);
+      }
+    }
   });
 }
 
 TEST_P(Schemes, WithoutAnyCostsTheFrameTakesNoTime) {
-  for_random_seeds("zero latencies", [](Random& random) {
-    const WorkLog log = any_log(random);
-    MachineConfig machine = machine_of(random, GetParam());
+  for_random_cases("zero latencies", [](TimedCase& c, Random& /*random*/) {
+    MachineConfig& machine = c.machine;
     machine.operations = {0, 0, 0, 0, 0, 0, 0, 0};
+    machine.switch_cycles = 0;
     machine.cache.hit_cycles = 0;
     machine.l2.hit_cycles = 0;
     machine.local.access_cycles = 0;
@@ -192,28 +190,93 @@ TEST_P(Schemes, WithoutAnyCostsTheFrameTakesNoTime) {
     machine.network.cycles_per_beat = 0;
     machine.messages.send_cycles = 0;
     machine.messages.receive_cycles = 0;
-    const MachineResult result = replay(log, machine);
-    expect_steps(log, machine, result);
+    const MachineResult result = replay(c.log, machine, c.options);
+    expect_steps(c.log, machine, result);
     EXPECT_EQ(result.end, 0);
   });
 }
 
 TEST_P(Schemes, MoreNodesThanRaysAndImagesOfOnePixelOrNone) {
-  for_random_seeds("tiny images", [](Random& random) {
+  for_random_cases("tiny images", [](TimedCase& c, Random& random) {
     const auto size = static_cast<std::uint32_t>(pick(random, 0, 1));
-    const WorkLog log = test::random_ray_trees(random, size, size, 3, 2);
-    const MachineConfig machine = machine_of(random, GetParam());
-    const MachineResult result = replay(log, machine);
-    expect_steps(log, machine, result);
-    EXPECT_TRUE(size != 0 || machine.scheme == Scheme::image || result.end == 0);
+    c.log = test::random_ray_trees(random, size, size, 3, 2);
+    c.options.starts.clear();
+    c.machine.prefetch.children = c.machine.prefetch.children && c.log.traversal < accel::Traversal::grid;
+    const MachineResult result = replay(c.log, c.machine, c.options);
+    expect_steps(c.log, c.machine, result);
+    EXPECT_TRUE(size != 0 || c.machine.scheme == Scheme::image || result.end == 0);
+  });
+}
+
+// Where a node's time goes, as its account has it and as an observer is told.
+constexpr std::array<std::pair<NodeState, Activity>, 7> told_as_counted = {
+    {{NodeState::interconnect_wait, Activity::interconnect_wait},
+     {NodeState::bank_wait, Activity::bank_wait},
+     {NodeState::lock_wait, Activity::lock_wait},
+     {NodeState::message_wait, Activity::message_wait},
+     {NodeState::queue_full_wait, Activity::queue_full_wait},
+     {NodeState::dispatch_wait, Activity::dispatch_wait},
+     {NodeState::idle, Activity::idle}}};
+
+TEST_P(Schemes, AnObserverIsToldAllOfTheTimeAndEveryMissAndChangesNothing) {
+  for_random_cases("observed", [](TimedCase& c, Random& /*random*/) {
+    c.options.keep_read_events = true;
+    const MachineResult alone = replay(c.log, c.machine, c.options);
+    test::Watcher seen;
+    c.options.observer = &seen;
+    const MachineResult result = replay(c.log, c.machine, c.options);
+    expect_equal(result, alone);
+    EXPECT_EQ(result.events, alone.events);
+    EXPECT_EQ(seen.faults, 0);
+    EXPECT_EQ(seen.ended, result.end);
+    const auto of = [](const auto& parts, auto which) { return parts[static_cast<std::size_t>(which)]; };
+    sim::Ticks nobodys = 0;
+    for (std::size_t node = 0; node < result.nodes.size(); ++node) {
+      const TimeDivision& time = result.nodes[node].time;
+      EXPECT_EQ(seen.until[node], result.end);
+      for (const auto& [state, activity] : told_as_counted) {
+        EXPECT_EQ(of(seen.states[node], state), of(time, activity));
+      }
+      // Reading own memory is working.
+      EXPECT_LE(of(seen.states[node], NodeState::transfer), of(time, Activity::transfer));
+      EXPECT_LE(of(seen.states[node], NodeState::bank_access), of(time, Activity::bank_access));
+      if (c.machine.scheme == Scheme::image && c.machine.placement == Placement::shared &&
+          c.machine.build.sharing == Sharing::given) {
+        EXPECT_EQ(of(seen.states[node], NodeState::transfer), of(time, Activity::transfer));
+      }
+      EXPECT_EQ(seen.misses[node], result.nodes[node].references.all_misses());
+      nobodys +=
+          of(time, Activity::dispatch_wait) + of(time, Activity::message_wait) + of(time, Activity::idle);
+    }
+    for (const int times : seen.begun) {
+      EXPECT_EQ(times, result.flow.nodes.empty() ? 1 : 0) << "where rays move, nodes have no packets";
+    }
+    sim::Ticks of_pixels = 0;
+    for (const auto& [place, time] : seen.pixel_time) {
+      of_pixels += time;
+    }
+    const sim::Ticks all = result.end * static_cast<sim::Ticks>(result.nodes.size());
+    EXPECT_LE(of_pixels, all - nobodys);
+    if (result.build.start_up == 0) {
+      EXPECT_EQ(of_pixels, all - nobodys);
+      EXPECT_EQ(seen.pixel_misses, result.references().all_misses());
+    }
+    test::Watcher stepped;
+    c.options.observer = &stepped;
+    c.options.step_by_step = true;
+    (void)replay(c.log, c.machine, c.options);
+    EXPECT_EQ(seen.states, stepped.states);
+    EXPECT_EQ(seen.pixel_time, stepped.pixel_time);
   });
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Schemes,
-                         ::testing::Values(SchemeCase{Scheme::image, keep_image},
-                                           SchemeCase{Scheme::pipeline, test::make_random_pipeline},
-                                           SchemeCase{Scheme::space, test::make_random_space}),
-                         [](const auto& a_case) { return ::testing::PrintToString(a_case.param); });
+                         ::testing::Values(SchemeCase{"image", test::image_case},
+                                           SchemeCase{"contexts", test::contexts_case},
+                                           SchemeCase{"building", test::building_case},
+                                           SchemeCase{"pipeline", test::pipeline_case},
+                                           SchemeCase{"space", test::space_case}),
+                         [](const auto& a_case) { return std::string(a_case.param.name); });
 
 }  // namespace
 }  // namespace marti::processors

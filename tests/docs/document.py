@@ -2,6 +2,7 @@
 and the commands that its prose names."""
 
 import dataclasses
+import os
 import re
 import shlex
 
@@ -48,11 +49,12 @@ class File:
 
 
 def read_comment(line, text):
-    """What `<!-- test: ... -->` says: skip, REASON; with ARGUMENTS; needs SUBCOMMAND; exit N; file NAME."""
+    """What `<!-- test: ... -->` says: skip, REASON; with ARGUMENTS; short ARGUMENTS; needs SUBCOMMAND; exit N; file
+    NAME."""
     word, _, rest = text.partition(" ")
     word, rest = word.rstrip(","), rest.strip()
-    if word not in ("skip", "with", "needs", "exit", "file"):
-        raise DocumentError(f"line {line}: a test comment begins with skip, with, needs, exit or file: {text}")
+    if word not in ("skip", "with", "short", "needs", "exit", "file"):
+        raise DocumentError(f"line {line}: a test comment begins with skip, with, short, needs, exit or file: {text}")
     if not rest:
         raise DocumentError(f"line {line}: test comment without a reason or value: {text}")
     if word == "exit" and not rest.isdigit():
@@ -66,6 +68,8 @@ def apply_comment(command, comment):
         command.skip = rest
     elif word == "with":
         command.extra = rest
+    elif word == "short":
+        command.extra = "" if os.environ.get("MARTI_LONG_TESTS") == "1" else rest
     elif word == "needs":
         command.needs = rest
     elif word == "exit":

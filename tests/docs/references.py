@@ -12,9 +12,11 @@ class WrongReference(Exception):
 
 
 class Checker:
+    # What the program says of itself is asked for once, however many documents are checked.
+    helps, known_keys = {}, set()
+
     def __init__(self, runner, source):
         self.runner, self.source = runner, source
-        self.helps, self.keys_ = {}, None
 
     def help_of(self, path):
         """The help of a subcommand, given as a tuple of words; nothing if there is none."""
@@ -31,10 +33,10 @@ class Checker:
         return re.findall(r"^  ([a-z]+)\b", listed, re.MULTILINE)
 
     def keys(self):
-        if self.keys_ is None:
+        if not self.known_keys:
             _, text = self.runner.run("marti config")
-            self.keys_ = set(re.findall(r"^  ([a-z0-9_.]+) = ", text, re.MULTILINE))
-        return self.keys_
+            self.known_keys.update(re.findall(r"^  ([a-z0-9_.]+) = ", text, re.MULTILINE))
+        return self.known_keys
 
     def check(self, text):
         """Throws if the command names what is not there. It may leave arguments out, or stand for some."""

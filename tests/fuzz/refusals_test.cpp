@@ -25,7 +25,8 @@
 #include "studies/schemes/schemes_keys.h"
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/sweep/plan/sweep_plan.h"
-#include "tests/support/temporary_directory.h"
+#include "tests/support/user_error.h"
+#include "tests/support/wrong_configurations.h"
 
 namespace marti::fuzz {
 namespace {
@@ -347,6 +348,20 @@ TEST_F(Refusals, OfWhatIsFoundWhileAMachineRuns) {
     const Refusal set_by_option = refusal_of(message(set, assignments), config_name);
     EXPECT_TRUE(set_by_option.set) << message(set, assignments);
     EXPECT_EQ(set_by_option.key, blamed) << message(set, assignments);
+  }
+}
+
+// Mistakes of people, each with the words that the refusal must have.
+TEST_F(Refusals, OfConfigurationsThatPeopleWrite) {
+  for (const test::WrongConfiguration& wrong : test::wrong_configurations()) {
+    const std::string message = test::user_error_of([&] {
+      Config config = Config::from_text(studies::run_schema(), wrong.text, "wrong.toml");
+      (void)studies::run(config);
+    });
+    for (const std::string& part : wrong.complaint) {
+      EXPECT_NE(message.find(part), std::string::npos) << wrong.text << "says: " << message;
+    }
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
 }
 

@@ -28,7 +28,7 @@ void expect_equal_counters(const std::vector<S>& a, const std::vector<S>& b) {
 }
 
 /// Equal times, packets, references and steps of every node, and equal counters and waits of all that nodes
-/// share.
+/// share and of what they hand to each other.
 inline void expect_equal(const processors::MachineResult& a, const processors::MachineResult& b) {
   ASSERT_EQ(a.end, b.end);
   ASSERT_EQ(a.nodes.size(), b.nodes.size());
@@ -64,7 +64,11 @@ inline void expect_equal(const processors::MachineResult& a, const processors::M
   for (std::size_t c = 0; c < a.flow.networks.size(); ++c) {
     expect_equal_counters(a.flow.networks[c].waits, b.flow.networks[c].waits);
   }
+  ASSERT_EQ(a.flow.rays, b.flow.rays);
+  ASSERT_EQ(a.flow.collected, b.flow.collected);
   ASSERT_EQ(a.flow.most_in_flight, b.flow.most_in_flight);
+  expect_equal_counters(a.contexts.nodes, b.contexts.nodes);
+  expect_equal_counters(a.host, b.host);
 }
 
 }  // namespace marti::test

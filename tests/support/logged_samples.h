@@ -1,6 +1,7 @@
-// Words of a log: that of a ray, and the samples of a pixel, found the simple way.
+// Words of a log: that of a ray, the samples of a pixel, and the tests, found the simple way.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,6 +32,28 @@ inline std::vector<std::span<const std::uint32_t>> samples_of_pixel(const proces
     samples.push_back(words.subspan(begins[i - 1], begins[i] - begins[i - 1]));
   }
   return samples;
+}
+
+/// Tests of each accel::PrimitiveKind, one by one.
+inline std::array<std::int64_t, 3> tests_by_kind(const processors::WorkLog& log) {
+  using processors::Step;
+  std::array<std::int64_t, 3> tests{};
+  for (const processors::LogRow& row : log.rows) {
+    for (std::size_t i = 0; i < row.words.size(); i += processors::step_words(row.words.data() + i)) {
+      const Step step = processors::step_of(row.words[i]);
+      if (step != Step::leaf && step != Step::partial_leaf && step != Step::mailed_leaf) {
+        continue;
+      }
+      const accel::TopologyNode& node = log.topology.nodes[processors::operand_of(row.words[i])];
+      const std::uint32_t read = step == Step::leaf ? node.count : row.words[i + 1];
+      for (std::uint32_t t = 0; t < read; ++t) {
+        if (step != Step::mailed_leaf || ((row.words[i + 2 + t / 32] >> (t % 32)) & 1U) != 0) {
+          ++tests[static_cast<std::size_t>(log.kind_of(log.topology.entries[node.first + t]))];
+        }
+      }
+    }
+  }
+  return tests;
 }
 
 }  // namespace marti::test

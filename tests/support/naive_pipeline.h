@@ -10,15 +10,13 @@
 #include <tuple>
 #include <vector>
 
-#include "memory/layout.h"
 #include "memory/network.h"
-#include "processors/cost/step_time.h"
 #include "processors/flow/flow_result.h"
 #include "processors/flow/pipeline/stages.h"
 #include "processors/machine/packets.h"
 #include "processors/program/ray_tree.h"
-#include "processors/walk/node_order.h"
 #include "tests/support/logged_samples.h"
+#include "tests/support/naive_program.h"
 
 namespace marti::test {
 
@@ -36,19 +34,12 @@ class NaivePipeline {
   NaivePipeline(const processors::WorkLog& log, const processors::MachineConfig& machine)
       : log_(log),
         machine_(machine),
-        layout_(machine.layout,
-                {log.topology.nodes.size(), log.topology.entries.size(), log.primitives, log.materials,
-                 log.texture_begin.back(), std::uint64_t{log.width} * log.height},
-                log.quadrics.size()),
-        ticks_(processors::step_ticks(machine, log)),
+        program_(log, machine),
         network_(memory::make_network(machine.network, machine.nodes)),
         send_(machine.clock.cycles(machine.messages.send_cycles)),
         receive_(machine.clock.cycles(machine.messages.receive_cycles)),
         host_ready_(machine.host.clock.cycles(machine.host.latency_cycles)),
         waiting_(3) {
-    if (machine.layout.node_order == memory::NodeOrder::depth_first) {
-      rank_ = processors::depth_first_rank(log.topology);
-    }
     limit_ = machine.pipeline.in_flight != 0 ? machine.pipeline.in_flight : most_in_flight(machine.pipeline);
     for (const auto& [stage, count] : {std::pair{processors::Stage::search, machine.pipeline.search},
                                        std::pair{processors::Stage::nearest, machine.pipeline.nearest},
@@ -117,61 +108,17 @@ class NaivePipeline {
 
   // ---- Times of steps.
 
-  sim::Ticks records(memory::RecordKind kind, std::uint64_t first, std::uint64_t count) const {
-    const memory::Address begin = layout_.address(kind, first);
-    const memory::Address last = begin + count * layout_.record_bytes(kind, first);
-    const std::uint64_t unit = machine_.banks.interleave;
+  // What a step takes for the objects that a leaf lists, or for all else.
+  sim::Ticks step(const std::uint32_t* word, bool objects) const {
     sim::Ticks time = 0;
-    for (memory::Address at = begin; at < last;) {
-      const memory::Address next = std::min(last, at / unit * unit + unit);
-      const auto beats =
-          static_cast<std::int64_t>((next - at + machine_.local.width - 1) / machine_.local.width);
-      time += machine_.local.clock.cycles(machine_.local.access_cycles) +
-              beats * machine_.local.clock.cycles(machine_.local.cycles_per_beat);
-      at = next;
-    }
-    return time;
-  }
-  sim::Ticks node_record(std::uint32_t node) const {
-    return records(memory::RecordKind::node, rank_.empty() ? node : rank_[node], 1);
-  }
-
-  sim::Ticks step(const std::uint32_t* word) const {
-    using processors::Step;
-    const std::uint32_t operand = processors::operand_of(*word);
-    switch (processors::step_of(*word)) {
-      case Step::ray:
-        return ticks_.ray[operand & 3U];
-      case Step::branch:
-        return ticks_.branch + node_record(operand);
-      case Step::cut:
-        return ticks_.cut + node_record(operand);
-      case Step::pass:
-        return ticks_.pass + records(memory::RecordKind::material, operand, 1);
-      case Step::shade:
-        return ticks_.shade + records(memory::RecordKind::material, operand, 1);
-      case Step::light:
-        return ticks_.light;
-      case Step::texel:
-        return ticks_.texel + records(memory::RecordKind::texel, log_.texture_begin[operand] + word[1], 1);
-      default:
-        return ticks_.leaf + node_record(operand);  // without its objects
-    }
-  }
-  sim::Ticks objects(const std::uint32_t* word) const {
-    const accel::TopologyNode& leaf = log_.topology.nodes[processors::operand_of(*word)];
-    const std::uint32_t entries = processors::entries_read(word, log_.topology);
-    sim::Ticks time = records(memory::RecordKind::list, leaf.first, entries);
-    for (std::uint32_t i = 0; i < entries; ++i) {
-      time += log_.mailboxes ? ticks_.lookup : 0;
-      if (processors::step_of(*word) == processors::Step::mailed_leaf &&
-          !processors::tested_in_mask(word + 2, i)) {
-        continue;
+    for (const NaiveAction& action : program_.actions_of(word)) {
+      if (is_of_objects(action) == objects) {
+        const std::int64_t beats = (action.bytes + machine_.local.width - 1) / machine_.local.width;
+        time += action.what != NaiveAction::What::refer
+                    ? action.time
+                    : machine_.local.clock.cycles(machine_.local.access_cycles) +
+                          beats * machine_.local.clock.cycles(machine_.local.cycles_per_beat);
       }
-      const std::uint32_t primitive = log_.topology.entries[leaf.first + i];
-      processors::StepCounts ignored;
-      time += processors::count_test(ticks_, log_.kind_of(primitive), ignored) +
-              records(memory::RecordKind::primitive, primitive, 1);
     }
     return time;
   }
@@ -180,14 +127,14 @@ class NaivePipeline {
   sim::Ticks serve(Stage stage, Ray& ray) const {
     const std::uint32_t* const last = ray.logged().end;
     if (stage == Stage::nearest) {
-      const sim::Ticks time = objects(ray.word);
+      const sim::Ticks time = step(ray.word, true);
       ray.word += processors::step_words(ray.word);
       ray.record_read = false;
       return time;
     }
     sim::Ticks time = 0;
     while (ray.word != last && processors::stage_of(ray.word) == stage) {
-      time += step(ray.word);
+      time += step(ray.word, false);
       if (processors::visits_leaf(ray.word) && processors::entries_read(ray.word, log_.topology) > 0) {
         ray.record_read = true;
         break;
@@ -434,9 +381,7 @@ class NaivePipeline {
 
   const processors::WorkLog& log_;
   const processors::MachineConfig& machine_;
-  memory::Layout layout_;
-  processors::StepTicks ticks_;
-  std::vector<std::uint32_t> rank_;
+  NaiveProgram program_;
   std::unique_ptr<memory::Network> network_;
   sim::Ticks send_;
   sim::Ticks receive_;

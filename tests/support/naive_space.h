@@ -9,20 +9,18 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <stdexcept>
 #include <tuple>
 #include <vector>
 
 #include "memory/cache.h"
 #include "memory/network.h"
-#include "processors/cost/step_time.h"
 #include "processors/flow/space/space_plan.h"
 #include "processors/program/ray_tree.h"
 #include "processors/replay/replay.h"
 #include "processors/replay/space.h"
 #include "processors/walk/node_caches.h"
-#include "processors/walk/node_order.h"
 #include "tests/support/logged_samples.h"
+#include "tests/support/naive_program.h"
 
 namespace marti::test {
 
@@ -32,19 +30,11 @@ class NaiveSpace {
   NaiveSpace(const processors::WorkLog& log, const processors::MachineConfig& machine)
       : log_(log),
         machine_(machine),
-        layout_(
-            machine.layout,
-            {log.topology.nodes.size(), log.topology.entries.size(), log.primitives, log.materials,
-             log.texture_begin.empty() ? 0 : log.texture_begin.back(), std::uint64_t{log.width} * log.height},
-            log.quadrics.size()),
-        plan_(processors::plan_space(log, machine, layout_)),
-        ticks_(processors::step_ticks(machine, log)),
+        program_(log, machine),
+        plan_(processors::plan_space(log, machine, program_.layout())),
         packets_(log.width, log.height, machine.packets),
         nodes_(machine.all_nodes()),
         clusters_(machine.clusters) {
-    if (machine.layout.node_order == memory::NodeOrder::depth_first) {
-      rank_ = processors::depth_first_rank(log.topology);
-    }
     for (Node& node : nodes_) {
       make_caches(node);
     }
@@ -336,106 +326,31 @@ class NaiveSpace {
     return access + transfer;
   }
 
-  sim::Ticks refer(Node& node, memory::RecordKind kind, std::uint64_t index, std::uint64_t bytes) const {
-    const auto k = static_cast<std::size_t>(kind);
-    const memory::Address begin = layout_.address(kind, index);
+  sim::Ticks refer(Node& node, const NaiveAction& action) const {
+    const auto k = static_cast<std::size_t>(action.kind);
     const bool cached = !node.caches.empty();
-    const std::uint64_t unit = cached ? machine_.cache.cache.line : machine_.banks.interleave;
-    sim::Ticks time = 0;
-    for (memory::Address at = begin; at < begin + bytes;) {
-      const memory::Address next = std::min((at / unit + 1) * unit, begin + bytes);
-      const bool hit =
-          cached && node.caches[node.caches.size() == 1 ? 0 : processors::split_cache_of[k]].read(at, 1) == 0;
-      if (hit) {
-        ++node.statistics.references.hits[k];
-        time_of(node, processors::Activity::cache_access) += ticks_.hit;
-        time += ticks_.hit;
-      } else {
-        ++node.statistics.references.misses[k];
-        time += local(node, cached ? unit : next - at);
-      }
-      at = next;
+    if (cached && node.caches[node.caches.size() == 1 ? 0 : processors::split_cache_of[k]].read(
+                      action.address, 1) == 0) {
+      ++node.statistics.references.hits[k];
+      time_of(node, processors::Activity::cache_access) += program_.ticks().hit;
+      return program_.ticks().hit;
     }
-    return time;
-  }
-  sim::Ticks refer(Node& node, memory::RecordKind kind, std::uint64_t index) const {
-    return refer(node, kind, index, layout_.record_bytes(kind, index));
-  }
-  sim::Ticks refer_node(Node& node, std::uint32_t tree_node) const {
-    return refer(node, memory::RecordKind::node, rank_.empty() ? tree_node : rank_[tree_node]);
-  }
-  static sim::Ticks compute(Node& node, processors::Activity activity, sim::Ticks time) {
-    time_of(node, activity) += time;
-    return time;
-  }
-
-  sim::Ticks take_leaf(Node& node, const std::uint32_t* word) const {
-    using processors::Activity;
-    using processors::Step;
-    processors::StepCounts& steps = node.statistics.steps;
-    const accel::TopologyNode& leaf = log_.topology.nodes[processors::operand_of(*word)];
-    const std::uint32_t entries = processors::step_of(*word) == Step::leaf ? leaf.count : word[1];
-    ++steps.leaves;
-    sim::Ticks time = compute(node, Activity::traversal, ticks_.leaf);
-    time += refer_node(node, processors::operand_of(*word));
-    if (entries == 0) {
-      return time;
-    }
-    ++steps.lists;
-    time += refer(node, memory::RecordKind::list, leaf.first,
-                  std::uint64_t{entries} * layout_.record_bytes(memory::RecordKind::list));
-    for (std::uint32_t entry = 0; entry < entries; ++entry) {
-      if (log_.mailboxes) {
-        ++steps.lookups;
-        time += compute(node, Activity::intersection, ticks_.lookup);
-        if (processors::step_of(*word) == Step::mailed_leaf &&
-            ((word[2 + entry / 32] >> entry % 32) & 1U) == 0) {
-          continue;
-        }
-      }
-      const std::uint32_t primitive = log_.topology.entries[leaf.first + entry];
-      time += compute(node, Activity::intersection,
-                      processors::count_test(ticks_, log_.kind_of(primitive), steps));
-      time += refer(node, memory::RecordKind::primitive, primitive);
-    }
-    return time;
+    ++node.statistics.references.misses[k];
+    return local(node, cached ? machine_.cache.cache.line : action.bytes);
   }
 
   sim::Ticks take_step(Node& node, const std::uint32_t* word) const {
-    using memory::RecordKind;
-    using processors::Activity;
-    using processors::Step;
-    processors::StepCounts& steps = node.statistics.steps;
-    const std::uint32_t operand = processors::operand_of(*word);
-    switch (processors::step_of(*word)) {
-      case Step::branch:
-        ++steps.branches;
-        return compute(node, Activity::traversal, ticks_.branch) + refer_node(node, operand);
-      case Step::leaf:
-      case Step::partial_leaf:
-      case Step::mailed_leaf:
-        return take_leaf(node, word);
-      case Step::ray:
-        ++(steps.*processors::ray_counters[operand & 3U]);
-        return compute(node, Activity::traversal, ticks_.ray[operand & 3U]);
-      case Step::shade:
-        ++steps.shades;
-        return compute(node, Activity::shading, ticks_.shade) + refer(node, RecordKind::material, operand);
-      case Step::light:
-        ++steps.lights;
-        return compute(node, Activity::shading, ticks_.light);
-      case Step::texel:
-        ++steps.texels;
-        return compute(node, Activity::shading, ticks_.texel) +
-               refer(node, RecordKind::texel, log_.texture_begin[operand] + word[1]);
-      case Step::cut:
-        ++steps.cuts;
-        return compute(node, Activity::traversal, ticks_.cut) + refer_node(node, operand);
-      case Step::pass:
-        ++steps.passes;
-        return compute(node, Activity::traversal, ticks_.pass) + refer(node, RecordKind::material, operand);
+    count_step(log_, word, node.statistics.steps);
+    sim::Ticks time = 0;
+    for (const NaiveAction& action : program_.actions_of(word)) {
+      if (action.what == NaiveAction::What::refer) {
+        time += refer(node, action);
+      } else {
+        time_of(node, action.activity) += action.time;
+        time += action.time;
+      }
     }
-    throw std::logic_error("a step that does not exist");
+    return time;
   }
 
   processors::MachineResult result() {
@@ -463,11 +378,9 @@ class NaiveSpace {
 
   const processors::WorkLog& log_;
   const processors::MachineConfig& machine_;
-  memory::Layout layout_;
+  NaiveProgram program_;
   processors::SpacePlan plan_;
-  processors::StepTicks ticks_;
   processors::PacketList packets_;
-  std::vector<std::uint32_t> rank_;
   std::vector<Node> nodes_;
   std::vector<Cluster> clusters_;
   std::set<std::tuple<sim::Ticks, int, std::uint32_t, std::uint64_t, RayPointer>> events_;

@@ -89,4 +89,25 @@ inline processors::WorkLog random_ray_trees(Random& random, std::uint32_t width,
   return log;
 }
 
+/// A log whose rays walk down a tree that a machine can build.
+inline processors::WorkLog random_log_with_tree(Random& random) {
+  const auto width = static_cast<std::uint32_t>(pick(random, 1, 8));
+  const auto height = static_cast<std::uint32_t>(pick(random, 1, 8));
+  switch (pick(random, 0, 2)) {
+    case 0:
+      return random_tree_log(random, width, height);
+    case 1:
+      return random_ray_trees(random, width, height, 12, 4);
+    default:
+      return random_ray_trees(random, width, height, 5, 4, static_cast<std::uint32_t>(pick(random, 2, 5)));
+  }
+}
+
+/// Any log that a machine can time.
+inline processors::WorkLog any_log(Random& random) {
+  return pick(random, 0, 3) == 0 ? random_log(random, static_cast<std::uint32_t>(pick(random, 1, 12)),
+                                              static_cast<std::uint32_t>(pick(random, 1, 12)))
+                                 : random_log_with_tree(random);
+}
+
 }  // namespace marti::test

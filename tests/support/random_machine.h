@@ -135,6 +135,12 @@ inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::
   return log;
 }
 
+/// A log of an image of up to `most` pixels on each side.
+inline processors::WorkLog small_log(Random& random, std::int64_t most = 12) {
+  const auto width = static_cast<std::uint32_t>(pick(random, 1, most));
+  return random_log(random, width, static_cast<std::uint32_t>(pick(random, 1, most)));
+}
+
 /// Random work for splitting each branch; a branch lists at least the primitives of its leaves.
 inline void add_random_work(Random& random, accel::Topology& topology) {
   topology.work.resize(topology.nodes.size());
@@ -350,6 +356,44 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
   machine.network.cycles_per_beat = pick(random, 0, 2);
   machine.network.hop_cycles = pick(random, 0, 4);
   return machine;
+}
+
+/// Any contexts and prefetching that the machine can have; `tree`: the log's walk is that of a tree.
+inline void add_random_contexts(Random& random, bool tree, processors::MachineConfig& machine) {
+  if (machine.placement == processors::Placement::distributed) {
+    machine.placement = processors::Placement::shared;
+  }
+  add_random_second_level(random, machine);
+  if (machine.l2.sharing == processors::SecondLevel::private_caches) {
+    machine.l2.sharing = processors::SecondLevel::none;
+  }
+  machine.contexts = static_cast<std::uint32_t>(pick(random, 1, 5));
+  machine.switch_cycles = pick(random, 0, 6);
+  if (machine.placement == processors::Placement::shared &&
+      machine.cache.organisation != processors::CacheOrganisation::none) {
+    machine.prefetch.next_line = random() % 2 == 0;
+    machine.prefetch.children = tree && random() % 2 == 0;
+    machine.prefetch.outstanding = static_cast<std::uint32_t>(pick(random, 1, 4));
+  }
+}
+
+/// A tree that is built while others read it takes one memory that serves in the order of asking.
+inline void share_in_order(processors::MachineConfig& machine) {
+  machine.placement = processors::Placement::shared;
+  machine.interconnect.arbitration = memory::Arbitration::fifo;
+}
+
+/// Any way to build the tree on the machine, with records so close now and then that those of all kinds share
+/// lines with nodes that are still to be built.
+inline void add_random_build(Random& random, processors::MachineConfig& machine) {
+  machine.build = random_build(random);
+  if (machine.build.sharing == processors::Sharing::shared) {
+    share_in_order(machine);
+  }
+  add_random_second_level(random, machine);
+  if (random() % 3 == 0) {
+    machine.layout.section_alignment = 1U << pick(random, 0, 4);
+  }
 }
 
 }  // namespace marti::test

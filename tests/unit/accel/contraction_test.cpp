@@ -3,11 +3,11 @@
 // -ffp-contract=off would go unnoticed until marti is built for another machine.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "accel/watertight.h"
+#include "studies/stability/kernel_check.h"
 #include "tests/contract/hostile.h"
 
 namespace marti::tests {
@@ -21,18 +21,8 @@ bool fused_instructions_run_here() {
 #endif
 }
 
-int sign(double x) { return x > 0.0 ? 1 : (x < 0.0 ? -1 : 0); }
-
-/// The sign of a * b - c * d by two-products, whatever the options. Not inlined: a product that is also used
-/// here would not be contracted there.
-[[gnu::noinline]] int exact_sign(double a, double b, double c, double d) {
-  volatile double p = a * b;
-  volatile double q = c * d;
-  if (p != q) {
-    return sign(p - q);
-  }
-  return sign(std::fma(a, b, -p) - std::fma(c, d, -q));
-}
+using studies::exact_sign;
+using studies::sign;
 
 TEST(Contraction, SignsOfEdgeFunctionsAreExact) {
   if (!fused_instructions_run_here()) {

@@ -2,15 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
 #include <cstdint>
-#include <limits>
-#include <map>
-#include <memory>
-#include <set>
 #include <vector>
 
 #include "accel/box_overlap.h"
@@ -51,41 +43,7 @@ std::vector<scenes::Bounds> boxes_of(const Octree& octree) {
 }
 
 TEST(Octree, NodesAreBreadthFirstAndListsAscend) {
-  const Octree octree = Octree::build(set_of(hostile_soup(0.0, 1)), {4, 8});
-  const Topology& topology = octree.topology();
-  std::uint32_t next_child = 1;
-  std::uint32_t next_entry = 0;
-  std::vector<accel::LevelStatistics> levels(octree.levels().size());
-  for (const TopologyNode& node : topology.nodes) {
-    accel::LevelStatistics& level = levels.at(node.level - 1U);
-    if (!node.leaf) {
-      ++level.branches;
-      ASSERT_EQ(node.first, next_child);
-      ASSERT_EQ(node.count, 8U);
-      for (std::uint32_t child = 0; child < 8; ++child) {
-        ASSERT_EQ(topology.nodes.at(node.first + child).level, node.level + 1);
-      }
-      next_child += 8;
-      continue;
-    }
-    ++level.leaves;
-    level.empty_leaves += node.count == 0 ? 1U : 0U;
-    level.entries += node.count;
-    level.overfull_leaves += node.count > 4 ? 1U : 0U;
-    ASSERT_EQ(node.first, next_entry);
-    next_entry += node.count;
-    ASSERT_TRUE(std::is_sorted(topology.entries.begin() + node.first, topology.entries.begin() + next_entry,
-                               std::less_equal<>()));
-  }
-  EXPECT_EQ(next_child, topology.nodes.size());
-  EXPECT_EQ(next_entry, topology.entries.size());
-  for (std::size_t l = 0; l < levels.size(); ++l) {
-    EXPECT_EQ(levels[l].branches, octree.levels()[l].branches);
-    EXPECT_EQ(levels[l].leaves, octree.levels()[l].leaves);
-    EXPECT_EQ(levels[l].empty_leaves, octree.levels()[l].empty_leaves);
-    EXPECT_EQ(levels[l].entries, octree.levels()[l].entries);
-    EXPECT_EQ(levels[l].overfull_leaves, octree.levels()[l].overfull_leaves);
-  }
+  check_numbering(Octree::build(set_of(hostile_soup(0.0, 1)), {4, 8}), 8, 4);
 }
 
 // A leaf above the last level has too many triangles only where splitting would separate none of them.
@@ -161,21 +119,6 @@ TEST(Octree, ABranchCostsThreeAverages) {
   EXPECT_GT(branch.integer, tests.integer);
 }
 
-TEST(Octree, CoincidentTrianglesDoNotMultiply) {
-  std::vector<TriangleCorners> same(10000, corners({-1, -1, -1}, {1, 0.3, 0.2}, {0.1, 1, 1}));
-  const Octree alone = Octree::build(set_of(same));
-  EXPECT_LT(alone.topology().entries.size(), 40U * same.size());
-  EXPECT_LT(alone.topology().nodes.size(), 10000U);
-  // Others among them do not undo it.
-  for (const TriangleCorners& other : hostile_soup(0.0, 5)) {
-    same.push_back(other);
-  }
-  OctreeOptions options;
-  options.max_entries = 4000000;
-  const Octree mixed = Octree::build(set_of(same), options);
-  EXPECT_LT(mixed.topology().entries.size(), 8U * options.max_entries);
-}
-
 TEST(Octree, StaysWithinItsEntries) {
   const auto triangles = set_of(hostile_soup(0.0, 5));
   const std::size_t unlimited = Octree::build(triangles, {1, 10}).topology().entries.size();
@@ -219,15 +162,6 @@ TEST(Octree, RefusesOptionsOutOfRange) {
   EXPECT_THROW((void)Octree::build(triangles, {8, 22}), sim::UserError);
   EXPECT_THROW((void)Octree::build(triangles, {8, 12, 0}), sim::UserError);
   EXPECT_NO_THROW((void)Octree::build(triangles, {1, 21, 1}));
-}
-
-TEST(Triangles, RefusesCoordinatesThatAreNone) {
-  for (const double bad :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300}) {
-    TriangleCorners triangle = corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-    triangle[4] = bad;
-    EXPECT_THROW(TriangleSet({corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), triangle}), sim::UserError);
-  }
 }
 
 }  // namespace

@@ -28,6 +28,49 @@ inline std::shared_ptr<const accel::TriangleSet> set_of(std::vector<accel::Trian
   return std::make_shared<const accel::TriangleSet>(std::move(triangles));
 }
 
+/// Nodes are numbered level by level, leaves list their entries one after the other and in ascending order,
+/// and the tree's own statistics count them.
+template <class Tree>
+void check_numbering(const Tree& tree, std::uint32_t children, std::uint32_t max_objects) {
+  const accel::Topology& topology = tree.topology();
+  std::uint32_t next_child = 1;
+  std::uint32_t next_entry = 0;
+  auto levels = tree.levels();
+  for (auto& level : levels) {
+    level = {};
+  }
+  for (const accel::TopologyNode& node : topology.nodes) {
+    auto& level = levels.at(node.level - 1U);
+    if (!node.leaf) {
+      ++level.branches;
+      ASSERT_EQ(node.first, next_child);
+      ASSERT_EQ(node.count, children);
+      for (std::uint32_t child = 0; child < children; ++child) {
+        ASSERT_EQ(topology.nodes.at(node.first + child).level, node.level + 1);
+      }
+      next_child += children;
+      continue;
+    }
+    ++level.leaves;
+    level.empty_leaves += node.count == 0 ? 1U : 0U;
+    level.entries += node.count;
+    level.overfull_leaves += node.count > max_objects ? 1U : 0U;
+    ASSERT_EQ(node.first, next_entry);
+    next_entry += node.count;
+    ASSERT_TRUE(std::is_sorted(topology.entries.begin() + node.first, topology.entries.begin() + next_entry,
+                               std::less_equal<>()));
+  }
+  EXPECT_EQ(next_child, topology.nodes.size());
+  EXPECT_EQ(next_entry, topology.entries.size());
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    EXPECT_EQ(levels[l].branches, tree.levels()[l].branches);
+    EXPECT_EQ(levels[l].leaves, tree.levels()[l].leaves);
+    EXPECT_EQ(levels[l].empty_leaves, tree.levels()[l].empty_leaves);
+    EXPECT_EQ(levels[l].entries, tree.levels()[l].entries);
+    EXPECT_EQ(levels[l].overfull_leaves, tree.levels()[l].overfull_leaves);
+  }
+}
+
 /// Writes down every visit.
 struct Recorder {
   struct Visit {

@@ -1,5 +1,5 @@
-// The bus that is granted by round robin or fixed priority: by hand, against the bus that serves first come
-// first served, and against laws that hold for every arbitration.
+// The bus that is granted by round robin or fixed priority: against a list of all that wait, against the bus
+// that serves first come first served, and against laws that hold for every arbitration.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -12,64 +12,13 @@
 
 #include "memory/interconnect.h"
 #include "memory/port_set.h"
+#include "tests/support/memory_ports.h"
 
 namespace marti::memory {
 namespace {
 
-constexpr std::uint8_t reply_class = 2;
-constexpr std::uint8_t issue_class = 3;
-constexpr std::uint8_t memory_class = 4;
-
-struct Issue {
-  sim::Ticks at = 0;
-  Transaction transaction;
-  bool write = false;
-};
-
-// Issues given transactions at given times and records their results.
-class Ports final : public InterconnectClient, public sim::EventHandler {
- public:
-  Ports(const InterconnectConfig& config, const BankConfig& banks, std::vector<Issue> issues,
-        std::uint32_t ports = 64)
-      : issues_(std::move(issues)), services(ports), written(ports) {
-    interconnect = make_interconnect(config, banks, {engine, *this, reply_class, 0, ports, memory_class});
-    for (const std::uint8_t c : {reply_class, issue_class, memory_class}) {
-      engine.attach(c, *this);
-    }
-    for (std::uint32_t i = 0; i < issues_.size(); ++i) {
-      engine.post(sim::Event::make(issues_[i].at, issue_class, issues_[i].transaction.port, i));
-    }
-    engine.run(100'000);
-  }
-  void handle(const sim::Event& event) override {
-    if (event.event_class() == reply_class) {
-      interconnect->reply(event.component());
-    } else if (event.event_class() == memory_class) {
-      interconnect->proceed(event.component(), event.sequence());
-    } else {
-      const Issue& issue = issues_[event.sequence()];
-      issue.write ? interconnect->write(issue.transaction) : interconnect->read(issue.transaction);
-    }
-  }
-  void read_done(std::uint32_t port, const Service& service) override {
-    services[port].push_back(service);
-    end = std::max(end, service.done);
-  }
-  void write_done(std::uint32_t port, sim::Ticks done) override {
-    written[port].push_back(done);
-    end = std::max(end, done);
-  }
-
- private:
-  std::vector<Issue> issues_;
-
- public:
-  sim::Engine engine;
-  std::unique_ptr<Interconnect> interconnect;
-  std::vector<std::vector<Service>> services;  // of each port, in order
-  std::vector<std::vector<sim::Ticks>> written;
-  sim::Ticks end = 0;
-};
+using test::Ports;
+using Issue = test::IssuedTransaction;
 
 // 8 bytes a beat of 10, 10 an address, two banks of 40 to the data and 60 to the next access.
 InterconnectConfig bus(Arbitration arbitration, BusMode mode) {
@@ -89,56 +38,6 @@ BankConfig two_banks() {
 
 constexpr std::array arbitrated = {Arbitration::round_robin, Arbitration::fixed_priority};
 
-TEST(Arbitration, RoundRobinGoesOnFromThePortThatHadTheBusLast) {
-  // Held reads of 90 on alternate banks; port 2 has the bus, then 3 is next although 0 and 1 ask, too.
-  Ports ports(bus(Arbitration::round_robin, BusMode::held), two_banks(),
-              {{0, {2, 0, 32}}, {5, {0, 32, 32}}, {6, {1, 0, 32}}, {7, {3, 32, 32}}});
-  EXPECT_EQ(ports.services[2][0].done, 90);
-  EXPECT_EQ(ports.services[3][0].done, 180);
-  EXPECT_EQ(ports.services[0][0].done, 270);
-  EXPECT_EQ(ports.services[1][0].done, 360);
-  EXPECT_EQ(ports.services[1][0].wait_interconnect, 270 - 6);
-}
-
-TEST(Arbitration, FixedPriorityServesTheLowestPortThatAsks) {
-  Ports ports(bus(Arbitration::fixed_priority, BusMode::held), two_banks(),
-              {{0, {2, 0, 32}}, {5, {3, 32, 32}}, {6, {1, 0, 32}}, {7, {0, 32, 32}}});
-  EXPECT_EQ(ports.services[2][0].done, 90);
-  EXPECT_EQ(ports.services[0][0].done, 180);
-  EXPECT_EQ(ports.services[1][0].done, 270);
-  EXPECT_EQ(ports.services[3][0].done, 360);
-}
-
-TEST(Arbitration, AllWhoAskAtTheInstantAtWhichTheBusIsFreeCompete) {
-  for (const Arbitration arbitration : arbitrated) {
-    // Port 5 has the bus from 0 to 90; 7 asks before that, 6 at 90 itself.
-    Ports ports(bus(arbitration, BusMode::held), two_banks(),
-                {{0, {5, 0, 32}}, {10, {7, 32, 32}}, {90, {6, 0, 32}}});
-    EXPECT_EQ(ports.services[6][0].done, 180);
-    EXPECT_EQ(ports.services[6][0].wait_interconnect, 0);
-    EXPECT_EQ(ports.services[7][0].done, 270);
-  }
-}
-
-TEST(Arbitration, DataComeBeforeRequestsUnderFixedPriorityAndInTurnUnderRoundRobin) {
-  // Port 1 sends its address from 0 to 10, its data are ready at 50. Port 0's write of 5 beats and an address
-  // has the bus from 20 to 80; at 80 the data of port 1 and port 0's next request wait.
-  const std::vector<Issue> issues = {{0, {1, 0, 32}}, {20, {0, 32, 40}, true}, {30, {0, 32, 8}, true}};
-  Ports fixed(bus(Arbitration::fixed_priority, BusMode::split), two_banks(), issues);
-  EXPECT_EQ(fixed.services[1][0].done, 80 + 40);
-  EXPECT_EQ(fixed.services[1][0].wait_interconnect, 30);
-  EXPECT_EQ(fixed.written[0][0], 80 + 40);
-  EXPECT_EQ(fixed.written[0][1], 140 + 40) << "granted at 120, at its bank at 140, which is free then";
-  // Round robin: port 0 had the bus last, so it is the turn of port 1 as well.
-  Ports turns(bus(Arbitration::round_robin, BusMode::split), two_banks(), issues);
-  EXPECT_EQ(turns.services[1][0].done, 120);
-  // With the write at port 2 and its next request at port 3, the turn of 3 comes before the data of 1.
-  Ports later(bus(Arbitration::round_robin, BusMode::split), two_banks(),
-              {{0, {1, 0, 32}}, {20, {2, 32, 40}, true}, {30, {3, 32, 8}, true}});
-  EXPECT_EQ(later.services[1][0].done, 100 + 40);
-  EXPECT_EQ(later.written[3][0], 140 + 40) << "at its bank at 100, which the first write keeps to 140";
-}
-
 TEST(Arbitration, NoReadOfAPortOvertakesItsWrites) {
   for (const Arbitration arbitration : arbitrated) {
     Ports ports(bus(arbitration, BusMode::held), two_banks(),
@@ -150,64 +49,6 @@ TEST(Arbitration, NoReadOfAPortOvertakesItsWrites) {
               1);
     EXPECT_GE(ports.services[0][0].wait_interconnect, 2 * 20 - 1) << "both writes of 20 come first";
   }
-}
-
-// Ports that ask again as soon as they are served, for ever or for a number of rounds.
-class Greedy final : public InterconnectClient, public sim::EventHandler {
- public:
-  Greedy(Arbitration arbitration, std::uint32_t ports, std::int64_t reads) : left_(reads), served(ports) {
-    interconnect_ = make_interconnect(bus(arbitration, BusMode::held), two_banks(),
-                                      {engine_, *this, reply_class, 0, ports, memory_class});
-    engine_.attach(issue_class, *this);
-    engine_.attach(memory_class, *this);
-    for (std::uint32_t port = 0; port < ports; ++port) {
-      engine_.post(sim::Event::make(0, issue_class, port));
-    }
-    engine_.run(100'000);
-  }
-  void handle(const sim::Event& event) override {
-    if (event.event_class() == memory_class) {
-      interconnect_->proceed(event.component(), event.sequence());
-    } else {
-      interconnect_->read({event.component(), 32 * static_cast<Address>(granted_ % 2), 32});
-    }
-  }
-  void read_done(std::uint32_t port, const Service& service) override {
-    ++granted_;
-    ++served[port];
-    longest = std::max(longest, service.wait_interconnect);
-    if (--left_ > 0) {
-      engine_.post(sim::Event::make(service.done, issue_class, port));
-    }
-  }
-  void write_done(std::uint32_t /*port*/, sim::Ticks /*done*/) override {}
-
- private:
-  sim::Engine engine_;
-  std::unique_ptr<Interconnect> interconnect_;
-  std::int64_t left_;
-  std::int64_t granted_ = 0;
-
- public:
-  std::vector<std::int64_t> served;
-  sim::Ticks longest = 0;
-};
-
-TEST(Arbitration, FixedPriorityStarvesTheHighPortsAndRoundRobinNobody) {
-  constexpr std::uint32_t ports = 7;
-  constexpr std::int64_t reads = 700;
-  const Greedy fixed(Arbitration::fixed_priority, ports, reads);
-  EXPECT_GE(fixed.served[0], reads - ports);
-  for (std::uint32_t port = 1; port < ports; ++port) {
-    EXPECT_LE(fixed.served[port], 1) << "only when nobody asks any more";
-  }
-  const Greedy turns(Arbitration::round_robin, ports, reads);
-  // The reads of the last round are still asked for when the count is used up.
-  for (std::uint32_t port = 0; port < ports; ++port) {
-    EXPECT_NEAR(static_cast<double>(turns.served[port]), static_cast<double>(reads) / ports, 1.0);
-  }
-  // Bank and bus keep a read of two ports for at most 110: 10, up to 20 for the bank, 40, 40.
-  EXPECT_LE(turns.longest, static_cast<sim::Ticks>(ports - 1) * 110);
 }
 
 struct Traffic {

@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <list>
 #include <map>
 #include <random>
-#include <set>
 #include <vector>
 
 #include "memory/tags.h"
@@ -188,58 +186,6 @@ TEST(Cache, ManyCachesInOneStoreDoNotDisturbEachOther) {
     const auto which = static_cast<std::uint32_t>(random() % 5);
     const auto line = static_cast<std::uint32_t>(random() % 100);
     ASSERT_EQ(together.view(which).access(line), apart[which].read(line * 16, 1) == 0);
-  }
-}
-
-TEST(Cache, LargerThanTheDatabaseMissesOncePerDistinctLine) {
-  for (const Replacement replacement : {Replacement::lru, Replacement::fifo, Replacement::random}) {
-    CacheConfig config;
-    config.size = 1 << 20;
-    config.ways = full_ways;
-    config.replacement = replacement;
-    Cache cache(config);
-    std::set<Address> distinct;
-    for (const Address address : trace(3, 20000, 1 << 18)) {
-      cache.read(address, 1);
-      distinct.insert(address / config.line);
-    }
-    EXPECT_EQ(cache.counters().misses, static_cast<std::int64_t>(distinct.size()));
-    EXPECT_EQ(cache.counters().references(), 20000);
-  }
-}
-
-TEST(Cache, OfOneLineMissesOncePerChangeOfLine) {
-  CacheConfig config;
-  config.size = 64;
-  config.line = 64;
-  config.ways = 1;
-  Cache cache(config);
-  std::int64_t changes = 0;
-  Address last = ~Address{0};
-  for (const Address address : trace(4, 20000, 4096)) {
-    cache.read(address, 1);
-    changes += address / 64 != last ? 1 : 0;
-    last = address / 64;
-  }
-  EXPECT_EQ(cache.counters().misses, changes);
-}
-
-TEST(Cache, LeastRecentlyUsedHasTheInclusionProperty) {
-  // Mattson et al. 1970: whatever a smaller fully associative LRU cache holds, a larger one holds too.
-  std::vector<Cache> caches;
-  for (std::uint64_t lines = 1; lines <= 256; lines *= 2) {
-    CacheConfig config;
-    config.size = lines * config.line;
-    config.ways = full_ways;
-    caches.emplace_back(config);
-  }
-  for (const Address address : trace(5, 30000, 1 << 14)) {
-    bool smaller_hit = false;
-    for (Cache& cache : caches) {
-      const bool hit = cache.read(address, 1) == 0;
-      ASSERT_TRUE(hit || !smaller_hit);
-      smaller_hit = hit;
-    }
   }
 }
 

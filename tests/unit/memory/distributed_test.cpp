@@ -1,5 +1,5 @@
-// A memory that is spread over the nodes: by hand, and against a second implementation that sorts all
-// arrivals.
+// A memory that is spread over the nodes: messages by hand, and against a second implementation that sorts
+// all arrivals.
 #include "memory/distributed.h"
 
 #include <gtest/gtest.h>
@@ -11,52 +11,22 @@
 #include <vector>
 
 #include "sim/error.h"
+#include "tests/support/memory_ports.h"
 
 namespace marti::memory {
 namespace {
 
-constexpr std::uint8_t issue_class = 3;
-constexpr std::uint8_t memory_class = 4;
+using test::memory_class;
+using Issue = test::IssuedTransaction;
 
-struct Issue {
-  sim::Ticks at = 0;
-  Transaction transaction;
-  bool write = false;
-};
-
-class Ports final : public InterconnectClient, public sim::EventHandler {
+class Ports final : public test::Ports {
  public:
   Ports(const DistributedConfig& config, std::vector<Issue> issues, std::uint32_t ports)
-      : issues_(std::move(issues)),
-        memory(config, {engine, *this, 0, 0, ports, memory_class}),
-        services(ports),
-        written(ports) {
-    engine.attach(issue_class, *this);
-    engine.attach(memory_class, *this);
-    for (std::uint32_t i = 0; i < issues_.size(); ++i) {
-      engine.post(sim::Event::make(issues_[i].at, issue_class, issues_[i].transaction.port, i));
-    }
-    engine.run(100'000);
-  }
-  void handle(const sim::Event& event) override {
-    if (event.event_class() == memory_class) {
-      memory.proceed(event.component(), event.sequence());
-      return;
-    }
-    const Issue& issue = issues_[event.sequence()];
-    issue.write ? memory.write(issue.transaction) : memory.read(issue.transaction);
-  }
-  void read_done(std::uint32_t port, const Service& service) override { services[port].push_back(service); }
-  void write_done(std::uint32_t port, sim::Ticks done) override { written[port].push_back(done); }
+      : test::Ports([&](const InterconnectSite& site) { return std::make_unique<Distributed>(config, site); },
+                    std::move(issues), ports),
+        memory(dynamic_cast<const Distributed&>(*interconnect)) {}
 
- private:
-  std::vector<Issue> issues_;
-
- public:
-  sim::Engine engine;
-  Distributed memory;
-  std::vector<std::vector<Service>> services;
-  std::vector<std::vector<sim::Ticks>> written;
+  const Distributed& memory;
 };
 
 // Four nodes in a mesh of 2 x 2; a hop is 20, a beat of 4 bytes 10; a memory takes 40 and 10 for 8 bytes.
@@ -66,17 +36,6 @@ DistributedConfig four_nodes() {
   config.clock = sim::Clock::from_period(10);
   config.network.clock = sim::Clock::from_period(10);
   return config;
-}
-
-TEST(Distributed, OwnMemoryTakesNoMessage) {
-  Ports ports(four_nodes(), {{100, {1, 32, 32}}, {1000, {1, 36, 4}, true}}, 4);
-  EXPECT_EQ(ports.services[1][0].done, 100 + 40 + 40);
-  EXPECT_EQ(ports.services[1][0].bank, 40);
-  EXPECT_EQ(ports.services[1][0].transfer, 40);
-  EXPECT_EQ(ports.written[1][0], 1000 + 40 + 10);
-  EXPECT_EQ(ports.memory.network_statistics()->messages, 0);
-  EXPECT_EQ(ports.memory.distribution()->local_reads, 1);
-  EXPECT_EQ(ports.memory.distribution()->local_writes, 1);
 }
 
 TEST(Distributed, AnothersMemoryTakesARequestAndItsData) {
@@ -99,43 +58,6 @@ TEST(Distributed, AWriteIsDoneWhenItsHomeHasIt) {
   Ports ports(four_nodes(), {{0, {0, 32, 4}, true}}, 4);
   EXPECT_EQ(ports.written[0][0], 20 + 30 + 40 + 10) << "one hop, 12 bytes of message, access and a beat";
   EXPECT_EQ(ports.memory.network_statistics()->messages, 1);
-}
-
-TEST(Distributed, AHomeServesInOrderOfArrivalNotOfSending) {
-  // Node 3's request of 0 arrives at node 0 at 60; node 0's own access of 50 comes before it.
-  Ports ports(four_nodes(), {{0, {3, 0, 32}}, {50, {0, 0, 32}}, {60, {0, 128, 4}, true}}, 4);
-  EXPECT_EQ(ports.services[0][0].done, 50 + 80);
-  EXPECT_EQ(ports.written[0][0], 130 + 50) << "at one instant a node's own accesses come first";
-  EXPECT_EQ(ports.services[3][0].wait_bank, 180 - 60);
-  EXPECT_EQ(ports.services[3][0].done, 180 + 80 + 140);
-  EXPECT_EQ(ports.memory.bank_statistics()[0].waits.sum, 70 + 120);
-}
-
-TEST(Distributed, WritesAreToldInTheOrderInWhichTheyWereMade) {
-  // The first goes far, the second is to own memory and done long before.
-  Ports ports(four_nodes(), {{0, {0, 96, 4}, true}, {1, {0, 0, 4}, true}, {2, {0, 32, 4}, true}}, 4);
-  EXPECT_EQ(ports.written[0], (std::vector<sim::Ticks>{70 + 50, 51, 80 + 50}))
-      << "the third begins at 30, when the first leaves their common link";
-}
-
-TEST(Distributed, PagesLieAtOneHome) {
-  DistributedConfig config = four_nodes();
-  config.interleave = 4096;
-  std::vector<Issue> issues;
-  for (std::uint32_t i = 0; i < 128; ++i) {
-    issues.push_back({sim::Ticks{i} * 10'000, {2, 4096 * 2 + 32 * i, 32}});
-  }
-  Ports ports(config, issues, 4);
-  EXPECT_EQ(ports.memory.distribution()->local_reads, 128);
-  EXPECT_EQ(ports.memory.bank_statistics()[2].accesses, 128);
-}
-
-TEST(Distributed, NodesMayHaveSeveralPortsEach) {
-  DistributedConfig config = four_nodes();
-  Ports ports(config, {{0, {3, 32, 32}}, {0, {2, 32, 32}}}, 8);
-  EXPECT_EQ(ports.services[2][0].done, 80) << "ports 2 and 3 are node 1's";
-  EXPECT_EQ(ports.services[3][0].done, 160);
-  EXPECT_EQ(ports.memory.distribution()->local_reads, 2);
 }
 
 // With an ideal network each access reaches its home a known time after it was made, so all arrivals can be

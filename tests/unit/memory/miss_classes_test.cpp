@@ -61,26 +61,6 @@ TEST(MissClasses, AgreeWithListsAndSetsWhileLinesAreTakenOut) {
   EXPECT_EQ(seen.size(), miss_classes);
 }
 
-TEST(MissClasses, AFullyAssociativeLruCacheHasNoConflicts) {
-  std::mt19937_64 random(2);
-  CacheConfig config = small(full_ways, 24);
-  config.replacement = Replacement::lru;
-  Cache cache(config);
-  MissClassifier classifier(24, 1);
-  for (int i = 0; i < 20000; ++i) {
-    const auto line = static_cast<std::uint32_t>(random() % 60);
-    if (random() % 10 == 0) {
-      if (cache.invalidate(line, 1) == 1) {
-        classifier.taken_out(0, line);
-      }
-    } else if (cache.read(line, 1) == 0) {
-      classifier.hit(0, line);
-    } else {
-      ASSERT_NE(classifier.miss(0, line), MissClass::conflict);
-    }
-  }
-}
-
 TEST(LineSharing, CountsNodesOfEachClusterApart) {
   std::mt19937_64 random(3);
   LineSharing sharing(3, 4);

@@ -309,15 +309,6 @@ TEST(Network, AnIdealOneTakesItsLatencyWhateverElseGoesOn) {
   EXPECT_EQ(network->statistics().busy, 0);
 }
 
-TEST(Network, MessagesThatMeetWaitForEachOther) {
-  // A row of three routers in a mesh of nine; 8 bytes are 2 beats of 10, a hop is 30.
-  const std::unique_ptr<Network> network = make_network(config_of(NetworkKind::mesh), 9);
-  EXPECT_EQ(network->send(0, 0, 2, 8).arrival, 80);
-  EXPECT_EQ(network->send(0, 0, 1, 8).arrival, 20 + 30 + 20) << "the first link is held for the beats";
-  EXPECT_EQ(network->send(0, 1, 2, 8).wait, 50) << "granted after the message that was sent first";
-  EXPECT_EQ(network->send(0, 2, 0, 8).wait, 0) << "the other way is another link";
-}
-
 TEST(Network, SixtyFourNodesAndAHostKeepADimensionOfSix) {
   const std::unique_ptr<Network> network = make_network(config_of(NetworkKind::hypercube), 64);
   EXPECT_EQ(network->statistics().links, 64 * 6 + 2);

@@ -125,22 +125,6 @@ TEST(TreePlru, AgreesWithATreeOfHalvesWhileLinesAreUsedTouchedAndTakenOut) {
   }
 }
 
-TEST(TreePlru, IsLruForOneAndTwoWays) {
-  std::mt19937_64 random(2);
-  for (const std::uint32_t ways : {1U, 2U}) {
-    Cache tree(config_of(ways, 7, Replacement::plru));
-    Cache lru(config_of(ways, 7, Replacement::lru));
-    for (int i = 0; i < 20000; ++i) {
-      const Address line = random() % 40;
-      if (random() % 5 == 0) {
-        ASSERT_EQ(tree.invalidate(line, 1), lru.invalidate(line, 1));
-      } else {
-        ASSERT_EQ(tree.read(line, 1), lru.read(line, 1));
-      }
-    }
-  }
-}
-
 TEST(TreePlru, NeverReplacesOneOfTheLinesUsedLast) {
   // The last 1 + log2(ways) different lines used are safe: Reineke, Grund, Berg, Wilhelm, Timing
   // predictability of cache replacement policies, Real-Time Systems 37, 2007.

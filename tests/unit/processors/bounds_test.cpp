@@ -63,15 +63,7 @@ RC_GTEST_PROP(ClosedNetworks, MeanValuesEqualConvolutionAndKeepTheBounds, (std::
   RC_ASSERT(std::abs(rough.throughput / x - 1.0) < 0.1);
 }
 
-TEST(ClosedNetworks, OneQueueIsAMachineRepairman) {
-  for (const std::uint64_t n : {1U, 2U, 11U, 100U, 4096U}) {
-    for (const double think : {0.5, 10.0, 1000.0, 1e9}) {
-      const double service = 2.0;
-      const double utilisation = repairman_utilisation(n, think, service);
-      EXPECT_NEAR(mean_values({n, think, {service}}).throughput * service / utilisation, 1.0, 1e-12);
-      EXPECT_LE(utilisation, 1.0);
-    }
-  }
+TEST(ClosedNetworks, OfOneQueueOrNoneAreSaturatedWhereTheyMustBe) {
   EXPECT_EQ(ClosedNetwork({5, 90.0, {10.0}}).saturation(), 10.0);
   EXPECT_EQ(ClosedNetwork({5, 90.0, {}}).saturation(), std::nullopt);
   EXPECT_EQ(mean_values({5, 10.0, {}}).throughput, 0.5);

@@ -1,5 +1,5 @@
-// Building the tree on the simulated machine, against a second way of running it, the static machine, closed
-// forms, and the branches that the log needs.
+// Building the tree on the simulated machine, against the static machine, closed forms, and the branches that
+// the log needs. The laws of all machines are in tests/contract.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -23,52 +23,16 @@ struct Case {
   ReplayOptions options;
 };
 
-// A tree that is built while others read it takes one memory that serves in the order of asking.
-void share_in_order(MachineConfig& machine) {
-  machine.placement = Placement::shared;
-  machine.interconnect.arbitration = memory::Arbitration::fifo;
-}
-
 Case random_case(test::Random& random) {
   Case c{test::random_tree_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 10)),
                                static_cast<std::uint32_t>(test::pick(random, 1, 10))),
          test::random_machine(random),
          {}};
-  c.machine.build = test::random_build(random);
-  if (c.machine.build.sharing == Sharing::shared) {
-    share_in_order(c.machine);
-  }
-  test::add_random_second_level(random, c.machine);
+  test::add_random_build(random, c.machine);
   if (random() % 3 == 0) {
     c.options.starts = test::random_starts(random, c.log.topology, c.machine.build.sharing != Sharing::none);
   }
-  if (random() % 3 == 0) {
-    // Sections so close that records of all kinds share lines with nodes that are still to be built.
-    c.machine.layout.section_alignment = 1U << test::pick(random, 0, 4);
-  }
   return c;
-}
-
-RC_GTEST_PROP(Dynamic, RunningAheadEqualsAnEventForEveryReference, (std::uint64_t seed)) {
-  test::Random random(seed);
-  for (int round = 0; round < 10; ++round) {
-    Case c = random_case(random);
-    const MachineResult ahead = replay(c.log, c.machine, c.options);
-    c.options.step_by_step = true;
-    const MachineResult stepped = replay(c.log, c.machine, c.options);
-    test::expect_equal(ahead, stepped);
-    RC_ASSERT(!::testing::Test::HasFatalFailure());
-    RC_ASSERT(ahead.events <= stepped.events);
-  }
-}
-
-RC_GTEST_PROP(Dynamic, TheOrderOfTheFirstEventsDoesNotMatter, (std::uint64_t seed)) {
-  test::Random random(seed);
-  Case c = random_case(random);
-  const MachineResult plain = replay(c.log, c.machine, c.options);
-  c.options.start_seed = random() | 1U;
-  test::expect_equal(plain, replay(c.log, c.machine, c.options));
-  RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 
 // All results except the build, which a machine with a given tree does not report.
@@ -122,7 +86,7 @@ RC_GTEST_PROP(Dynamic, ASharedTreeIsBuiltAsFarAsTheRaysNeedItByAnyNumberOfNodes,
   MachineConfig machine = test::random_machine(random);
   machine.build = test::random_build(random);
   machine.build.sharing = Sharing::shared;
-  share_in_order(machine);
+  test::share_in_order(machine);
   machine.clusters = 1;
   const std::vector<BranchStart> starts = branch_starts(log.topology, machine.build);
   // A lazy branch is there when its parent is split, and split when a ray visits it.
@@ -161,7 +125,7 @@ RC_GTEST_PROP(Dynamic, OneNodeBuildsThePrivateTreeThatItWouldShare, (std::uint64
   Case c = random_case(random);
   c.machine.clusters = 1;
   c.machine.nodes = 1;
-  share_in_order(c.machine);
+  test::share_in_order(c.machine);
   c.machine.build.sharing = Sharing::shared;
   const MachineResult shared = replay(c.log, c.machine, c.options);
   c.machine.build.sharing = Sharing::private_trees;

@@ -31,11 +31,6 @@ MachineConfig random_sampled(test::Random& random) {
   return machine;
 }
 
-WorkLog small_log(test::Random& random) {
-  return test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 14)),
-                          static_cast<std::uint32_t>(test::pick(random, 1, 14)));
-}
-
 std::vector<std::uint64_t> everything(std::uint64_t packets) {
   std::vector<std::uint64_t> all(packets);
   std::iota(all.begin(), all.end(), 0);
@@ -65,7 +60,7 @@ RC_GTEST_PROP(Inexact, AStrippedLogGivesTheSameSample, (std::uint64_t seed)) {
 
 RC_GTEST_PROP(Inexact, ASampleOfAllPacketsIsExact, (std::uint64_t seed)) {
   test::Random random(seed);
-  const WorkLog log = small_log(random);
+  const WorkLog log = test::small_log(random);
   const MachineConfig machine = random_sampled(random);
   const std::uint64_t packets = PacketList(log.width, log.height, machine.packets).size();
   const MachineResult exact = replay(log, machine, {.keep_read_events = true});
@@ -94,7 +89,7 @@ RC_GTEST_PROP(Inexact, ASampleOfAllPacketsIsExact, (std::uint64_t seed)) {
 
 RC_GTEST_PROP(Inexact, ASampleIsAFrameOfItsPackets, (std::uint64_t seed)) {
   test::Random random(seed);
-  const WorkLog log = small_log(random);
+  const WorkLog log = test::small_log(random);
   const MachineConfig machine = random_sampled(random);
   const std::uint64_t packets = PacketList(log.width, log.height, machine.packets).size();
   std::vector<std::uint64_t> chosen;
@@ -118,7 +113,7 @@ RC_GTEST_PROP(Inexact, ASampleIsAFrameOfItsPackets, (std::uint64_t seed)) {
 // One node meets the packets in their order: fully warmed, each misses exactly what it misses in the frame.
 RC_GTEST_PROP(Inexact, FullWarmingOfOneNodeGivesEachPacketsOwnMisses, (std::uint64_t seed)) {
   test::Random random(seed);
-  const WorkLog log = small_log(random);
+  const WorkLog log = test::small_log(random);
   MachineConfig machine = random_sampled(random);
   machine.clusters = 1;
   machine.nodes = 1;
@@ -165,7 +160,7 @@ MachineConfig random_relaxed(test::Random& random) {
 
 RC_GTEST_PROP(Inexact, AQuantumOfOneTickIsExact, (std::uint64_t seed)) {
   test::Random random(seed);
-  const WorkLog log = small_log(random);
+  const WorkLog log = test::small_log(random);
   const MachineConfig machine = random_relaxed(random);
   RC_PRE(machine.placement != Placement::distributed);
   expect_equal(replay(log, machine), replay(log, machine, {.quantum = 1}));
@@ -175,7 +170,7 @@ RC_GTEST_PROP(Inexact, AQuantumOfOneTickIsExact, (std::uint64_t seed)) {
 // The replay itself checks the laws of its result.
 RC_GTEST_PROP(Inexact, AnyQuantumObeysTheLaws, (std::uint64_t seed)) {
   test::Random random(seed);
-  const WorkLog log = small_log(random);
+  const WorkLog log = test::small_log(random);
   const MachineConfig machine = random_relaxed(random);
   RC_PRE(machine.placement != Placement::distributed);
   const sim::Ticks quantum = test::pick(random, 2, 100) * test::pick(random, 1, 1'000'000);
@@ -188,7 +183,7 @@ RC_GTEST_PROP(Inexact, AnyQuantumObeysTheLaws, (std::uint64_t seed)) {
 // A single node never waits for another.
 RC_GTEST_PROP(Inexact, OneNodeIsExactWithAnyQuantum, (std::uint64_t seed)) {
   test::Random random(seed);
-  const WorkLog log = small_log(random);
+  const WorkLog log = test::small_log(random);
   MachineConfig machine = random_relaxed(random);
   RC_PRE(machine.placement != Placement::distributed);
   machine.clusters = 1;
@@ -200,7 +195,7 @@ RC_GTEST_PROP(Inexact, OneNodeIsExactWithAnyQuantum, (std::uint64_t seed)) {
 
 TEST(Inexact, MachinesThatCannotBeSampledAreRefused) {
   test::Random random(1);
-  const WorkLog log = small_log(random);
+  const WorkLog log = test::small_log(random);
   const MachineConfig machine = random_relaxed(random);
   const std::uint64_t packets = PacketList(log.width, log.height, machine.packets).size();
   const PacketSample sample({0}, packets, 0);

@@ -16,7 +16,7 @@
 
 #include "processors/node/memory_system.h"
 #include "processors/replay/replay.h"
-#include "tests/unit/processors/naive_program.h"
+#include "tests/support/naive_program.h"
 
 namespace marti::test {
 
@@ -59,6 +59,7 @@ class NaiveContexts final : public sim::EventHandler {
     engine_.run(std::numeric_limits<std::uint64_t>::max());
     MachineResult result;
     result.end = end_;
+    result.host = host_.statistics();
     for (Node& node : nodes_) {
       node.statistics.time[static_cast<std::size_t>(Activity::idle)] = end_ - node.statistics.finish;
       node.counts.useless += static_cast<std::int64_t>(node.unasked.size());

@@ -1,9 +1,8 @@
-// Rays that leave a surface: outwards from a convex closed mesh they must hit nothing, inwards they must hit
-// the other side, at every scale and far from the origin.
+// Rays that leave a surface: they must not meet it again. Closed meshes at every scale and far from the
+// origin are cases of `marti study stability`.
 #include <array>
 #include <cmath>
 #include <random>
-#include <tuple>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -15,15 +14,12 @@
 namespace marti::processors {
 namespace {
 
-/// A sphere of radius `scale` about (offset, offset, offset): an icosahedron with each triangle divided
-/// `levels` times into four, wound counter-clockwise seen from outside.
-scenes::Scene icosphere(int levels, double scale, double offset) {
-  const studies::Icosphere sphere(levels);
+/// A unit sphere, wound counter-clockwise seen from outside.
+scenes::Scene icosphere() {
+  const studies::Icosphere sphere(3);
   scenes::Scene scene;
   scene.materials.emplace_back();
-  for (const glm::dvec3& p : sphere.vertices) {
-    scene.positions.push_back(p * scale + glm::dvec3(offset));
-  }
+  scene.positions = sphere.vertices;
   for (std::array<std::uint32_t, 3> face : sphere.faces) {
     const glm::dvec3& a = sphere.vertices[face[0]];
     const glm::dvec3& b = sphere.vertices[face[1]];
@@ -80,54 +76,10 @@ TEST(LeavingAPlane, NoRayMeetsTheBoardItLeft) {
   }
 }
 
-class Leaving : public testing::TestWithParam<std::tuple<double, double>> {};
-
-TEST_P(Leaving, OutwardsNothingIsHitAndInwardsTheFarSide) {
-  const auto [scale, offset] = GetParam();
-  const test::Built built(icosphere(3, scale, offset), "octree");
-  const glm::dvec3 center(offset);
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> normal;
-  const auto direction = [&] {
-    return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-  };
-  int left = 0;
-  for (int i = 0; i < 20000; ++i) {
-    // From outside towards a point near the centre.
-    const glm::dvec3 eye = center + direction() * (4.0 * scale);
-    const glm::dvec3 aim = center + direction() * (0.5 * scale);
-    const glm::dvec3 d = glm::normalize(aim - eye);
-    const accel::Hit hit = built.structure->closest({eye, d});
-    ASSERT_TRUE(hit.found());
-    const double weights[3] = {hit.u, hit.v, hit.w};
-    const Surface<double> surface = surface_at(built.scene, hit.primitive, weights, Vec3<double>(d));
-    ASSERT_TRUE(surface.outside);
-    Vec3<double> out(direction());
-    const double cosine = dot(out, surface.geometric);
-    if (std::abs(cosine) < 0.01) {
-      continue;
-    }
-    out = cosine < 0.0 ? -out : out;
-    const auto is_hit = [&](const Vec3<double>& to) {
-      const Vec3<double> from = leave(surface, to);
-      return built.structure->occluded(
-          {{from.x, from.y, from.z}, {to.x, to.y, to.z}, std::numeric_limits<double>::denorm_min()});
-    };
-    ASSERT_FALSE(is_hit(out)) << "a ray hits the surface it leaves";
-    ASSERT_TRUE(is_hit(-out)) << "a ray into the body passes the far side";
-    ++left;
-  }
-  EXPECT_GT(left, 19000);
-}
-
-INSTANTIATE_TEST_SUITE_P(Scales, Leaving,
-                         testing::Values(std::tuple(1.0, 0.0), std::tuple(1e-5, 0.0), std::tuple(1e5, 0.0),
-                                         std::tuple(1.0, 1e4), std::tuple(1.0, 1e5), std::tuple(1e-5, 1.0)));
-
 // Leaving rays in floats, whose kernel may err by more than the margin: how rare that is, and that the
 // spacing of floats decides it.
 TEST(Leaving, InFloatsHardlyAnyRayMeetsTheSurfaceThatItLeaves) {
-  const test::Built built(icosphere(3, 1.0, 0.0), "octree");
+  const test::Built built(icosphere(), "octree");
   std::mt19937_64 random(9);
   std::normal_distribution<double> normal;
   const auto direction = [&] {

@@ -1,10 +1,12 @@
-// The work log's own rules: what the recorder writes, what the totals count, what validate refuses.
+// The work log's own rules: what the recorder writes, what the totals count, what the checker of the tests
+// refuses.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "processors/program/recorder.h"
 #include "processors/program/work_log.h"
 #include "sim/error.h"
+#include "tests/support/valid_log.h"
 
 namespace marti::processors {
 namespace {
@@ -30,7 +32,7 @@ TEST(WorkLog, CountsEveryKindOfStep) {
       {make_word(Step::ray, 0), make_word(Step::branch, 0), make_word(Step::leaf, 1),
        make_word(Step::leaf, 2), make_word(Step::shade, 1), make_word(Step::texel, 0), 3,
        make_word(Step::ray, 1U | 1U << 2U), make_word(Step::partial_leaf, 1), 2, make_word(Step::light, 0)});
-  EXPECT_NO_THROW(validate(log));
+  EXPECT_EQ(test::fault_of(log), "");
   const LogTotals totals = totals_of(log);
   EXPECT_EQ(totals.rays[0], 1U);
   EXPECT_EQ(totals.rays[1], 1U);
@@ -48,63 +50,74 @@ TEST(WorkLog, CountsWhatMailboxesLeftOut) {
   WorkLog log = small_log({make_word(Step::ray, 0), make_word(Step::leaf, 1), make_word(Step::mailed_leaf, 1),
                            3, 0b101, make_word(Step::leaf, 2), make_word(Step::partial_leaf, 1), 1,
                            make_word(Step::mailed_leaf, 1), 2, 0});
-  EXPECT_THROW(validate(log), sim::InternalError) << "without mailboxes";
   log.mailboxes = true;
-  EXPECT_NO_THROW(validate(log));
+  EXPECT_EQ(test::fault_of(log), "");
   const LogTotals totals = totals_of(log);
   EXPECT_EQ(totals.leaves, 5U);
   EXPECT_EQ(totals.tests, 3U + 2 + 0 + 1 + 0);
   EXPECT_EQ(totals.lookups, 3U + 3 + 0 + 1 + 2);
-  for (const std::vector<std::uint32_t>& words : std::vector<std::vector<std::uint32_t>>{
-           {make_word(Step::mailed_leaf, 1)},           // half a step
-           {make_word(Step::mailed_leaf, 1), 3},        // no bits
-           {make_word(Step::mailed_leaf, 1), 3, 7},     // nothing left out
-           {make_word(Step::mailed_leaf, 1), 3, 9},     // a bit too many
-           {make_word(Step::mailed_leaf, 1), 4, 1},     // more than the leaf has
-           {make_word(Step::mailed_leaf, 0), 1, 0},     // a branch
-           {make_word(Step::mailed_leaf, 1), 33, 1},    // half the bits
-           {make_word(Step::mailed_leaf, 9), 1, 0}}) {  // no such node
-    WorkLog bad = small_log(words);
-    bad.mailboxes = true;
-    EXPECT_THROW(validate(bad), sim::InternalError);
-  }
 }
 
-TEST(WorkLog, RefusesOperandsThatNameNothing) {
+// The checker of the tests finds each way in which words can be wrong.
+TEST(WorkLog, EveryFaultIsFound) {
+  const auto log_of = [](std::vector<std::uint32_t> words, bool mailboxes = true) {
+    WorkLog log = small_log(std::move(words));
+    log.mailboxes = mailboxes;
+    log.materials = 3;
+    log.voxels = 1;
+    return log;
+  };
+  EXPECT_EQ(test::fault_of(log_of({make_word(Step::cut, 0), make_word(Step::shade, 2)})), "");
+  EXPECT_EQ(test::fault_of(log_of({make_word(Step::pass, 2), make_word(Step::leaf, 1)})), "");
   const std::vector<std::vector<std::uint32_t>> bad = {
-      {make_word(Step::branch, 3)},           // no such node
-      {make_word(Step::branch, 1)},           // a leaf
-      {make_word(Step::leaf, 0)},             // a branch
-      {make_word(Step::partial_leaf, 1), 3},  // not partial
-      {make_word(Step::partial_leaf, 1)},     // half a step
-      {make_word(Step::shade, 2)},
+      {make_word(Step::branch, 3)},              // no such node
+      {make_word(Step::branch, 1)},              // a leaf
+      {make_word(Step::leaf, 0)},                // a branch
+      {make_word(Step::partial_leaf, 1), 3},     // not partial
+      {make_word(Step::partial_leaf, 1)},        // half a step
+      {make_word(Step::mailed_leaf, 1)},         // half a step
+      {make_word(Step::mailed_leaf, 1), 3},      // no bits
+      {make_word(Step::mailed_leaf, 1), 3, 7},   // nothing left out
+      {make_word(Step::mailed_leaf, 1), 3, 9},   // a bit too many
+      {make_word(Step::mailed_leaf, 1), 4, 1},   // more than the leaf has
+      {make_word(Step::mailed_leaf, 0), 1, 0},   // a branch
+      {make_word(Step::mailed_leaf, 1), 33, 1},  // half the bits
+      {make_word(Step::mailed_leaf, 9), 1, 0},   // no such node
+      {make_word(Step::shade, 3)},
       {make_word(Step::light, 1)},
       {make_word(Step::texel, 1), 0},
       {make_word(Step::texel, 0), 4},
-      {0xf0000000U},  // no such step
+      {0xf0000000U},                                         // no such step
+      {make_word(Step::cut, 3), make_word(Step::shade, 2)},  // no such node
+      {make_word(Step::cut, 2), make_word(Step::shade, 2)},  // an empty leaf
+      {make_word(Step::cut, 0), make_word(Step::shade, 0)},  // not averaged
+      {make_word(Step::cut, 0)},
+      {make_word(Step::cut, 0), make_word(Step::branch, 0)},
+      {make_word(Step::shade, 2)},  // averaged, without a cut
+      {make_word(Step::pass, 0), make_word(Step::branch, 0)},
+      {make_word(Step::pass, 2)},
+      {make_word(Step::pass, 2), make_word(Step::shade, 0)},
   };
-  for (const auto& words : bad) {
-    EXPECT_THROW(validate(small_log(words)), sim::InternalError);
+  for (std::size_t i = 0; i < bad.size(); ++i) {
+    EXPECT_NE(test::fault_of(log_of(bad[i])), "") << i;
   }
-}
-
-TEST(WorkLog, RefusesBrokenOffsetsAndTrees) {
-  WorkLog log = small_log({make_word(Step::ray, 0)});
-  log.rows[0].begin = {0, 2};
-  EXPECT_THROW(validate(log), sim::InternalError);
-  log.rows[0].begin = {1, 1};
-  EXPECT_THROW(validate(log), sim::InternalError);
-  log.rows[0].begin = {0};
-  EXPECT_THROW(validate(log), sim::InternalError);
-  log = small_log({});
-  log.rows.clear();
-  EXPECT_THROW(validate(log), sim::InternalError);
-  log = small_log({});
-  log.topology.entries[1] = 3;
-  EXPECT_THROW(validate(log), sim::InternalError);
-  log = small_log({});
-  log.topology.nodes[2].first = 4;
-  EXPECT_THROW(validate(log), sim::InternalError);
+  EXPECT_NE(test::fault_of(log_of({make_word(Step::mailed_leaf, 1), 3, 5}, false)), "");
+  for (const auto& spoil :
+       {+[](WorkLog& log) {
+          log.rows[0].begin = {0, 2};
+        },
+        +[](WorkLog& log) {
+          log.rows[0].begin = {1, 1};
+        },
+        +[](WorkLog& log) { log.rows[0].begin = {0}; }, +[](WorkLog& log) { log.rows.clear(); },
+        +[](WorkLog& log) { log.topology.entries[1] = 3; },
+        +[](WorkLog& log) { log.topology.nodes[2].first = 4; }, +[](WorkLog& log) { log.samples = 0; },
+        +[](WorkLog& log) { log.samples = 2; }}) {
+    WorkLog log = log_of({camera_ray});
+    EXPECT_EQ(test::fault_of(log), "");
+    spoil(log);
+    EXPECT_NE(test::fault_of(log), "");
+  }
 }
 
 TEST(WorkLog, CapacityEndsAtTwentyEightBits) {

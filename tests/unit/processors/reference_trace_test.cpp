@@ -79,8 +79,7 @@ Hits simulate(const ReferenceTrace& trace, std::uint32_t node, const NodeCacheCo
 
 RC_GTEST_PROP(ReferenceTraces, GiveAnotherCacheTheSameHitsAndMisses, (std::uint64_t seed)) {
   test::Random random(seed);
-  const WorkLog log = test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 12)),
-                                       static_cast<std::uint32_t>(test::pick(random, 1, 12)));
+  const WorkLog log = test::small_log(random);
   MachineConfig machine = test::random_machine(random);
   machine.cache.cache.replacement = random() % 2 == 0 ? memory::Replacement::lru : memory::Replacement::fifo;
   ReferenceTrace trace;

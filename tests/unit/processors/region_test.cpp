@@ -55,14 +55,6 @@ RC_GTEST_PROP(Regions, EachTreeNodeIsInOneRegionOrTheTop, (std::uint64_t seed)) 
   RC_ASSERT(top == map.top_nodes);
 }
 
-TEST(Regions, OneLevelIsOneRegion) {
-  test::Random random(1);
-  const RegionMap map = cut_regions(test::random_topology(random, 9, 50, 6), 1);  // its root is a branch
-  EXPECT_EQ(map.size(), 1U);
-  EXPECT_EQ(map.top_nodes, 0U);
-  EXPECT_EQ(std::set<std::uint32_t>(map.region_of.begin(), map.region_of.end()), std::set<std::uint32_t>{0});
-}
-
 TEST(Regions, AnEmptySceneHasNone) {
   accel::Topology topology;
   topology.nodes = {{0, 0, 1, true}};
@@ -71,17 +63,6 @@ TEST(Regions, AnEmptySceneHasNone) {
   EXPECT_EQ(map.top_nodes, 1U);
   EXPECT_TRUE(deal_in_blocks(0, 3).empty());
   EXPECT_TRUE(deal_balanced({}, 3).empty());
-}
-
-TEST(Regions, BelowTheTreeEveryLeafWithObjectsIsOne) {
-  test::Random random(2);
-  const accel::Topology topology = test::random_topology(random, 9, 50, 6);
-  const RegionMap map = cut_regions(topology, 0xffffffffU);
-  const auto leaves =
-      std::count_if(topology.nodes.begin(), topology.nodes.end(),
-                    [](const accel::TopologyNode& node) { return node.leaf && node.count > 0; });
-  EXPECT_EQ(map.size(), leaves);
-  EXPECT_EQ(map.top_nodes, topology.nodes.size() - static_cast<std::size_t>(leaves));
 }
 
 TEST(Regions, AreNumberedDepthFirst) {

@@ -11,29 +11,17 @@
 #include <set>
 #include <vector>
 
-#include "memory/layout.h"
 #include "processors/cost/step_time.h"
 #include "processors/walk/observer.h"
 #include "processors/walk/stripped_log.h"
 #include "sim/error.h"
 #include "tests/support/equal_results.h"
+#include "tests/support/logged_samples.h"
 #include "tests/support/random_machine.h"
+#include "tests/support/traced_lines.h"
 
 namespace marti::processors {
 namespace {
-
-RC_GTEST_PROP(Replay, RunningAheadEqualsAnEventForEveryReference, (std::uint64_t seed)) {
-  test::Random random(seed);
-  const WorkLog log = test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 12)),
-                                       static_cast<std::uint32_t>(test::pick(random, 1, 12)));
-  MachineConfig machine = test::random_machine(random);
-  test::add_random_second_level(random, machine);
-  const MachineResult ahead = replay(log, machine);
-  const MachineResult stepped = replay(log, machine, {.step_by_step = true});
-  test::expect_equal(ahead, stepped);
-  RC_ASSERT(!::testing::Test::HasFatalFailure());
-  RC_ASSERT(ahead.events <= stepped.events);
-}
 
 // Another machine that may share the pass that strips `machine`'s log: with other ways, clocks and memories.
 MachineConfig of_equal_key(test::Random& random, const MachineConfig& machine) {
@@ -58,8 +46,7 @@ MachineConfig of_equal_key(test::Random& random, const MachineConfig& machine) {
 
 RC_GTEST_PROP(Replay, AStrippedLogGivesTheSameResult, (std::uint64_t seed)) {
   test::Random random(seed);
-  const WorkLog log = test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 12)),
-                                       static_cast<std::uint32_t>(test::pick(random, 1, 12)));
+  const WorkLog log = test::small_log(random);
   MachineConfig machine = test::random_machine(random);
   test::add_random_second_level(random, machine);
   const MachineConfig other = of_equal_key(random, machine);
@@ -98,8 +85,7 @@ class Told : public Observer {
 
 RC_GTEST_PROP(Replay, ObserversAreToldAsMuchOfAStrippedLog, (std::uint64_t seed)) {
   test::Random random(seed);
-  const WorkLog log = test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 12)),
-                                       static_cast<std::uint32_t>(test::pick(random, 1, 12)));
+  const WorkLog log = test::small_log(random);
   MachineConfig machine = test::random_machine(random);
   machine.build.sharing = Sharing::given;
   machine.contexts = 1;
@@ -150,32 +136,11 @@ RC_GTEST_PROP(Replay, ScalingEveryDurationScalesEveryTimeExactly, (std::uint64_t
   }
 }
 
-/// Tests of each accel::PrimitiveKind, one by one.
-std::array<std::int64_t, 3> tests_by_kind(const WorkLog& log) {
-  std::array<std::int64_t, 3> tests{};
-  for (const LogRow& row : log.rows) {
-    for (std::size_t i = 0; i < row.words.size(); i += step_words(row.words.data() + i)) {
-      const Step step = step_of(row.words[i]);
-      if (step != Step::leaf && step != Step::partial_leaf && step != Step::mailed_leaf) {
-        continue;
-      }
-      const accel::TopologyNode& node = log.topology.nodes[operand_of(row.words[i])];
-      const std::uint32_t read = step == Step::leaf ? node.count : row.words[i + 1];
-      for (std::uint32_t t = 0; t < read; ++t) {
-        if (step != Step::mailed_leaf || ((row.words[i + 2 + t / 32] >> (t % 32)) & 1U) != 0) {
-          ++tests[static_cast<std::size_t>(log.kind_of(log.topology.entries[node.first + t]))];
-        }
-      }
-    }
-  }
-  return tests;
-}
-
 // Compute time of the whole log, from the counts of the log itself.
 sim::Ticks compute_of(const WorkLog& log, const MachineConfig& machine) {
   const StepTicks ticks = step_ticks(machine, log);
   const LogTotals totals = totals_of(log);
-  const std::array<std::int64_t, 3> tests = tests_by_kind(log);
+  const std::array<std::int64_t, 3> tests = test::tests_by_kind(log);
   const auto n = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
   sim::Ticks sum = ticks.branch * n(totals.branches) + ticks.leaf * n(totals.leaves) +
                    ticks.lookup * n(totals.lookups) + ticks.test * tests[0] + ticks.sphere_test * tests[1] +
@@ -236,27 +201,6 @@ TEST(Replay, OneNodeOnABusWithSlowPixelsIsExactToo) {
   }
 }
 
-TEST(Replay, CountsDoNotDependOnTheMachine) {
-  test::Random random(13);
-  const WorkLog log = test::random_log(random, 20, 13);
-  const LogTotals totals = totals_of(log);
-  const std::array<std::int64_t, 3> tests = tests_by_kind(log);
-  ASSERT_GT(tests[1] + tests[2], 0);
-  for (int round = 0; round < 100; ++round) {
-    const MachineResult result = replay(log, test::random_machine(random, 40));
-    const StepCounts steps = result.steps();
-    EXPECT_EQ(static_cast<std::uint64_t>(steps.branches), totals.branches);
-    EXPECT_EQ(static_cast<std::uint64_t>(steps.leaves), totals.leaves);
-    EXPECT_EQ(static_cast<std::uint64_t>(steps.tests), totals.tests);
-    EXPECT_EQ(steps.sphere_tests, tests[1]);
-    EXPECT_EQ(steps.cone_tests, tests[2]);
-    EXPECT_EQ(static_cast<std::uint64_t>(steps.lookups), totals.lookups);
-    EXPECT_EQ(static_cast<std::uint64_t>(steps.texels), totals.texels);
-    EXPECT_GE(result.references().references(),
-              static_cast<std::int64_t>(totals.branches + totals.leaves + totals.tests));
-  }
-}
-
 TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
   test::Random random(14);
   const WorkLog log = test::random_log(random, 24, 24);
@@ -265,105 +209,15 @@ TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
   machine.cache.cache.size = 1 << 20;
   machine.cache.cache.ways = memory::full_ways;
   const MachineResult one = replay(log, machine);
-  // The lines of a single node: count them by hand, from the layout.
-  const memory::Layout layout(
-      machine.layout,
-      {log.topology.nodes.size(), log.topology.entries.size(), log.primitives, log.materials, 356, 24 * 24},
-      log.quadrics.size());
-  std::set<std::uint64_t> lines;
-  const auto touch = [&](memory::RecordKind kind, std::uint64_t first, std::uint64_t count) {
-    if (count > 0) {
-      const memory::Address begin = layout.address(kind, first);
-      const memory::Address end = layout.address(kind, first + count - 1) + layout.record_bytes(kind, first);
-      for (std::uint64_t line = begin / 32; line <= (end - 1) / 32; ++line) {
-        lines.insert(line);
-      }
-    }
-  };
-  for (const LogRow& row : log.rows) {
-    for (std::size_t i = 0; i < row.words.size(); i += step_words(row.words.data() + i)) {
-      const std::uint32_t operand = operand_of(row.words[i]);
-      const accel::TopologyNode node =
-          operand < log.topology.nodes.size() ? log.topology.nodes[operand] : accel::TopologyNode{};
-      switch (step_of(row.words[i])) {
-        case Step::branch:
-        case Step::cut:
-          touch(memory::RecordKind::node, operand, 1);
-          break;
-        case Step::leaf:
-        case Step::partial_leaf: {
-          const std::uint32_t tests = step_of(row.words[i]) == Step::leaf ? node.count : row.words[i + 1];
-          touch(memory::RecordKind::node, operand, 1);
-          touch(memory::RecordKind::list, node.first, tests);
-          for (std::uint32_t t = 0; t < tests; ++t) {
-            touch(memory::RecordKind::primitive, log.topology.entries[node.first + t], 1);
-          }
-          break;
-        }
-        case Step::mailed_leaf: {
-          touch(memory::RecordKind::node, operand, 1);
-          touch(memory::RecordKind::list, node.first, row.words[i + 1]);
-          for (std::uint32_t t = 0; t < row.words[i + 1]; ++t) {
-            if ((row.words[i + 2 + t / 32] >> (t % 32) & 1U) != 0) {
-              touch(memory::RecordKind::primitive, log.topology.entries[node.first + t], 1);
-            }
-          }
-          break;
-        }
-        case Step::shade:
-        case Step::pass:
-          touch(memory::RecordKind::material, operand, 1);
-          break;
-        case Step::texel:
-          touch(memory::RecordKind::texel, log.texture_begin[operand] + row.words[i + 1], 1);
-          break;
-        case Step::ray:
-        case Step::light:
-          break;
-      }
-    }
+  std::set<std::uint32_t> lines;
+  for (const test::TracedLine& traced : test::trace_node(log, machine, 0)) {
+    lines.insert(traced.line);
   }
   EXPECT_EQ(one.references().all_misses(), static_cast<std::int64_t>(lines.size()));
   machine.nodes = 7;
   const MachineResult seven = replay(log, machine);
   EXPECT_LE(seven.references().all_misses(), 7 * static_cast<std::int64_t>(lines.size()));
   EXPECT_GE(seven.references().all_misses(), static_cast<std::int64_t>(lines.size()));
-}
-
-TEST(Replay, ZeroLatenciesFinishWithTheSameHitsUnderStaticAssignment) {
-  test::Random random(15);
-  const WorkLog log = test::random_log(random, 16, 16);
-  MachineConfig machine;
-  machine.host.assignment = Assignment::interleaved;
-  const MachineResult normal = replay(log, machine);
-  machine.operations = {0, 0, 0, 0, 0, 0, 0, 0};
-  machine.cache.hit_cycles = 0;
-  machine.interconnect.address_cycles = 0;
-  machine.interconnect.cycles_per_beat = 0;
-  machine.banks.access_cycles = 0;
-  machine.banks.busy_cycles = 0;
-  const MachineResult instant = replay(log, machine);
-  EXPECT_EQ(instant.end, 0);
-  EXPECT_EQ(instant.references().hits, normal.references().hits);
-  EXPECT_EQ(instant.references().misses, normal.references().misses);
-}
-
-TEST(Replay, LowerBoundsHoldAndMoreNodesThanPacketsStandIdle) {
-  test::Random random(16);
-  const WorkLog log = test::random_log(random, 16, 16);
-  for (const std::uint32_t nodes : {1U, 2U, 3U, 16U, 17U, 1024U, 65536U}) {
-    MachineConfig machine;
-    machine.nodes = nodes;
-    machine.packets = {4, 4, PacketOrder::scanline};
-    const MachineResult result = replay(log, machine);
-    EXPECT_GE(result.end, result.clusters[0].interconnect.busy);
-    std::int64_t working = 0;
-    for (const NodeStatistics& node : result.nodes) {
-      EXPECT_LE(node.finish, result.end);
-      working += node.packets > 0 ? 1 : 0;
-    }
-    EXPECT_EQ(working, std::min<std::int64_t>(nodes, 16));
-  }
 }
 
 TEST(Replay, RefusesWhatCannotBeBuiltOrTimed) {
@@ -499,13 +353,6 @@ TEST(Replay, ArbitrationChangesWhoWaitsNotWhatIsDone) {
   };
   EXPECT_GT(spread(fixed), 2 * spread(turns)) << "low nodes finish early, the high ones starve";
   EXPECT_GT(turns.time()[static_cast<std::size_t>(Activity::queue_full_wait)], 0);
-}
-
-TEST(Replay, AnEmptyImageTakesNoTime) {
-  test::Random random(18);
-  const WorkLog log = test::random_log(random, 0, 0);
-  MachineConfig machine;
-  EXPECT_EQ(replay(log, machine).end, 0);
 }
 
 }  // namespace

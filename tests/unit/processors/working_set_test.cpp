@@ -44,8 +44,7 @@ std::vector<memory::Address> lines_of(const ReferenceTrace& trace, std::uint32_t
 
 RC_GTEST_PROP(WorkingSet, IsThatOfCachesSimulatedOneByOne, (std::uint64_t seed)) {
   test::Random random(seed);
-  const WorkLog log = test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 12)),
-                                       static_cast<std::uint32_t>(test::pick(random, 1, 12)));
+  const WorkLog log = test::small_log(random);
   const MachineConfig machine = random_cached_machine(random);
   ReferenceTrace trace;
   const MachineResult result = replay(log, machine, {.observer = &trace});

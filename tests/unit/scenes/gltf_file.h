@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -113,5 +114,37 @@ struct GltfFile {
     return directory / name;
   }
 };
+
+/// One way to damage a file, and a part of the message that must refuse it.
+struct Fault {
+  const char* name;
+  const char* reason;
+  std::function<void(GltfFile&)> damage;
+};
+
+/// Puts a value at a place of the file's JSON; "-" is the place behind an array's last element.
+inline std::function<void(GltfFile&)> put(const char* place, const nlohmann::json& value) {
+  return [=](GltfFile& file) { file.json[nlohmann::json::json_pointer(place)] = value; };
+}
+
+/// Puts a new accessor of these values there.
+template <typename T>
+std::function<void(GltfFile&)> put_accessor(const char* place, const std::vector<T>& values,
+                                            int component_type, const char* type, std::size_t components) {
+  return [=](GltfFile& file) {
+    file.json[nlohmann::json::json_pointer(place)] =
+        file.add_accessor(values, component_type, type, components);
+  };
+}
+inline std::function<void(GltfFile&)> put_positions(const char* place, const std::vector<float>& values) {
+  return put_accessor(place, values, 5126, "VEC3", 3);
+}
+
+/// Takes a member out of the file's JSON.
+inline std::function<void(GltfFile&)> drop(const char* place) {
+  return [pointer = nlohmann::json::json_pointer(place)](GltfFile& file) {
+    file.json[pointer.parent_pointer()].erase(pointer.back());
+  };
+}
 
 }  // namespace marti::scenes::testing

@@ -19,13 +19,12 @@ namespace marti::scenes {
 namespace {
 
 using nlohmann::json;
+using testing::drop;
+using testing::Fault;
 using testing::GltfFile;
-
-struct Fault {
-  const char* name;
-  const char* reason;  ///< must occur in the message
-  std::function<void(GltfFile&)> damage;
-};
+using testing::put;
+using testing::put_accessor;
+using testing::put_positions;
 
 json light(const json& properties) {
   return {{"KHR_lights_punctual", {{"lights", json::array({properties})}}}};
@@ -34,6 +33,21 @@ json light(const json& properties) {
 void give_light(GltfFile& file, const json& properties) {
   file.json["extensions"] = light(properties);
   file.json["nodes"][0]["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}}};
+}
+
+std::function<void(GltfFile&)> lit(const json& properties) {
+  return [=](GltfFile& file) { give_light(file, properties); };
+}
+
+std::function<void(GltfFile&)> indices(const std::vector<std::uint16_t>& values) {
+  return [=](GltfFile& file) { file.primitive()["indices"] = file.add_indices(values); };
+}
+
+std::function<void(GltfFile&)> with_material(const json& material) {
+  return [=](GltfFile& file) {
+    file.json["materials"] = json::array({material});
+    file.primitive()["material"] = 0;
+  };
 }
 
 void give_camera(GltfFile& file, double fov) {
@@ -61,98 +75,75 @@ json deep(int levels) {
 const std::vector<Fault>& faults() {
   static const std::vector<Fault> list = {
       {"index out of range", "index 4 is out of range",
-       [](GltfFile& f) {
-         f.primitive()["indices"] = f.add_indices({0, 1, 4});
-       }},
+       indices({0, 1, 4})},
       {"restart index", "65535",
-       [](GltfFile& f) {
-         f.primitive()["indices"] = f.add_indices({0, 1, 65535});
-       }},
+       indices({0, 1, 65535})},
       {"indices not a multiple of three", "do not make triangles",
-       [](GltfFile& f) {
-         f.primitive()["indices"] = f.add_indices({0, 1, 2, 3});
-       }},
+       indices({0, 1, 2, 3})},
       {"strip of two", "do not make triangles",
        [](GltfFile& f) {
          f.primitive()["mode"] = 5;
          f.primitive()["indices"] = f.add_indices({0, 1});
        }},
-      {"no such primitive mode", "mode 7", [](GltfFile& f) { f.primitive()["mode"] = 7; }},
+      {"no such primitive mode", "mode 7", put("/meshes/0/primitives/0/mode", 7)},
       {"signed indices", "unsigned scalars",
-       [](GltfFile& f) {
-         f.primitive()["indices"] = f.add_accessor<std::int16_t>({0, 1, 2}, 5122, "SCALAR", 1);
-       }},
+       put_accessor<std::int16_t>("/meshes/0/primitives/0/indices", {0, 1, 2}, 5122, "SCALAR", 1)},
       {"float indices", "unsigned scalars",
-       [](GltfFile& f) {
-         f.primitive()["indices"] = f.add_accessor<float>({0, 1, 2}, 5126, "SCALAR", 1);
-       }},
+       put_accessor<float>("/meshes/0/primitives/0/indices", {0, 1, 2}, 5126, "SCALAR", 1)},
       {"vector indices", "unsigned scalars",
-       [](GltfFile& f) {
-         f.primitive()["indices"] = f.add_accessor<std::uint16_t>({0, 1, 2, 3}, 5123, "VEC2", 2);
-       }},
-      {"missing indices accessor", "out of bounds", [](GltfFile& f) { f.primitive()["indices"] = 99; }},
+       put_accessor<std::uint16_t>("/meshes/0/primitives/0/indices", {0, 1, 2, 3}, 5123, "VEC2", 2)},
+      {"missing indices accessor", "out of bounds", put("/meshes/0/primitives/0/indices", 99)},
       {"missing position accessor", "accessor 99",
-       [](GltfFile& f) { f.primitive()["attributes"]["POSITION"] = 99; }},
+       put("/meshes/0/primitives/0/attributes/POSITION", 99)},
       {"two-dimensional positions", "wrong type",
-       [](GltfFile& f) { f.json["accessors"][0]["type"] = "VEC2"; }},
-      {"matrix positions", "wrong type", [](GltfFile& f) { f.json["accessors"][0]["type"] = "MAT2"; }},
+       put("/accessors/0/type", "VEC2")},
+      {"matrix positions", "wrong type", put("/accessors/0/type", "MAT2")},
       {"double positions", "component type 5130",
-       [](GltfFile& f) { f.json["accessors"][0]["componentType"] = 5130; }},
+       put("/accessors/0/componentType", 5130)},
       {"unknown component type", "componentType",
-       [](GltfFile& f) { f.json["accessors"][0]["componentType"] = 7; }},
-      {"unknown accessor type", "type", [](GltfFile& f) { f.json["accessors"][0]["type"] = "VEC9"; }},
-      {"accessor beyond its view", "do not fit", [](GltfFile& f) { f.json["accessors"][0]["count"] = 5; }},
-      {"accessor of nothing", "0 elements", [](GltfFile& f) { f.json["accessors"][0]["count"] = 0; }},
+       put("/accessors/0/componentType", 7)},
+      {"unknown accessor type", "type", put("/accessors/0/type", "VEC9")},
+      {"accessor beyond its view", "do not fit", put("/accessors/0/count", 5)},
+      {"accessor of nothing", "0 elements", put("/accessors/0/count", 0)},
       {"count that overflows", "elements",
-       [](GltfFile& f) { f.json["accessors"][0]["count"] = 0x5555555555555556ULL; }},
+       put("/accessors/0/count", 0x5555555555555556ULL)},
       {"index count that overflows", "elements",
-       [](GltfFile& f) { f.json["accessors"][1]["count"] = 0x8000000000000001ULL; }},
+       put("/accessors/1/count", 0x8000000000000001ULL)},
       {"offset that overflows", "do not fit",
-       [](GltfFile& f) { f.json["accessors"][0]["byteOffset"] = 0xfffffffffffffff0ULL; }},
+       put("/accessors/0/byteOffset", 0xfffffffffffffff0ULL)},
       {"offset beyond the view", "do not fit",
-       [](GltfFile& f) { f.json["accessors"][0]["byteOffset"] = 12; }},
-      {"negative count", "positive", [](GltfFile& f) { f.json["accessors"][0]["count"] = -4; }},
+       put("/accessors/0/byteOffset", 12)},
+      {"negative count", "positive", put("/accessors/0/count", -4)},
       {"absurd count without a view", "no buffer view",
        [](GltfFile& f) {
          f.json["accessors"][0].erase("bufferView");
          f.json["accessors"][0]["count"] = 30'000'000;
        }},
       {"missing buffer view", "buffer view 77",
-       [](GltfFile& f) { f.json["accessors"][0]["bufferView"] = 77; }},
+       put("/accessors/0/bufferView", 77)},
       {"view beyond its buffer", "too short",
-       [](GltfFile& f) { f.json["bufferViews"][0]["byteLength"] = 1'000'000; }},
+       put("/bufferViews/0/byteLength", 1'000'000)},
       {"view that overflows", "too short",
-       [](GltfFile& f) { f.json["bufferViews"][0]["byteOffset"] = 0xffffffffffffffffULL; }},
-      {"missing buffer", "buffer 5", [](GltfFile& f) { f.json["bufferViews"][0]["buffer"] = 5; }},
-      {"negative buffer", "buffer -1", [](GltfFile& f) { f.json["bufferViews"][0]["buffer"] = -1; }},
+       put("/bufferViews/0/byteOffset", 0xffffffffffffffffULL)},
+      {"missing buffer", "buffer 5", put("/bufferViews/0/buffer", 5)},
+      {"negative buffer", "buffer -1", put("/bufferViews/0/buffer", -1)},
       {"stride below the element", "stride of 4",
-       [](GltfFile& f) { f.json["bufferViews"][0]["byteStride"] = 4; }},
-      {"odd stride", "byteStride", [](GltfFile& f) { f.json["bufferViews"][0]["byteStride"] = 13; }},
+       put("/bufferViews/0/byteStride", 4)},
+      {"odd stride", "byteStride", put("/bufferViews/0/byteStride", 13)},
       {"huge stride", "byteStride",
-       [](GltfFile& f) { f.json["bufferViews"][0]["byteStride"] = 4'000'000'000U; }},
+       put("/bufferViews/0/byteStride", 4'000'000'000U)},
       {"stride that runs out", "do not fit",
-       [](GltfFile& f) { f.json["bufferViews"][0]["byteStride"] = 16; }},
+       put("/bufferViews/0/byteStride", 16)},
       {"buffer longer than the data", "byteLength",
-       [](GltfFile& f) {
-         f.json["buffers"] = json::array({{{"byteLength", 1'000'000}}});
-       }},
+       put("/buffers", json::array({{{"byteLength", 1'000'000}}}))},
       {"buffer of nothing", "",
-       [](GltfFile& f) {
-         f.json["buffers"] = json::array({{{"byteLength", 0}}});
-       }},
+       put("/buffers", json::array({{{"byteLength", 0}}}))},
       {"missing buffer file", "not-there.bin",
-       [](GltfFile& f) {
-         f.json["buffers"] = json::array({{{"byteLength", 4}, {"uri", "not-there.bin"}}});
-       }},
+       put("/buffers", json::array({{{"byteLength", 4}, {"uri", "not-there.bin"}}}))},
       {"buffer from a device", "leads out of the scene's folder",
-       [](GltfFile& f) {
-         f.json["buffers"] = json::array({{{"byteLength", 4}, {"uri", "../../../../../../../dev/zero"}}});
-       }},
+       put("/buffers", json::array({{{"byteLength", 4}, {"uri", "../../../../../../../dev/zero"}}}))},
       {"broken data URI", "uri",
-       [](GltfFile& f) {
-         f.json["buffers"] =
-             json::array({{{"byteLength", 4}, {"uri", "data:application/octet-stream;base64,####"}}});
-       }},
+       put("/buffers", json::array({{{"byteLength", 4}, {"uri", "data:application/octet-stream;base64,####"}}}))},
       {"sparse index out of range", "sparse index 9", [](GltfFile& f) { give_sparse(f, 1, {9}); }},
       {"more sparse values than elements", "sparse elements", [](GltfFile& f) { give_sparse(f, 50, {0}); }},
       {"negative sparse count", "sparse elements", [](GltfFile& f) { give_sparse(f, -1, {0}); }},
@@ -166,16 +157,12 @@ const std::vector<Fault>& faults() {
          f.json["accessors"][0]["sparse"].erase("values");
        }},
       {"normals of another number", "normals",
-       [](GltfFile& f) {
-         f.primitive()["attributes"]["NORMAL"] = f.add_positions({0, 0, 1});
-       }},
-      {"missing mesh", "mesh 3", [](GltfFile& f) { f.json["nodes"][0]["mesh"] = 3; }},
-      {"missing material", "material 2", [](GltfFile& f) { f.primitive()["material"] = 2; }},
-      {"missing child", "node 8", [](GltfFile& f) { f.json["nodes"][0]["children"] = {8}; }},
+       put_positions("/meshes/0/primitives/0/attributes/NORMAL", {0, 0, 1})},
+      {"missing mesh", "mesh 3", put("/nodes/0/mesh", 3)},
+      {"missing material", "material 2", put("/meshes/0/primitives/0/material", 2)},
+      {"missing child", "node 8", put("/nodes/0/children", {8})},
       {"own child", "recursive",
-       [](GltfFile& f) {
-         f.json["nodes"].push_back({{"children", {1}}});
-       }},
+       put("/nodes/-", {{"children", {1}}})},
       {"own child as root", "child of another",
        [](GltfFile& f) {
          f.json["nodes"] = json::array({{{"mesh", 0}, {"children", {1}}}, {{"mesh", 0}}});
@@ -193,60 +180,31 @@ const std::vector<Fault>& faults() {
          f.json["scenes"][0]["nodes"] = {0, 1};
        }},
       {"twice a child", "child of two",
-       [](GltfFile& f) {
-         f.json["nodes"] = json::array({{{"children", {1, 1}}}, {{"mesh", 0}}});
-       }},
+       put("/nodes", json::array({{{"children", {1, 1}}}, {{"mesh", 0}}}))},
       {"twice a root", "twice",
-       [](GltfFile& f) {
-         f.json["scenes"][0]["nodes"] = {0, 0};
-       }},
-      {"missing root", "node 12", [](GltfFile& f) { f.json["scenes"][0]["nodes"] = {12}; }},
-      {"missing scene", "scene 6", [](GltfFile& f) { f.json["scene"] = 6; }},
+       put("/scenes/0/nodes", {0, 0})},
+      {"missing root", "node 12", put("/scenes/0/nodes", {12})},
+      {"missing scene", "scene 6", put("/scene", 6)},
       {"short matrix", "16 finite",
-       [](GltfFile& f) {
-         f.json["nodes"][0]["matrix"] = {1, 2, 3};
-       }},
+       put("/nodes/0/matrix", {1, 2, 3})},
       {"projecting matrix", "last row",
-       [](GltfFile& f) { f.json["nodes"][0]["matrix"] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; }},
+       put("/nodes/0/matrix", {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1})},
       {"short rotation", "4 finite",
-       [](GltfFile& f) {
-         f.json["nodes"][0]["rotation"] = {0, 1};
-       }},
+       put("/nodes/0/rotation", {0, 1})},
       {"zero rotation", "quaternion",
-       [](GltfFile& f) {
-         f.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
-       }},
+       put("/nodes/0/rotation", {0, 0, 0, 0})},
       {"transform that overflows", "not finite",
-       [](GltfFile& f) {
-         f.json["nodes"] = json::array(
-             {{{"scale", {1e200, 1, 1}}, {"children", {1}}}, {{"scale", {1e200, 1, 1}}, {"mesh", 0}}});
-       }},
+       put("/nodes", json::array( {{{"scale", {1e200, 1, 1}}, {"children", {1}}}, {{"scale", {1e200, 1, 1}}, {"mesh", 0}}}))},
       {"all positions too large", "finite positions",
-       [](GltfFile& f) {
-         f.json["nodes"][0]["translation"] = {1e200, 0, 0};
-       }},
+       put("/nodes/0/translation", {1e200, 0, 0})},
       {"negative colour", "base colour",
-       [](GltfFile& f) {
-         f.json["materials"] =
-             json::array({{{"pbrMetallicRoughness", {{"baseColorFactor", {-1, 0, 0, 1}}}}}});
-         f.primitive()["material"] = 0;
-       }},
+       with_material({{"pbrMetallicRoughness", {{"baseColorFactor", {-1, 0, 0, 1}}}}})},
       {"short colour", "baseColorFactor",
-       [](GltfFile& f) {
-         f.json["materials"] = json::array({{{"pbrMetallicRoughness", {{"baseColorFactor", {1}}}}}});
-         f.primitive()["material"] = 0;
-       }},
+       with_material({{"pbrMetallicRoughness", {{"baseColorFactor", {1}}}}})},
       {"index of refraction below one", "refraction",
-       [](GltfFile& f) {
-         f.json["materials"] = json::array({{{"extensions", {{"KHR_materials_ior", {{"ior", 0.5}}}}}}});
-         f.primitive()["material"] = 0;
-       }},
+       with_material({{"extensions", {{"KHR_materials_ior", {{"ior", 0.5}}}}}})},
       {"missing texture", "texture 4",
-       [](GltfFile& f) {
-         f.json["materials"] =
-             json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 4}}}}}}});
-         f.primitive()["material"] = 0;
-       }},
+       with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 4}}}}}})},
       {"texture without an image", "image -1",
        [](GltfFile& f) {
          f.json["materials"] =
@@ -264,25 +222,15 @@ const std::vector<Fault>& faults() {
          f.primitive()["material"] = 0;
        }},
       {"negative light", "intensity",
-       [](GltfFile& f) {
-         give_light(f, {{"type", "point"}, {"intensity", -1}});
-       }},
+       lit({{"type", "point"}, {"intensity", -1}})},
       {"infinite light", "intensity",
-       [](GltfFile& f) {
-         give_light(f, {{"type", "point"}, {"intensity", 1e300}});
-       }},
+       lit({{"type", "point"}, {"intensity", 1e300}})},
       {"unknown light", "area",
-       [](GltfFile& f) {
-         give_light(f, {{"type", "area"}});
-       }},
+       lit({{"type", "area"}})},
       {"light colour of two", "3 numbers",
-       [](GltfFile& f) {
-         give_light(f, {{"type", "point"}, {"color", {1, 1}}});
-       }},
+       lit({{"type", "point"}, {"color", {1, 1}}})},
       {"inverted cone", "inner cone",
-       [](GltfFile& f) {
-         give_light(f, {{"type", "spot"}, {"spot", {{"innerConeAngle", 1.0}, {"outerConeAngle", 0.5}}}});
-       }},
+       lit({{"type", "spot"}, {"spot", {{"innerConeAngle", 1.0}, {"outerConeAngle", 0.5}}}})},
       {"missing light", "light 5",
        [](GltfFile& f) {
          give_light(f, {{"type", "point"}});
@@ -301,22 +249,20 @@ const std::vector<Fault>& faults() {
       {"camera without an angle", "field of view", [](GltfFile& f) { give_camera(f, 0.0); }},
       {"camera of one point", "above 1e-6 and below pi - 1e-6", [](GltfFile& f) { give_camera(f, 1e-6); }},
       {"camera that sees behind", "field of view", [](GltfFile& f) { give_camera(f, 4.0); }},
-      {"missing camera", "camera 3", [](GltfFile& f) { f.json["nodes"][0]["camera"] = 3; }},
+      {"missing camera", "camera 3", put("/nodes/0/camera", 3)},
       {"compressed geometry", "KHR_draco_mesh_compression",
-       [](GltfFile& f) { f.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }},
+       put("/extensionsRequired", {"KHR_draco_mesh_compression"})},
       {"compressed buffers", "EXT_meshopt_compression",
-       [](GltfFile& f) { f.json["extensionsRequired"] = {"EXT_meshopt_compression"}; }},
-      {"no triangles", "no triangles", [](GltfFile& f) { f.primitive()["mode"] = 0; }},
-      {"no nodes", "no triangles", [](GltfFile& f) { f.json["scenes"][0]["nodes"] = json::array(); }},
-      {"no version", "asset", [](GltfFile& f) { f.json.erase("asset"); }},
-      {"nested extras", "nested deeper", [](GltfFile& f) { f.json["extras"] = deep(200); }},
+       put("/extensionsRequired", {"EXT_meshopt_compression"})},
+      {"no triangles", "no triangles", put("/meshes/0/primitives/0/mode", 0)},
+      {"no nodes", "no triangles", put("/scenes/0/nodes", json::array())},
+      {"no version", "asset", drop("/asset")},
+      {"nested extras", "nested deeper", put("/extras", deep(200))},
       {"nested extension", "nested deeper",
-       [](GltfFile& f) { f.json["nodes"][0]["extensions"]["X"]["y"] = deep(300); }},
+       put("/nodes/0/extensions/X/y", deep(300))},
       {"meshes that are no objects", "object",
-       [](GltfFile& f) {
-         f.json["meshes"] = {1, 2};
-       }},
-      {"primitive without attributes", "attributes", [](GltfFile& f) { f.primitive().erase("attributes"); }},
+       put("/meshes", {1, 2})},
+      {"primitive without attributes", "attributes", drop("/meshes/0/primitives/0/attributes")},
   };
   return list;
 }

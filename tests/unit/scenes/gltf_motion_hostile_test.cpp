@@ -21,18 +21,17 @@ namespace {
 
 using nlohmann::json;
 using testing::animate;
+using testing::drop;
+using testing::Fault;
 using testing::gl_float;
 using testing::GltfFile;
+using testing::put;
+using testing::put_accessor;
+using testing::put_positions;
 using testing::skinned_square;
 
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 constexpr float without_end = std::numeric_limits<float>::infinity();
-
-struct Fault {
-  const char* name;
-  const char* reason;  ///< must occur in the message
-  std::function<void(GltfFile&)> damage;
-};
 
 /// A square that swings, morphs and hangs on joints, all of which move.
 GltfFile everything() {
@@ -49,108 +48,75 @@ GltfFile everything() {
 json& channel(GltfFile& file, std::size_t i) { return file.json["animations"][0]["channels"][i]; }
 json& sampler(GltfFile& file, std::size_t i) { return file.json["animations"][0]["samplers"][i]; }
 
-void set_times(GltfFile& file, const std::vector<float>& times) {
-  sampler(file, 0)["input"] = file.add_accessor(times, gl_float, "SCALAR", 1);
+std::function<void(GltfFile&)> times(const std::vector<float>& values) {
+  return put_accessor("/animations/0/samplers/0/input", values, gl_float, "SCALAR", 1);
 }
 
 json& attributes(GltfFile& file) { return file.primitive()["attributes"]; }
 
 const std::vector<Fault>& faults() {
   static const std::vector<Fault> list = {
-      {"missing sampler", "sampler 9", [](GltfFile& f) { channel(f, 0)["sampler"] = 9; }},
-      {"negative sampler", "sampler -1", [](GltfFile& f) { channel(f, 0)["sampler"] = -1; }},
-      {"channel without a sampler", "sampler", [](GltfFile& f) { channel(f, 0).erase("sampler"); }},
-      {"missing target node", "node 77", [](GltfFile& f) { channel(f, 1)["target"]["node"] = 77; }},
-      {"negative target node", "node -1", [](GltfFile& f) { channel(f, 1)["target"]["node"] = -1; }},
-      {"target that is no node", "node", [](GltfFile& f) { channel(f, 1)["target"]["node"] = "second"; }},
-      {"unknown path", "changes 'colour'", [](GltfFile& f) { channel(f, 1)["target"]["path"] = "colour"; }},
-      {"no path", "path", [](GltfFile& f) { channel(f, 1)["target"].erase("path"); }},
+      {"missing sampler", "sampler 9", put("/animations/0/channels/0/sampler", 9)},
+      {"negative sampler", "sampler -1", put("/animations/0/channels/0/sampler", -1)},
+      {"channel without a sampler", "sampler", drop("/animations/0/channels/0/sampler")},
+      {"missing target node", "node 77", put("/animations/0/channels/1/target/node", 77)},
+      {"negative target node", "node -1", put("/animations/0/channels/1/target/node", -1)},
+      {"target that is no node", "node", put("/animations/0/channels/1/target/node", "second")},
+      {"unknown path", "changes 'colour'", put("/animations/0/channels/1/target/path", "colour")},
+      {"no path", "path", drop("/animations/0/channels/1/target/path")},
       {"target twice", "another channel changes already",
        [](GltfFile& f) { f.json["animations"][0]["channels"].push_back(channel(f, 1)); }},
       {"weights without a mesh", "no mesh with morph targets",
-       [](GltfFile& f) { channel(f, 0)["target"]["node"] = 1; }},
-      {"weights without targets", "no mesh with morph targets",
-       [](GltfFile& f) { f.primitive().erase("targets"); }},
+       put("/animations/0/channels/0/target/node", 1)},
+      {"weights without targets", "no mesh with morph targets", drop("/meshes/0/primitives/0/targets")},
       {"matrix that is to be animated", "has a matrix",
-       [](GltfFile& f) { f.json["nodes"][1]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; }},
-      {"missing input", "accessor 99", [](GltfFile& f) { sampler(f, 0)["input"] = 99; }},
-      {"missing output", "accessor 99", [](GltfFile& f) { sampler(f, 0)["output"] = 99; }},
-      {"no input", "input", [](GltfFile& f) { sampler(f, 0).erase("input"); }},
-      {"unknown interpolation", "'SMOOTH'", [](GltfFile& f) { sampler(f, 0)["interpolation"] = "SMOOTH"; }},
+       put("/nodes/1/matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1})},
+      {"missing input", "accessor 99", put("/animations/0/samplers/0/input", 99)},
+      {"missing output", "accessor 99", put("/animations/0/samplers/0/output", 99)},
+      {"no input", "input", drop("/animations/0/samplers/0/input")},
+      {"unknown interpolation", "'SMOOTH'", put("/animations/0/samplers/0/interpolation", "SMOOTH")},
       {"times of integers", "must be floats",
-       [](GltfFile& f) {
-         sampler(f, 0)["input"] = f.add_accessor<std::uint16_t>({0, 1}, 5123, "SCALAR", 1);
-       }},
+       put_accessor<std::uint16_t>("/animations/0/samplers/0/input", {0, 1}, 5123, "SCALAR", 1)},
       {"times of vectors", "wrong type",
-       [](GltfFile& f) {
-         sampler(f, 0)["input"] = f.add_positions({0, 0, 0, 1, 1, 1});
-       }},
+       put_positions("/animations/0/samplers/0/input", {0, 0, 0, 1, 1, 1})},
       {"times that fall", "must increase",
-       [](GltfFile& f) {
-         set_times(f, {1, 0});
-       }},
+       times({1, 0})},
       {"times that stand", "must increase",
-       [](GltfFile& f) {
-         set_times(f, {0.5F, 0.5F});
-       }},
+       times({0.5F, 0.5F})},
       {"time below 0", "below 0",
-       [](GltfFile& f) {
-         set_times(f, {-1, 0});
-       }},
+       times({-1, 0})},
       {"time that is no number", "not finite",
-       [](GltfFile& f) {
-         set_times(f, {0, not_a_number});
-       }},
+       times({0, not_a_number})},
       {"time without end", "not finite",
-       [](GltfFile& f) {
-         set_times(f, {0, without_end});
-       }},
+       times({0, without_end})},
       {"too few values", "are needed for 3 key frames",
-       [](GltfFile& f) {
-         set_times(f, {0, 1, 2});
-       }},
-      {"too many values", "are needed for 1 key frames", [](GltfFile& f) { set_times(f, {0}); }},
+       times({0, 1, 2})},
+      {"too many values", "are needed for 1 key frames", times({0})},
       {"spline of one key frame", "two key frames",
        [](GltfFile& f) {
          sampler(f, 3)["input"] = f.add_accessor<float>({0}, gl_float, "SCALAR", 1);
          sampler(f, 3)["output"] = f.add_positions({1, 1, 1, 1, 1, 1, 1, 1, 1});
        }},
       {"spline without tangents", "are needed",
-       [](GltfFile& f) {
-         sampler(f, 3)["output"] = f.add_positions({1, 1, 1, 1, 1, 1});
-       }},
+       put_positions("/animations/0/samplers/3/output", {1, 1, 1, 1, 1, 1})},
       {"rotation of three", "wrong type",
-       [](GltfFile& f) {
-         sampler(f, 1)["output"] = f.add_positions({0, 0, 0, 1, 1, 1});
-       }},
+       put_positions("/animations/0/samplers/1/output", {0, 0, 0, 1, 1, 1})},
       {"rotation of no length", "no unit quaternion",
-       [](GltfFile& f) {
-         sampler(f, 1)["output"] = f.add_accessor<float>({0, 0, 0, 1, 0, 0, 0, 0}, gl_float, "VEC4", 4);
-       }},
+       put_accessor<float>("/animations/0/samplers/1/output", {0, 0, 0, 1, 0, 0, 0, 0}, gl_float, "VEC4", 4)},
       {"rotation of plain integers", "normalised integers",
-       [](GltfFile& f) {
-         sampler(f, 1)["output"] = f.add_accessor<std::int8_t>({0, 0, 0, 1, 0, 0, 0, 1}, 5120, "VEC4", 4);
-       }},
+       put_accessor<std::int8_t>("/animations/0/samplers/1/output", {0, 0, 0, 1, 0, 0, 0, 1}, 5120, "VEC4", 4)},
       {"translation of integers", "must be floats",
-       [](GltfFile& f) {
-         sampler(f, 2)["output"] = f.add_accessor<std::int8_t>({0, 0, 0, 1, 1, 1}, 5120, "VEC3", 3);
-       }},
+       put_accessor<std::int8_t>("/animations/0/samplers/2/output", {0, 0, 0, 1, 1, 1}, 5120, "VEC3", 3)},
       {"value that is no number", "not finite",
-       [](GltfFile& f) {
-         sampler(f, 2)["output"] = f.add_positions({0, 0, 0, not_a_number, 0, 0});
-       }},
+       put_positions("/animations/0/samplers/2/output", {0, 0, 0, not_a_number, 0, 0})},
       {"tangent that is no number", "not finite",
        [](GltfFile& f) {
          std::vector<float> values(18, 1.0F);
          values[17] = without_end;
          sampler(f, 3)["output"] = f.add_positions(values);
        }},
-      {"weights of the wrong number", "must be 2 finite numbers",
-       [](GltfFile& f) { f.json["nodes"][0]["weights"] = {1}; }},
-      {"mesh weights of the wrong number", "must be 2 finite numbers",
-       [](GltfFile& f) {
-         f.json["meshes"][0]["weights"] = {1, 2, 3};
-       }},
+      {"weights of the wrong number", "must be 2 finite numbers", put("/nodes/0/weights", {1})},
+      {"mesh weights of the wrong number", "must be 2 finite numbers", put("/meshes/0/weights", {1, 2, 3})},
       {"primitives that do not agree", "same number of morph targets",
        [](GltfFile& f) {
          json other = f.primitive();
@@ -158,94 +124,54 @@ const std::vector<Fault>& faults() {
          f.json["meshes"][0]["primitives"].push_back(other);
        }},
       {"displacements of the wrong number", "4 positions, but 1 displacements",
-       [](GltfFile& f) {
-         f.primitive()["targets"][1]["POSITION"] = f.add_positions({0, 0, 0});
-       }},
-      {"missing displacements", "accessor 99",
-       [](GltfFile& f) { f.primitive()["targets"][1]["POSITION"] = 99; }},
+       put_positions("/meshes/0/primitives/0/targets/1/POSITION", {0, 0, 0})},
+      {"missing displacements", "accessor 99", put("/meshes/0/primitives/0/targets/1/POSITION", 99)},
       {"displacements in two dimensions", "wrong type",
-       [](GltfFile& f) {
-         f.primitive()["targets"][0]["POSITION"] =
-             f.add_accessor<float>({0, 0, 0, 0, 0, 0, 0, 0}, gl_float, "VEC2", 2);
-       }},
-      {"missing skin", "skin 4", [](GltfFile& f) { f.json["nodes"][0]["skin"] = 4; }},
-      {"skin without joints", "no joints", [](GltfFile& f) { f.json["skins"][0]["joints"] = json::array(); }},
-      {"missing joint", "node 55",
-       [](GltfFile& f) {
-         f.json["skins"][0]["joints"] = {1, 55};
-       }},
+       put_accessor<float>("/meshes/0/primitives/0/targets/0/POSITION", {0, 0, 0, 0, 0, 0, 0, 0}, gl_float, "VEC2", 2)},
+      {"missing skin", "skin 4", put("/nodes/0/skin", 4)},
+      {"skin without joints", "no joints", put("/skins/0/joints", json::array())},
+      {"missing joint", "node 55", put("/skins/0/joints", {1, 55})},
       {"joint outside the scene", "not in the scene",
        [](GltfFile& f) {
          f.json["nodes"].push_back(json::object());
          f.json["skins"][0]["joints"] = {1, 3};
        }},
-      {"too few inverse bind matrices", "3 are needed",
-       [](GltfFile& f) {
-         f.json["skins"][0]["joints"] = {1, 2, 0};
-       }},
-      {"missing inverse bind matrices", "accessor 99",
-       [](GltfFile& f) { f.json["skins"][0]["inverseBindMatrices"] = 99; }},
-      {"inverse bind vectors", "4 x 4 matrices",
-       [](GltfFile& f) { f.json["skins"][0]["inverseBindMatrices"] = 0; }},
+      {"too few inverse bind matrices", "3 are needed", put("/skins/0/joints", {1, 2, 0})},
+      {"missing inverse bind matrices", "accessor 99", put("/skins/0/inverseBindMatrices", 99)},
+      {"inverse bind vectors", "4 x 4 matrices", put("/skins/0/inverseBindMatrices", 0)},
       {"inverse bind matrices that project", "last row",
-       [](GltfFile& f) {
-         f.json["skins"][0]["inverseBindMatrices"] =
-             f.add_accessor(std::vector<float>(32, 1.0F), gl_float, "MAT4", 16);
-       }},
+       put_accessor("/skins/0/inverseBindMatrices", std::vector<float>(32, 1.0F), gl_float, "MAT4", 16)},
       {"inverse bind matrices without an end", "must be finite",
        [](GltfFile& f) {
          std::vector<float> m = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, not_a_number, 0, 0, 1};
          m.insert(m.end(), m.begin(), m.end());
          f.json["skins"][0]["inverseBindMatrices"] = f.add_accessor(m, gl_float, "MAT4", 16);
        }},
-      {"skinned mesh without joints", "JOINTS_n", [](GltfFile& f) { attributes(f).erase("JOINTS_0"); }},
-      {"skinned mesh without weights", "WEIGHTS_n", [](GltfFile& f) { attributes(f).erase("WEIGHTS_0"); }},
+      {"skinned mesh without joints", "JOINTS_n", drop("/meshes/0/primitives/0/attributes/JOINTS_0")},
+      {"skinned mesh without weights", "WEIGHTS_n", drop("/meshes/0/primitives/0/attributes/WEIGHTS_0")},
       {"sets with a gap", "JOINTS_1",
        [](GltfFile& f) {
          attributes(f)["JOINTS_2"] = attributes(f)["JOINTS_0"];
          attributes(f)["WEIGHTS_2"] = attributes(f)["WEIGHTS_0"];
        }},
       {"joint out of range", "joint 2 is out of range",
-       [](GltfFile& f) {
-         attributes(f)["JOINTS_0"] = f.add_accessor(std::vector<std::uint8_t>(16, 2), 5121, "VEC4", 4);
-       }},
+       put_accessor("/meshes/0/primitives/0/attributes/JOINTS_0", std::vector<std::uint8_t>(16, 2), 5121, "VEC4", 4)},
       {"joints of floats", "must be unsigned",
-       [](GltfFile& f) {
-         attributes(f)["JOINTS_0"] = f.add_accessor(std::vector<float>(16, 0), gl_float, "VEC4", 4);
-       }},
+       put_accessor("/meshes/0/primitives/0/attributes/JOINTS_0", std::vector<float>(16, 0), gl_float, "VEC4", 4)},
       {"joints of the wrong number", "4 positions, but 1",
-       [](GltfFile& f) {
-         attributes(f)["JOINTS_0"] = f.add_accessor(std::vector<std::uint8_t>(4, 0), 5121, "VEC4", 4);
-       }},
+       put_accessor("/meshes/0/primitives/0/attributes/JOINTS_0", std::vector<std::uint8_t>(4, 0), 5121, "VEC4", 4)},
       {"joints of three", "wrong type",
-       [](GltfFile& f) {
-         attributes(f)["JOINTS_0"] = f.add_accessor(std::vector<std::uint8_t>(12, 0), 5121, "VEC3", 3);
-       }},
+       put_accessor("/meshes/0/primitives/0/attributes/JOINTS_0", std::vector<std::uint8_t>(12, 0), 5121, "VEC3", 3)},
       {"weights of plain integers", "must be floats, or normalised",
-       [](GltfFile& f) {
-         attributes(f)["WEIGHTS_0"] = f.add_accessor(std::vector<std::uint8_t>(16, 1), 5121, "VEC4", 4);
-       }},
+       put_accessor("/meshes/0/primitives/0/attributes/WEIGHTS_0", std::vector<std::uint8_t>(16, 1), 5121, "VEC4", 4)},
       {"negative weight", "negative or not finite",
-       [](GltfFile& f) {
-         attributes(f)["WEIGHTS_0"] = f.add_accessor(std::vector<float>(16, -1), gl_float, "VEC4", 4);
-       }},
+       put_accessor("/meshes/0/primitives/0/attributes/WEIGHTS_0", std::vector<float>(16, -1), gl_float, "VEC4", 4)},
       {"weight that is no number", "negative or not finite",
-       [](GltfFile& f) {
-         attributes(f)["WEIGHTS_0"] =
-             f.add_accessor(std::vector<float>(16, not_a_number), gl_float, "VEC4", 4);
-       }},
+       put_accessor("/meshes/0/primitives/0/attributes/WEIGHTS_0", std::vector<float>(16, not_a_number), gl_float, "VEC4", 4)},
       {"vertex that no joint moves", "add up to 0",
-       [](GltfFile& f) {
-         attributes(f)["WEIGHTS_0"] = f.add_accessor(std::vector<float>(16, 0), gl_float, "VEC4", 4);
-       }},
-      {"animations that are no objects", "animations",
-       [](GltfFile& f) {
-         f.json["animations"] = {1, 2};
-       }},
-      {"skins that are no objects", "skins",
-       [](GltfFile& f) {
-         f.json["skins"] = {1, 2};
-       }},
+       put_accessor("/meshes/0/primitives/0/attributes/WEIGHTS_0", std::vector<float>(16, 0), gl_float, "VEC4", 4)},
+      {"animations that are no objects", "animations", put("/animations", {1, 2})},
+      {"skins that are no objects", "skins", put("/skins", {1, 2})},
   };
   return list;
 }

@@ -1,14 +1,18 @@
-// What a functional run reports about its structure.
+// What a functional run reports about its structure; runs of the shipped configurations.
 #include "studies/run/functional_run.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "scenes/procedural.h"
+#include "sim/files.h"
+#include "studies/run/run_result.h"
 
 namespace marti::studies {
 namespace {
@@ -59,6 +63,28 @@ TEST(FunctionalRun, CountsPixelsThatAreNotFinite) {
     light.color = glm::dvec3(1e200);
   }
   EXPECT_GT(notes_of(), 0);
+}
+
+TEST(Run, EveryShippedConfigurationCanBeRun) {
+  namespace fs = std::filesystem;
+  const std::vector<std::string> small = {"image.width=24", "image.height=16", "scene.source=teapot:2",
+                                          "frames.count=1"};
+  int configurations = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(MARTI_SOURCE) / "configs")) {
+    const std::string text =
+        entry.path().extension() == ".toml" ? sim::read_file(entry.path(), 100'000) : "[paper]";
+    // Configurations of studies are run by the tests of the studies.
+    const auto is_of = [&](const char* section) { return text.find(section) != std::string::npos; };
+    if (!is_of("[paper]") && !is_of("[schemes]") && !is_of("[error]")) {
+      ++configurations;
+      sim::Config config = sim::Config::from_file(run_schema(), entry.path(), small);
+      const std::string summary = summary_of(run(config));
+      for (const char* line : {"frame time", "speed-up", "hit ratio", "limited by"}) {
+        EXPECT_NE(summary.find(line), std::string::npos) << entry.path() << " lacks " << line;
+      }
+    }
+  }
+  EXPECT_GE(configurations, 20);
 }
 
 }  // namespace

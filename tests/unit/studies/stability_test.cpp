@@ -19,6 +19,7 @@
 #include "studies/stability/machines.h"
 #include "studies/stability/precision_table.h"
 #include "studies/stability/stability_keys.h"
+#include "tests/support/long_tests.h"
 
 namespace marti::studies {
 
@@ -26,12 +27,17 @@ void PrintTo(const StabilityCase& one, std::ostream* out) { *out << one.id << ":
 
 namespace {
 
-constexpr CaseSize small{360, 256};
+/// The size at which the tests run a case; in a long run that of the study.
+CaseSize test_size() {
+  const CaseSize full;
+  return {static_cast<std::uint32_t>(test::stride(full.rays / 50, full.rays)),
+          static_cast<std::uint32_t>(test::stride(256, full.nodes))};
+}
 
 class Stability : public ::testing::TestWithParam<StabilityCase> {};
 
 TEST_P(Stability, Holds) {
-  const CaseOutcome outcome = run_case(GetParam(), small);
+  const CaseOutcome outcome = run_case(GetParam(), test_size());
   EXPECT_TRUE(outcome.passed()) << outcome.figure << "\noracle: " << GetParam().oracle;
   EXPECT_FALSE(outcome.figure.empty());
 }
@@ -129,13 +135,7 @@ Tally compare_with_broken(Change change) {
   const accel::BruteForce brute(triangles);
   std::vector<std::unique_ptr<accel::Structure>> structures;
   structures.push_back(std::make_unique<Broken<Change>>(triangles, change));
-  return disagreements(
-      *triangles,
-      [&](const accel::Ray& ray) {
-        accel::NullVisitor visitor;
-        return brute.closest(ray, visitor);
-      },
-      structures, brute.bounds(), Aim::vertex, 500, 22);
+  return disagreements(*triangles, tracer_of(brute), structures, brute.bounds(), Aim::vertex, 500, 22);
 }
 
 TEST(StabilityOracles, AStructureThatIsNotBruteForceIsFound) {
@@ -190,7 +190,7 @@ TEST(StabilityOracles, WhatACaseThrowsIsItsFailure) {
   const StabilityCase broken{
       "broken", CaseGroup::machine, "it ends", "it does not",
       [](const CaseSize&) -> CaseOutcome { throw std::runtime_error("no such luck"); }};
-  const CaseOutcome outcome = run_case(broken, small);
+  const CaseOutcome outcome = run_case(broken, test_size());
   EXPECT_FALSE(outcome.passed());
   EXPECT_NE(outcome.figure.find("no such luck"), std::string::npos);
 }

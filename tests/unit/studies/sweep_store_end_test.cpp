@@ -1,13 +1,11 @@
-// A store whose program ends badly: killed at any instant, or on a full disk.
+// A store whose program is killed at any instant. Full disks are in tests/cli.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <random>
 
-#include "sim/error.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/unit/studies/sweep_parts.h"
@@ -117,40 +115,6 @@ TEST_P(SweepStoreKilled, LosesNothingThatWasCommitted) {
   EXPECT_GT(killed, 1) << "the rounds hardly tested anything";
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, SweepStoreKilled, testing::Range<std::uint64_t>(1, 7));
-
-TEST(SweepStoreEnd, AFullDiskIsToldAndLeavesTheStoreWhole) {
-  const TemporaryDirectory directory;
-  const fs::path file = directory.path() / "results.sqlite";
-  const pid_t child = fork();
-  if (child == 0) {
-    signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{400000, 400000};
-    setrlimit(RLIMIT_FSIZE, &limit);
-    try {
-      finish(file, [](std::size_t /*machine*/) {});
-    } catch (const sim::UserError& error) {
-      _exit(std::string(error.what()).starts_with(file.string()) ? 42 : 43);
-    } catch (const std::exception&) {
-      _exit(44);
-    }
-    _exit(0);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 42);
-  {
-    SweepStore store(file, made_plan(machines));
-    const std::vector<bool> done = store.done();
-    const auto there = std::count(done.begin(), done.end(), true);
-    EXPECT_GT(there, 0);
-    EXPECT_LT(there, static_cast<std::ptrdiff_t>(machines));
-  }
-  finish(file, [](std::size_t /*machine*/) {});
-  const fs::path whole = directory.path() / "whole.sqlite";
-  finish(whole, [](std::size_t /*machine*/) {});
-  EXPECT_EQ(test::dump(file), test::dump(whole));
-}
 
 }  // namespace
 }  // namespace marti::studies

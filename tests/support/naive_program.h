@@ -1,4 +1,5 @@
-// A packet's log flattened into single actions, record by record, from the layout and the step costs alone.
+// The steps of a log flattened into single actions, record by record, from the layout and the step costs
+// alone.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include "memory/layout.h"
 #include "processors/cost/step_time.h"
 #include "processors/machine/machine_config.h"
+#include "processors/machine/packets.h"
 #include "processors/program/work_log.h"
 
 namespace marti::test {
@@ -23,6 +25,56 @@ struct NaiveAction {
   std::uint32_t bytes = 0;
   std::uint32_t branch = 0;
 };
+
+/// Whether the action is for the objects that a leaf lists, not for its record.
+inline bool is_of_objects(const NaiveAction& action) {
+  return action.activity == Activity::intersection || action.kind == memory::RecordKind::list ||
+         action.kind == memory::RecordKind::primitive;
+}
+
+/// Counts one step.
+inline void count_step(const WorkLog& log, const std::uint32_t* word, StepCounts& steps) {
+  const std::uint32_t operand = operand_of(*word);
+  const Step step = step_of(*word);
+  switch (step) {
+    case Step::branch:
+      ++steps.branches;
+      break;
+    case Step::leaf:
+    case Step::partial_leaf:
+    case Step::mailed_leaf: {
+      const accel::TopologyNode& leaf = log.topology.nodes[operand];
+      const std::uint32_t entries = step == Step::leaf ? leaf.count : word[1];
+      ++steps.leaves;
+      steps.lists += entries > 0 ? 1 : 0;
+      steps.lookups += log.mailboxes ? entries : 0;
+      for (std::uint32_t i = 0; i < entries; ++i) {
+        if (step != Step::mailed_leaf || tested_in_mask(word + 2, i)) {
+          (void)count_test(StepTicks(), log.kind_of(log.topology.entries[leaf.first + i]), steps);
+        }
+      }
+      break;
+    }
+    case Step::ray:
+      ++(steps.*ray_counters[operand & 3U]);
+      break;
+    case Step::shade:
+      ++steps.shades;
+      break;
+    case Step::light:
+      ++steps.lights;
+      break;
+    case Step::texel:
+      ++steps.texels;
+      break;
+    case Step::cut:
+      ++steps.cuts;
+      break;
+    case Step::pass:
+      ++steps.passes;
+      break;
+  }
+}
 
 class NaiveProgram {
  public:
@@ -48,6 +100,12 @@ class NaiveProgram {
   [[nodiscard]] std::uint32_t unit() const { return unit_; }
   memory::Address node_address(std::uint32_t node) const {
     return layout_.address(memory::RecordKind::node, rank_.empty() ? node : rank_[node]);
+  }
+  /// The actions of one step.
+  std::vector<Action> actions_of(const std::uint32_t* word) const {
+    std::vector<Action> actions;
+    step(actions, word);
+    return actions;
   }
   std::vector<Action> actions_of(const Packet& packet) const {
     std::vector<Action> actions;

@@ -1,0 +1,93 @@
+// Configurations of `marti run` that must be refused. tests/fuzz reads them all, tests/cli starts the program
+// with some of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace marti::test {
+
+struct WrongConfiguration {
+  const char* text;                    ///< of wrong.toml
+  std::vector<std::string> complaint;  ///< parts of the message
+};
+
+inline const std::vector<WrongConfiguration>& wrong_configurations() {
+  static const std::vector<WrongConfiguration> all = {
+      {"[cache]\nsiz = \"16 KiB\"\n", {"wrong.toml:2", "cache.siz", "cache.size"}},
+      {"[cache]\nsize = \"17 B\"\n", {"wrong.toml:2", "cache.size", "line"}},
+      {"[cache]\nsize = true\n", {"wrong.toml:2", "cache.size"}},
+      {"[machine]\nscheme = \"pipeline\"\nnodes = 2\n", {"wrong.toml:3", "machine.nodes", "at least 3"}},
+      {"[machine]\nscheme = \"pipeline\"\n[pipeline]\nsearch = 3\n",
+       {"pipeline.nearest", "all three stages"}},
+      {"[machine]\nscheme = \"pipeline\"\n[pipeline]\nsearch = 3\nnearest = 3\nshade = 3\n",
+       {"wrong.toml:4", "pipeline.search", "9", "machine.nodes = 16"}},
+      {"[machine]\nscheme = \"pipeline\"\n[pipeline]\nin_flight = 1000\n",
+       {"wrong.toml:4", "pipeline.in_flight", "more than 118"}},
+      {"[machine]\nscheme = \"pipeline\"\n[host]\nassignment = \"blocks\"\n",
+       {"wrong.toml:4", "host.assignment", "machine.scheme"}},
+      {"[machine]\nscheme = \"pipeline\"\n[build]\nsharing = \"shared\"\n",
+       {"wrong.toml:4", "build.sharing", "must be given"}},
+      {"[pipeline]\nqueue = 4\n", {"wrong.toml:2", "pipeline.queue", "machine.scheme"}},
+      {"[messages]\nray = \"8 B\"\n", {"wrong.toml:2", "messages.ray", "machine.scheme"}},
+      {"[cache]\nline = \"24 B\"\n", {"wrong.toml:2", "cache.line", "power of two"}},
+      {"[cache]\norganisation = \"none\"\nsize = \"1 KiB\"\n", {"wrong.toml:3", "cache.size", "none"}},
+      {"[cache]\nreplacement = \"lur\"\n", {"wrong.toml:2", "cache.replacement", "lru"}},
+      {"[machine]\nnodes = 0\n", {"wrong.toml:2", "machine.nodes"}},
+      {"[machine]\nnodes = -5\n", {"wrong.toml:2", "machine.nodes"}},
+      {"[machine]\nnodes = 16777216\nclusters = 2\n", {"wrong.toml:2", "machine.nodes", "2^24"}},
+      {"[machine]\nnodes = 1.5\n", {"wrong.toml:2", "machine.nodes"}},
+      {"[image]\nwidth = 99999999999999999999\n", {"wrong.toml:2"}},
+      {"[image]\nwidth = 32768\nheight = 32768\nmax_depth = 64\n", {"memory_limit"}},
+      {"[interconnect]\nkind = \"ideal\"\nwidth = \"8 B\"\n",
+       {"wrong.toml:3", "interconnect.width", "ideal"}},
+      {"[memory]\ninterleave = \"48 B\"\n", {"wrong.toml:2", "memory.interleave", "power of two"}},
+      {"[node]\nclock = \"33\"\n", {"wrong.toml:2", "node.clock"}},
+      {"[scene]\nsource = \"teepot:12\"\n", {"teepot", "teapot"}},
+      {"[scene]\nsource = \"teapot:0\"\n", {"teapot"}},
+      {"[scene]\nsource = \"missing.glb\"\n", {"missing.glb"}},
+      {"[scene]\nsource = \"teapot:2\"\nframe = 3\n", {"frame"}},
+      {"[structure]\nkind = \"none\"\nmax_level = 3\n", {"wrong.toml:3", "structure.max_level", "none"}},
+      {"[structure]\nkind = \"grid\"\nmax_level = 3\n", {"wrong.toml:3", "structure.max_level", "grid"}},
+      {"[structure]\nkind = \"bsp\"\ngrid_density = 3.0\n",
+       {"wrong.toml:3", "structure.grid_density", "bsp"}},
+      {"[build]\nrule_k = 3.0\n", {"wrong.toml:2", "build.rule_k", "given"}},
+      {"[build]\nsharing = \"none\"\ninitial_level = \"3\"\n",
+       {"wrong.toml:3", "build.initial_level", "none"}},
+      {"[build]\nsharing = \"shared\"\ninitial_level = \"3\"\nrule_k = 3.0\n",
+       {"wrong.toml:4", "build.rule_k", "rule"}},
+      {"[build]\nsharing = \"shared\"\ninitial_level = \"0\"\n", {"wrong.toml:3", "build.initial_level"}},
+      {"[build]\nsharing = \"shared\"\ninitial_level = \"low\"\n", {"wrong.toml:3", "full", "rule", "low"}},
+      {"[structure]\nkind = \"grid\"\n[build]\nsharing = \"none\"\n",
+       {"wrong.toml:4", "build.sharing", "structure.kind", "grid"}},
+      {"[database]\nplacement = \"replicated\"\n[build]\nsharing = \"shared\"\n",
+       {"wrong.toml:4", "build.sharing", "replicated"}},
+      {"[network]\nkind = \"mesh\"\n", {"wrong.toml:2", "network.kind", "no messages"}},
+      {"[database]\ninterleave = \"64 B\"\n", {"wrong.toml:2", "database.interleave", "distributed"}},
+      {"[database]\nplacement = \"distributed\"\ninterleave = \"16 B\"\n",
+       {"wrong.toml:3", "database.interleave", "32 bytes"}},
+      {"[database]\nplacement = \"distributed\"\ninterleave = \"48 B\"\n",
+       {"wrong.toml:3", "database.interleave", "power of two"}},
+      {"[database]\nplacement = \"distributed\"\n[memory]\nbanks = 8\n",
+       {"wrong.toml:4", "memory.banks", "[local]"}},
+      {"[database]\nplacement = \"distributed\"\n[interconnect]\nkind = \"crossbar\"\n",
+       {"wrong.toml:4", "interconnect.kind", "[network]"}},
+      {"[database]\nplacement = \"distributed\"\n[network]\nkind = \"ideal\"\nwidth = \"8 B\"\n",
+       {"wrong.toml:5", "network.width", "ideal"}},
+      {"[database]\nplacement = \"distributed\"\n[build]\nsharing = \"shared\"\n",
+       {"wrong.toml:4", "build.sharing", "overtake", "private"}},
+      {"[interconnect]\nkind = \"crossbar\"\narbitration = \"round_robin\"\n",
+       {"wrong.toml:3", "interconnect.arbitration", "crossbar"}},
+      {"[interconnect]\narbitration = \"fixed_priority\"\n[build]\nsharing = \"shared\"\n",
+       {"build.sharing", "overtake", "interconnect.arbitration"}},
+      {"nodes = 3\n", {"wrong.toml:1", "nodes"}},
+      {"[cache\n", {"wrong.toml:1"}},
+      {"[cache]\nsize = \"1536 MiB\"\nline = \"1 B\"\nways = 0\n", {"wrong.toml:2", "cache.size", "2^28"}},
+      {"[machine]\nnodes = 16000000\n[cache]\nsize = \"1 MiB\"\n",
+       {"wrong.toml:2", "machine.nodes", "memory_limit"}},
+      {"[cache]\nsize = \"1 KiB\"\nsize = \"2 KiB\"\n", {"wrong.toml:3"}},
+  };
+  return all;
+}
+
+}  // namespace marti::test
