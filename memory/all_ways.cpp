@@ -45,7 +45,7 @@ AllWays::AllWays(std::vector<std::uint32_t> set_counts, std::uint32_t most_ways)
   }
 }
 
-void AllWays::forget() {
+void AllWays::clear() {
   for (Forest& forest : forests_) {
     std::fill(forest.tags.begin(), forest.tags.end(), no_line);
   }

@@ -64,7 +64,7 @@ class AllWays {
   }
 
   /// Empties the caches, for the references of another node. The counts stay.
-  void forget();
+  void clear();
 
   /// One for each number of sets, in ascending order.
   [[nodiscard]] std::vector<WaysHistogram> histograms() const;

@@ -63,7 +63,7 @@ class Banks {
 
   [[nodiscard]] std::uint32_t count() const { return count_; }
   [[nodiscard]] const std::vector<BankStatistics>& statistics() const { return statistics_; }
-  /// Statistics of the cache; null when there is none.
+  /// Statistics of the cache; null without a cache.
   [[nodiscard]] const SharedCacheStatistics* cache_statistics() const {
     return cache_ ? &cache_->statistics() : nullptr;
   }

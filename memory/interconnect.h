@@ -117,7 +117,7 @@ class Interconnect {
   /// The destinations of accesses to a distributed memory; null for all others.
   [[nodiscard]] virtual const DistributedStatistics* distribution() const { return nullptr; }
   [[nodiscard]] virtual const NetworkStatistics* network_statistics() const { return nullptr; }
-  /// Statistics of the cache before the banks; null where there is none.
+  /// Statistics of the cache before the banks; null without such a cache.
   [[nodiscard]] virtual const SharedCacheStatistics* cache_statistics() const { return nullptr; }
   /// Time of a read of `bytes` that meets no other transaction.
   [[nodiscard]] virtual sim::Ticks unloaded_read(std::uint32_t bytes) const = 0;

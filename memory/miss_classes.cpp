@@ -16,7 +16,7 @@ MissClass MissClassifier::miss(std::uint32_t cache, std::uint32_t line) {
   return in_full ? MissClass::conflict : MissClass::capacity;
 }
 
-void MissClassifier::taken_out(std::uint32_t cache, std::uint32_t line) {
+void MissClassifier::invalidated(std::uint32_t cache, std::uint32_t line) {
   (void)full_.remove(cache, line);
   taken_[cache].insert(line);
 }

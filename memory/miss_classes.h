@@ -33,7 +33,7 @@ class MissClassifier {
   void hit(std::uint32_t cache, std::uint32_t line) { (void)full_.access(cache, line); }
   MissClass miss(std::uint32_t cache, std::uint32_t line);
   /// A write has removed a line that the cache held.
-  void taken_out(std::uint32_t cache, std::uint32_t line);
+  void invalidated(std::uint32_t cache, std::uint32_t line);
 
  private:
   TagArray full_;

@@ -39,7 +39,7 @@ void StackDistances::first_use() {
   }
 }
 
-void StackDistances::forget() {
+void StackDistances::clear() {
   order_.clear();
   newest_ = no_line;
 }

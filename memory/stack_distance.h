@@ -54,7 +54,7 @@ class StackDistances {
   }
 
   /// Empties the cache, for the references of another node. The counts stay.
-  void forget();
+  void clear();
 
   [[nodiscard]] StackHistogram histogram() const;
 

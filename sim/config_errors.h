@@ -32,7 +32,7 @@ namespace marti::sim {
 
 /// Calls `work`; adds to a KeyError or TimeOverflow from it the place of its key in the configuration.
 template <class Work>
-decltype(auto) placed(const Config& config, const Work& work) {
+decltype(auto) with_places(const Config& config, const Work& work) {
   try {
     return work();
   } catch (const KeyError& error) {
@@ -44,7 +44,7 @@ decltype(auto) placed(const Config& config, const Work& work) {
 
 /// Calls `work`; places errors from it in the configuration of `file` that had these values.
 template <class Work>
-decltype(auto) placed(std::span<const EffectiveValue> values, std::string_view file, const Work& work) {
+decltype(auto) with_places(std::span<const EffectiveValue> values, std::string_view file, const Work& work) {
   try {
     return work();
   } catch (const KeyError& error) {

@@ -37,7 +37,7 @@ struct DocumentEntry {
 /// In words: "the integer 3", "a table".
 [[nodiscard]] std::string describe(const DocumentValue& value);
 
-/// The entry with that name; null when there is none.
+/// The entry with that name; null if no entry has it.
 [[nodiscard]] const DocumentEntry* find(const DocumentValue::Table& table, std::string_view name);
 
 }  // namespace marti::sim

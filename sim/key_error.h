@@ -21,7 +21,7 @@ class KeyError : public UserError {
 
   /// Calls `work`. A UserError that names no key becomes one about `key`, with `prefix` before its text.
   template <class Work>
-  static decltype(auto) laid_at(std::string_view key, const Work& work, std::string_view prefix = {}) {
+  static decltype(auto) reported_under(std::string_view key, const Work& work, std::string_view prefix = {}) {
     try {
       return work();
     } catch (const KeyError&) {

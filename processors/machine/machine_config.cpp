@@ -101,14 +101,14 @@ void check(const MachineConfig& config) {
     throw sim::KeyError("local.width", "local memory must be at least one byte wide");
   }
   if (config.cache.organisation == CacheOrganisation::unified) {
-    (void)sim::KeyError::laid_at("cache.size", [&] { return memory::shape_of(config.cache.cache); });
+    (void)sim::KeyError::reported_under("cache.size", [&] { return memory::shape_of(config.cache.cache); });
   }
   if (config.cache.organisation == CacheOrganisation::split) {
     for (std::size_t i = 0; i < split_caches; ++i) {
       memory::CacheConfig part = config.cache.cache;
       part.size = config.cache.split_sizes[i];
-      (void)sim::KeyError::laid_at("cache." + std::string(split_cache_names[i]) + "_size",
-                                   [&] { return memory::shape_of(part); });
+      (void)sim::KeyError::reported_under("cache." + std::string(split_cache_names[i]) + "_size",
+                                          [&] { return memory::shape_of(part); });
     }
   }
   check_second_level(config);

@@ -35,7 +35,8 @@ void check_second_level(const MachineConfig& config) {
           "\"distributed\" or with machine.scheme = \"space\"; use \"private\" or \"none\"");
     }
   }
-  (void)sim::KeyError::laid_at("l2.size", [&] { return memory::shape_of(second_level_cache(config)); });
+  (void)sim::KeyError::reported_under("l2.size",
+                                      [&] { return memory::shape_of(second_level_cache(config)); });
 }
 
 }  // namespace marti::processors

@@ -13,8 +13,8 @@ using StrippedNodes = ImageNodes<Caches, StrippedWalker<Caches>>;
 
 std::unique_ptr<NodeArray> make_stripped_nodes(const ReplayInput& input, sim::Engine& engine, Host& host) {
   if (input.line_set != 0) {
-    return std::make_unique<StrippedNodes<RoomyCaches>>(input, engine, host,
-                                                        RoomyCaches(input.config, input.line_set));
+    return std::make_unique<StrippedNodes<NonReplacingCaches>>(
+        input, engine, host, NonReplacingCaches(input.config, input.line_set));
   }
   return make_nodes<StrippedNodes>(input, engine, host);
 }

@@ -7,8 +7,8 @@
 #include "memory/all_ways.h"
 #include "memory/stack_distance.h"
 #include "processors/replay/replay_parts.h"
-#include "processors/walk/handed_out.h"
 #include "processors/walk/log_walker.h"
+#include "processors/walk/packets_of_nodes.h"
 #include "processors/walk/record_places.h"
 #include "sim/error.h"
 
@@ -49,12 +49,12 @@ class Passes {
       distances_->access(line);
     }
   }
-  void forget() {
+  void empty_caches() {
     if (ways_) {
-      ways_->forget();
+      ways_->clear();
     }
     if (distances_) {
-      distances_->forget();
+      distances_->clear();
     }
   }
   [[nodiscard]] std::int64_t references() const { return references_; }
@@ -115,7 +115,7 @@ OnePass one_pass(const WorkLog& log, const MachineConfig& config, std::span<cons
   OnePass pass;
   NodeStatistics statistics;
   for (const std::vector<std::uint64_t>& numbers : packets_of_node) {
-    walker.caches().passes.forget();
+    walker.caches().passes.empty_caches();
     for_each_pixel(input, numbers, [&](Cursor& cursor, std::uint32_t, std::uint32_t) {
       pass.words += static_cast<std::uint64_t>(cursor.word_end - cursor.word);
       (void)walker.template advance<true>(0, cursor, statistics);

@@ -6,7 +6,7 @@
 
 #include "memory/layout.h"
 #include "memory/record_kind.h"
-#include "processors/walk/handed_out.h"
+#include "processors/walk/packets_of_nodes.h"
 
 namespace marti::processors {
 
@@ -19,8 +19,8 @@ struct Reference {
 };
 
 /// Observes a replay to learn which node traces which packets; afterwards it walks each node's part of the
-/// log again (processors/walk/handed_out.h says for which machines).
-class ReferenceTrace final : public HandedOut {
+/// log again (processors/walk/packets_of_nodes.h says for which machines).
+class ReferenceTrace final : public PacketsOfNodes {
  public:
   /// Calls `take` for each reference of a node. Call it after the replay, while the log still exists.
   void for_each(std::uint32_t node, const std::function<void(const Reference&)>& take) const;

@@ -48,10 +48,10 @@ class CachePass {
       ways_->access(line);
     }
   }
-  void forget() {
-    distances_.forget();
+  void empty_caches() {
+    distances_.clear();
     if (ways_) {
-      ways_->forget();
+      ways_->clear();
     }
   }
   [[nodiscard]] CacheWorkingSet result() const {
@@ -82,7 +82,7 @@ struct PassingCaches {
 };
 
 template <bool Split>
-std::vector<CacheWorkingSet> walk_nodes(const HandedOut& handed_out, const ReplayInput& input,
+std::vector<CacheWorkingSet> walk_nodes(const PacketsOfNodes& packets_of_nodes, const ReplayInput& input,
                                         unsigned threads) {
   using Walker = LogWalker<PassingCaches<Split>>;
   const std::vector<memory::CacheShape> shapes = shapes_of(input.config.cache);
@@ -96,15 +96,16 @@ std::vector<CacheWorkingSet> walk_nodes(const HandedOut& handed_out, const Repla
   const auto walk = [&](std::uint32_t node) {
     Walker& walker = walkers.local();
     for (CachePass& pass : walker.caches().passes) {
-      pass.forget();
+      pass.empty_caches();
     }
     NodeStatistics statistics;
-    for_each_pixel(input, handed_out.packets_of(node), [&](Cursor& cursor, std::uint32_t, std::uint32_t) {
-      (void)walker.template advance<true>(0, cursor, statistics);
-    });
+    for_each_pixel(input, packets_of_nodes.packets_of(node),
+                   [&](Cursor& cursor, std::uint32_t, std::uint32_t) {
+                     (void)walker.template advance<true>(0, cursor, statistics);
+                   });
   };
   tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
-  arena.execute([&] { tbb::parallel_for(std::uint32_t{0}, handed_out.nodes(), walk); });
+  arena.execute([&] { tbb::parallel_for(std::uint32_t{0}, packets_of_nodes.nodes(), walk); });
 
   // The sums are of integers, so it does not matter which thread had which nodes.
   std::vector<CacheWorkingSet> sum;
@@ -163,13 +164,13 @@ void check_working_set(const MachineConfig& config) {
   }
 }
 
-WorkingSet working_set(const HandedOut& handed_out, unsigned threads) {
-  const ReplayInput input = handed_out.input(false);
+WorkingSet working_set(const PacketsOfNodes& packets_of_nodes, unsigned threads) {
+  const ReplayInput input = packets_of_nodes.input(false);
   const bool split = input.config.cache.organisation == CacheOrganisation::split;
   return {.line = input.config.cache.cache.line,
           .any_cache = packets_are_fixed(input.config),
-          .caches = split ? walk_nodes<true>(handed_out, input, threads)
-                          : walk_nodes<false>(handed_out, input, threads)};
+          .caches = split ? walk_nodes<true>(packets_of_nodes, input, threads)
+                          : walk_nodes<false>(packets_of_nodes, input, threads)};
 }
 
 void check_working_set(const WorkingSet& set, const MachineConfig& config, const MachineResult& result) {

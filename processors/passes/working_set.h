@@ -17,7 +17,7 @@
 #include "memory/stack_distance.h"
 #include "processors/machine/machine_config.h"
 #include "processors/replay/replay.h"
-#include "processors/walk/handed_out.h"
+#include "processors/walk/packets_of_nodes.h"
 
 namespace marti::processors {
 
@@ -45,7 +45,7 @@ void check_working_set(const MachineConfig& config);
 
 /// Call it after the replay of a machine that passes check_working_set(), while the log still exists.
 /// `threads` host threads (0: all) share the nodes; the result does not depend on their number.
-[[nodiscard]] WorkingSet working_set(const HandedOut& handed_out, unsigned threads = 0);
+[[nodiscard]] WorkingSet working_set(const PacketsOfNodes& packets_of_nodes, unsigned threads = 0);
 
 /// Throws InternalError unless the machine's own counts agree with the pass: equal numbers of references;
 /// with LRU equal misses, and with another replacement at least as many misses as first uses of lines.

@@ -103,11 +103,11 @@ class AnyCaches {
 };
 
 /// Unified caches that never replace a line: see ReplayInput::line_set.
-class RoomyCaches {
+class NonReplacingCaches {
  public:
   static constexpr bool present = true;
   static constexpr bool by_kind = false;
-  RoomyCaches(const MachineConfig& config, std::uint64_t lines) : lines_(lines, config.all_nodes()) {}
+  NonReplacingCaches(const MachineConfig& config, std::uint64_t lines) : lines_(lines, config.all_nodes()) {}
   class View {
    public:
     View(memory::LineSet& lines, std::uint32_t node) : lines_(&lines), node_(node) {}

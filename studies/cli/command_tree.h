@@ -18,7 +18,7 @@ namespace marti::studies {
   return app.get_subcommands([](const CLI::App* command) { return !command->get_name().empty(); });
 }
 
-/// The command of that name below `app`; null when there is none.
+/// The command of that name below `app`; null if no command has it.
 [[nodiscard]] inline const CLI::App* find_subcommand(const CLI::App& app, const std::string& name) {
   for (const CLI::App* command : subcommands_of(app)) {
     if (command->get_name() == name) {

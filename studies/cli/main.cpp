@@ -82,7 +82,7 @@ void run_within_command(const RunArguments& arguments, sim::Config& config) {
   }
   if (!arguments.directory.empty()) {
     throw sim::UserError(
-        "--within gives estimates of some figures: result.json and what else --output gives are for "
+        "--within gives estimates of some figures: result.json and the other files of --output are for "
         "exact runs; leave --within out, or take --json");
   }
   double tolerance = 0.0;
@@ -152,7 +152,7 @@ void run_study(const StudyArguments& arguments, const sim::Schema& schema, const
     studies::prepare_output(arguments.directory);
     studies::load_image_library();
   }
-  const studies::StudyOutput output = sim::placed(config, [&] { return study(config); });
+  const studies::StudyOutput output = sim::with_places(config, [&] { return study(config); });
   std::string text = output.report;
   if (!output.host_report.empty()) {
     text += "\n" + output.host_report;
@@ -276,8 +276,8 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
     sim::Config config =
         sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
     studies::prepare_output(arguments.directory);
-    print(sim::placed(config,
-                      [&] { return studies::write_traces(config, arguments.options, arguments.directory); }));
+    print(sim::with_places(
+        config, [&] { return studies::write_traces(config, arguments.options, arguments.directory); }));
   });
 }
 
@@ -479,7 +479,7 @@ int main(int argc, char** argv) {
   };
   try {
     marti::studies::end_cleanly_on_signals();
-    marti::studies::take_only_threads_there_are();
+    marti::studies::limit_threads_to_available();
     return parse_and_run(argc, argv);
   } catch (const marti::sim::UserError& error) {
     // A message may quote control characters, which must not reach the terminal.

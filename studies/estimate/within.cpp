@@ -188,7 +188,7 @@ std::string run_within(sim::Config& config, double tolerance, bool json) {
   result.values = config.effective_values();
   result.frame_config = frame;
   result.machine = machine;
-  result.functional = sim::placed(config, [&] { return run_functional(frame); });
+  result.functional = sim::with_places(config, [&] { return run_functional(frame); });
   const std::optional<EstimatedRun> estimated =
       estimate_within(*result.functional.frame.log, machine, tolerance);
   if (!estimated) {

@@ -102,7 +102,7 @@ std::string estimate_text(const RunResult& result, const EstimatedRun& run, doub
   text += "hit ratio     " + points_bar(100.0 - share, share * half[Figure::misses], "");
   text += "interconnect  " + points_bar(100.0 * value[Figure::use], 100.0 * half[Figure::use], " busy");
   text += "mean wait     " + time_bar(run.machine, Figure::wait);
-  text += "\nall else is told by exact replay: run without --within\n";
+  text += "\nall other figures need an exact replay: run without --within\n";
   return text;
 }
 

@@ -64,7 +64,7 @@ void start_pool(std::size_t threads) {
 
 }  // namespace
 
-void take_only_threads_there_are() {
+void limit_threads_to_available() {
   const auto processors = static_cast<std::size_t>(std::max(1, tbb::info::default_concurrency()));
   const std::size_t wanted = 2 * processors + others;
   const std::size_t there = started_at_once(wanted);

@@ -7,6 +7,6 @@ namespace marti::studies {
 /// again for the workers of a sweep. If they cannot (a limit of processes, of a container's tasks, or of
 /// address space), tells oneTBB to take fewer, because it would abort the program. Call it once, before the
 /// first parallel work; results are the same with any number.
-void take_only_threads_there_are();
+void limit_threads_to_available();
 
 }  // namespace marti::studies

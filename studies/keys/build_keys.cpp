@@ -48,17 +48,18 @@ void read_initial_tree(sim::Config& config, BuildConfig& build) {
 }  // namespace
 
 void declare_build_keys(sim::Schema& schema) {
-  schema.section("build", "how the machine comes by its tree");
+  schema.section("build", "how the machine gets its tree");
   schema.choice(
       "build.sharing", "given", {processors::sharing_names.begin(), processors::sharing_names.end()},
       "given: the whole tree is there and costs nothing; none: it is built before the frame, and paid; "
-      "shared: an initial tree is built before the frame, and each node below it by whoever needs it "
-      "first, while others wait; private: each processor node builds what it needs below the initial "
+      "shared: an initial tree is built before the frame, and each node below it by the processor "
+      "node that needs it first, while others wait; private: each processor node builds what it needs below "
+      "the initial "
       "tree in its own memory (see local)");
   schema.text(
       "build.initial_level", "rule",
       "where the initial tree ends: a level (\"1\": nothing is built beforehand), \"full\", or \"rule\": "
-      "at the first level with more than rule_k leaves for each node that is none");
+      "at the first level with more than rule_k leaves for each node that is not a leaf");
   schema.real(
       "build.rule_k", 10.0, {0.0, 1e6}, "",
       "leaves for each other node at which the rule stops: 3 is the worst case, 10 what is recommended");

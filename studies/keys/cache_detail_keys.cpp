@@ -21,7 +21,7 @@ void declare_second_level_keys(sim::Schema& schema) {
   schema.integer("l2.ways", 8, {0, std::numeric_limits<std::int32_t>::max()}, "",
                  "lines of a set; 0: fully associative");
   schema.choice("l2.replacement", "lru", {memory::replacement_names.begin(), memory::replacement_names.end()},
-                "which line of a full set makes room");
+                "which line of a full set is replaced");
   schema.integer("l2.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
                  "seed of random replacement");
   cycles(schema, "l2.hit_cycles", 4,
@@ -44,7 +44,7 @@ void read_second_level(sim::Config& config, processors::MachineConfig& machine) 
     l2.cache.seed = static_cast<std::uint64_t>(config.integer("l2.seed"));
   }
   config.mark_unused_reason("l2.seed", "only l2.replacement = \"random\" draws numbers", "l2.replacement");
-  sim::placed(config, [&] { processors::check_second_level(machine); });
+  sim::with_places(config, [&] { processors::check_second_level(machine); });
 }
 
 void declare_count_keys(sim::Schema& schema) {
@@ -64,7 +64,7 @@ void declare_count_keys(sim::Schema& schema) {
 void read_count(sim::Config& config, processors::MachineConfig& machine) {
   machine.count = {config.boolean("count.miss_classes"), config.boolean("count.sharing"),
                    config.boolean("count.attribution"), config.boolean("count.working_set")};
-  sim::placed(config, [&] {
+  sim::with_places(config, [&] {
     processors::check_counting(machine);
     processors::check_working_set(machine);
   });

@@ -110,7 +110,7 @@ void declare_memory(Schema& schema) {
   schema.integer("cache.ways", 4, {0, std::numeric_limits<std::int32_t>::max()}, "",
                  "lines of a set; 0: fully associative");
   schema.choice("cache.replacement", "lru", names(memory::replacement_names),
-                "which line of a full set makes room");
+                "which line of a full set is replaced");
   schema.integer("cache.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
                  "seed of random replacement");
   cycles(schema, "cache.hit_cycles", 1, "cycles of a reference that hits");
@@ -144,7 +144,7 @@ void declare_interconnect(Schema& schema) {
   schema.choice("interconnect.mode", "split", {"held", "split"},
                 "whether a read holds the bus while its bank works or asks for it again");
   schema.choice("interconnect.arbitration", "fifo", names(memory::arbitration_names),
-                "bus: whom it is granted to; fifo: who asked first; round_robin: nodes by turns; "
+                "bus: the order of grants; fifo: first come, first served; round_robin: nodes by turns; "
                 "fixed_priority: data before requests, then the lowest node");
   clock(schema, "interconnect.clock", "clock of the interconnect");
   schema.size("interconnect.width", "8 B", {"1 B", "64 KiB"}, "bytes of a beat");
@@ -167,7 +167,7 @@ void declare_host(Schema& schema) {
   schema.integer("packets.width", 8, {1, 65536}, "pixels", "columns of a packet");
   schema.integer("packets.height", 8, {1, 65536}, "pixels", "rows of a packet");
   schema.choice("packets.order", "scanline", names(processors::packet_order_names), "order of handing out");
-  schema.section("host", "who hands the packets out");
+  schema.section("host", "the processor that hands packets out");
   schema.choice(
       "host.assignment", "dynamic", names(processors::assignment_names),
       "dynamic: a free node asks for the next packet; interleaved: node i of n has packets i, i + n, "
@@ -408,7 +408,7 @@ processors::MachineConfig read_machine(sim::Config& config) {
 }
 
 void check_machine(const sim::Config& config, const processors::MachineConfig& machine) {
-  sim::placed(config, [&] { processors::check(machine); });
+  sim::with_places(config, [&] { processors::check(machine); });
 }
 
 }  // namespace marti::studies

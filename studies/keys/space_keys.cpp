@@ -19,11 +19,12 @@ std::uint32_t count(const sim::Config& config, std::string_view key) {
 
 void declare_space_keys(sim::Schema& schema) {
   schema.section("space", "parts of the scene that nodes hold (machine.scheme = \"space\")");
-  schema.choice("space.policy", "scatter",
-                {processors::region_policy_names.begin(), processors::region_policy_names.end()},
-                "who holds which region; blocks: runs of neighbouring regions; scatter: region i is node i's "
-                "modulo the nodes; balanced: equal numbers of primitives; sampled: equal work in a pre-pass "
-                "over few pixels");
+  schema.choice(
+      "space.policy", "scatter",
+      {processors::region_policy_names.begin(), processors::region_policy_names.end()},
+      "which node holds which region; blocks: runs of neighbouring regions; scatter: region i is node i's "
+      "modulo the nodes; balanced: equal numbers of primitives; sampled: equal work in a pre-pass "
+      "over few pixels");
   schema.integer(
       "space.level", 4, {1, most_levels}, "",
       "regions are the subtrees whose roots lie on this level (root: 1) and the leaves above; every "

@@ -53,7 +53,7 @@ void check_target(const fs::path& file) {
   if (!is_page(file)) {
     throw sim::UserError(
         file.string() +
-        ": is there and no HTML page, so no report replaces it; choose another name with -o, "
+        ": exists and is not an HTML page, so it is not replaced by a report; choose another name with -o, "
         "or remove it");
   }
 }

@@ -188,7 +188,7 @@ FunctionalRun run_planned(const FrameConfig& config, scenes::Scene scene, scenes
   scenes::SceneFacts scene_facts = scenes::facts_of(scene);
   require_textures(config, scene,
                    is_left_out(run.plan, PlanItem::textures) ? facts.texels_needed : facts.texels);
-  sim::KeyError::laid_at(
+  sim::KeyError::reported_under(
       "scene.source", [&] { drop_parts(run.plan, facts.needs, decode_image, scene); },
       sim::shown(config.scene) + ": ");
   return with_scene_keys(

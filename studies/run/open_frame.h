@@ -12,7 +12,7 @@ namespace marti::studies {
 /// the missing part of the scene, or about scene.source.
 template <class Work>
 decltype(auto) with_scene_keys(const Work& work) {
-  return sim::KeyError::laid_at("scene.source", [&]() -> decltype(auto) {
+  return sim::KeyError::reported_under("scene.source", [&]() -> decltype(auto) {
     try {
       return work();
     } catch (const scenes::PartError& error) {

@@ -61,9 +61,9 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
     result.heat_map = std::make_unique<HeatMap>();
     observers.add(*result.heat_map);
   }
-  processors::HandedOut handed_out;
+  processors::PacketsOfNodes packets_of_nodes;
   if (result.machine.count.working_set) {
-    observers.add(handed_out);
+    observers.add(packets_of_nodes);
   }
   processors::ReplayOptions options;
   options.observer = observers.empty() ? nullptr : &observers;
@@ -76,7 +76,7 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
   count_machine_plan(timed, entries);
   add_entries(result.plan, std::move(entries));
   if (result.machine.count.working_set) {
-    result.working_set = processors::working_set(handed_out);
+    result.working_set = processors::working_set(packets_of_nodes);
     processors::check_working_set(*result.working_set, result.machine, timed);
   }
   return timed;
@@ -156,7 +156,7 @@ RunResult run(sim::Config& config, const std::filesystem::path& directory, const
   refuse_beyond_memory(config, result.frame_config, result.machine);
   refuse_maps_beyond_memory(config, record, result.frame_config);
   result.values = config.effective_values();
-  sim::placed(config, [&] {
+  sim::with_places(config, [&] {
     result.functional = functional ? std::move(*functional) : run_functional(result.frame_config);
     time_frame(record, directory, result);
   });

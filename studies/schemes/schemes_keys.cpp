@@ -45,7 +45,8 @@ NamedMachine read_with(const std::filesystem::path& file, const std::vector<std:
 // Calls `work`, which reads a file that the key names; errors in that file are reported under the key.
 template <class Work>
 decltype(auto) named_by(const sim::Config& config, std::string_view key, const Work& work) {
-  return sim::placed(config, [&]() -> decltype(auto) { return sim::KeyError::laid_at(key, work); });
+  return sim::with_places(config,
+                          [&]() -> decltype(auto) { return sim::KeyError::reported_under(key, work); });
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "processors/replay/replay.h"
 #include "processors/walk/stripped_log.h"
 #include "studies/run/functional_run.h"
-#include "studies/sweep/work/strip_shelf.h"
+#include "studies/sweep/work/stripped_log_cache.h"
 
 namespace marti::studies {
 
@@ -31,7 +31,7 @@ bool shares_stripped(const processors::MachineConfig& machine, const Machines& m
   const auto sharing = std::count_if(
       machines.begin(), machines.end(),
       [&](const processors::MachineConfig* other) { return processors::StrippedLog::key_of(*other) == key; });
-  return !key.empty() && static_cast<std::size_t>(sharing) >= StripShelf::fewest_machines;
+  return !key.empty() && static_cast<std::size_t>(sharing) >= StrippedLogCache::fewest_machines;
 }
 
 // Estimates for one frame and one of its machines, scaled up from a small image.

@@ -46,7 +46,7 @@ std::vector<PlanEntry> machine_plan(const KeptItems& kept, const processors::Mac
 
   const char* waits = processors::why_read_events(machine);
   if (waits == nullptr && observed) {
-    waits = "who watches the machine is told of each read";
+    waits = "observers need every read";
   }
   PlanEntry contention = entry_of(PlanItem::contention, waits, kept);
   contention.unit = "read events";

@@ -90,7 +90,7 @@ std::size_t MachineList::enter_frame(const ReadPoint& read) {
   digest.add(std::string(build_of_program()) + "\n" + read.frame_digest);
   std::optional<std::uint64_t> hash;
   if (file) {
-    const scenes::Scene scene = sim::placed(read.config, [&] { return open_frame(read.frame); });
+    const scenes::Scene scene = sim::with_places(read.config, [&] { return open_frame(read.frame); });
     hash = scene_hash(scene);
     digest.add("\n" + std::to_string(*hash) + " " + std::to_string(scenes::facts_of(scene).polygons));
     // The notes are kept with the frame's row, so they are part of its key.

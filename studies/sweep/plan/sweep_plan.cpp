@@ -66,7 +66,7 @@ class Planner {
     name_axes();
     const std::vector<std::uint64_t> passing = filter();
     find_strides_of_bases();
-    sim::placed(config_, [&] {
+    sim::with_places(config_, [&] {
       read_memory(config_).require(plan_bytes(passing.size(), plan_.axes.size()),
                                    "the plan of " + std::to_string(passing.size()) + " points takes",
                                    "split the sweep");

@@ -20,7 +20,7 @@ using Kind = SweepMessage::Kind;
 constexpr auto patience = std::chrono::seconds(30);  // for rank 0 to end the job
 
 /// Between the workers and the main thread: tasks go one way, results the other.
-class Tray final : public TaskSource {
+class TaskMailbox final : public TaskSource {
  public:
   // For the workers.
   SweepTask next() override {
@@ -107,16 +107,16 @@ class RankClient {
     std::exception_ptr error;
     const std::jthread workers([&] {
       try {
-        work_together(site_, tray_, workers_);
+        work_together(site_, mailbox_, workers_);
       } catch (...) {
         error = std::current_exception();
       }
-      tray_.finished();
+      mailbox_.finished();
     });
     try {
       bool left = false;
       while (!goodbye_) {
-        const Tray::State state = tray_.look();
+        const TaskMailbox::State state = mailbox_.look();
         for (const SweepMessage& result : state.results) {
           tell(result);
         }
@@ -138,7 +138,7 @@ class RankClient {
       }
       ranks_.flush();
     } catch (...) {
-      tray_.stop();
+      mailbox_.stop();
       throw;
     }
   }
@@ -167,16 +167,16 @@ class RankClient {
   void take(SweepTask task) {
     if (task.kind == SweepTask::Kind::end) {
       ended_ = true;
-      tray_.end();
+      mailbox_.end();
     } else {
-      tray_.add(std::move(task));
+      mailbox_.add(std::move(task));
     }
   }
 
   Ranks& ranks_;
   unsigned workers_;
   SweepSite& site_;
-  Tray tray_;
+  TaskMailbox mailbox_;
   std::size_t asked_ = 0;  // tasks under way
   bool ended_ = false;
   bool goodbye_ = false;

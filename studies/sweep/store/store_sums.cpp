@@ -105,7 +105,7 @@ void RowSums::check(const std::filesystem::path& file) {
   while (rows.next()) {
     if (checksum_ < 0 || rows.cell(checksum_) != sum_of(rows)) {
       fail(file,
-           fmt::format("row {} of its table {} is not what its checksum says", rows.integer(0), table_.name));
+           fmt::format("row {} of its table {} does not match its checksum", rows.integer(0), table_.name));
     }
   }
 }
@@ -123,7 +123,7 @@ void check_whole(SqliteConnection& connection, const std::filesystem::path& file
     return;
   }
   if (value_of(connection, "checksum") != sum_of_plan(connection)) {
-    fail(file, "its plan is not what its checksum says");
+    fail(file, "its plan does not match its checksum");
   }
   RowSums(connection, machine_results).check(file);
   RowSums(connection, frame_results).check(file);

@@ -14,7 +14,7 @@ namespace marti::studies {
 /// What a worker is to do.
 struct SweepTask {
   enum class Kind : std::uint8_t {
-    trace,  ///< make the frame's log, and bring it to the shelf
+    trace,  ///< make the frame's log and put it into the cache of logs
     time,   ///< time `machines`, all of one frame, whose log is there
     wait,   ///< no task now: ask again when something has been traced
     end     ///< no more tasks

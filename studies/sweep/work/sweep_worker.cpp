@@ -39,7 +39,7 @@ FrameLog trace(const SweepFrame& frame) {
 
 // A fault of the frame is reported at the place of its key.
 FrameLog trace(const SweepSite& site, const SweepFrame& frame) {
-  return sim::placed(frame.settings, site.plan.file, [&] { return trace(frame); });
+  return sim::with_places(frame.settings, site.plan.file, [&] { return trace(frame); });
 }
 
 // Tracing uses all of the computer's threads, so what it takes is the time that passes.
@@ -80,7 +80,7 @@ void do_time(SweepSite& site, TaskSource& source, const SweepTask& task) {
       options.stripped = stripped.get();
       // The events that a row holds must not depend on whether there was room for a stripped log.
       options.keep_read_events = true;
-      row = sim::placed(all_of(machine.settings), site.plan.file, [&] {
+      row = sim::with_places(all_of(machine.settings), site.plan.file, [&] {
         return sweep_row(machine.config, processors::replay(*log->log, machine.config, options));
       });
     } catch (const sim::UserError& error) {

@@ -5,9 +5,9 @@
 #include <cstdint>
 
 #include "studies/sweep/plan/sweep_plan.h"
-#include "studies/sweep/work/log_shelf.h"
+#include "studies/sweep/work/log_cache.h"
 #include "studies/sweep/work/memory_gate.h"
-#include "studies/sweep/work/strip_shelf.h"
+#include "studies/sweep/work/stripped_log_cache.h"
 #include "studies/sweep/work/task_source.h"
 
 namespace marti::studies {
@@ -28,8 +28,8 @@ struct SweepSite {
   }
 
   const SweepPlan& plan;
-  LogShelf logs;
-  StripShelf strips;
+  LogCache logs;
+  StrippedLogCache strips;
   MemoryGate machines;
 };
 

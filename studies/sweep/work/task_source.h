@@ -16,7 +16,7 @@ class TaskSource {
   virtual ~TaskSource() = default;
   /// The next task, never `wait`: it blocks until there is one.
   [[nodiscard]] virtual SweepTask next() = 0;
-  /// The log has been put on the shelf of this process.
+  /// The log is in this process' cache of logs.
   virtual void traced(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) = 0;
   virtual void timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds) = 0;
   /// Some worker has failed: every next() from now on gives `end`.

@@ -34,7 +34,7 @@ TEST(MissClasses, AgreeWithListsAndSetsWhileLinesAreTakenOut) {
       const auto line = static_cast<std::uint32_t>(random() % (3 * lines));
       if (random() % 16 == 0) {
         if (cache.invalidate(line, 1) == 1) {
-          classifier.taken_out(2, line);
+          classifier.invalidated(2, line);
           std::erase(full, line);
           taken.insert(line);
         }

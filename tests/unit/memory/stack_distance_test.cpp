@@ -84,7 +84,7 @@ RC_GTEST_PROP(StackDistance, AfterForgettingNothingOfTheOldStreamIsLeft, (std::u
     for (const std::uint32_t line : *stream) {
       both.access(line);
     }
-    both.forget();
+    both.clear();
   }
   StackHistogram sum = pass(first);
   sum += pass(second);
@@ -177,7 +177,7 @@ RC_GTEST_PROP(AllWays, OneSetIsTheStackOfAllLines, (std::uint64_t seed)) {
     for (const std::uint32_t line : stream) {
       ways.access(line);
     }
-    ways.forget();
+    ways.clear();
   }
   const WaysHistogram found = ways.histograms()[0];
   for (std::uint32_t lines = 0; lines <= 40; ++lines) {

@@ -80,10 +80,10 @@ RC_GTEST_PROP(WorkingSet, IsThatOfCachesSimulatedOneByOne, (std::uint64_t seed))
 RC_GTEST_PROP(WorkingSet, IsTheSameWithAnyNumberOfThreads, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_log(random, 10, 10);
-  HandedOut handed_out;
-  (void)replay(log, random_cached_machine(random), {.observer = &handed_out});
-  const WorkingSet one = working_set(handed_out, 1);
-  const WorkingSet three = working_set(handed_out, 3);
+  PacketsOfNodes packets_of_nodes;
+  (void)replay(log, random_cached_machine(random), {.observer = &packets_of_nodes});
+  const WorkingSet one = working_set(packets_of_nodes, 1);
+  const WorkingSet three = working_set(packets_of_nodes, 3);
   for (std::size_t i = 0; i < one.caches.size(); ++i) {
     RC_ASSERT(one.caches[i].distances == three.caches[i].distances);
     RC_ASSERT(one.caches[i].ways == three.caches[i].ways);
@@ -96,9 +96,9 @@ RC_GTEST_PROP(WorkingSet, ForetellsMachinesWithOtherCachesWherePacketsAreFixed, 
   MachineConfig machine = random_cached_machine(random);
   machine.cache.organisation = CacheOrganisation::unified;
   machine.host.assignment = Assignment::interleaved;
-  HandedOut handed_out;
-  (void)replay(log, machine, {.observer = &handed_out});
-  const WorkingSet set = working_set(handed_out);
+  PacketsOfNodes packets_of_nodes;
+  (void)replay(log, machine, {.observer = &packets_of_nodes});
+  const WorkingSet set = working_set(packets_of_nodes);
   RC_ASSERT(set.any_cache);
   machine.cache.cache.replacement = memory::Replacement::lru;
   const auto lines = static_cast<std::uint32_t>(test::pick(random, 1, 60));
@@ -120,9 +120,9 @@ TEST(WorkingSet, SaysForWhichPacketsItHolds) {
     MachineConfig machine;
     machine.nodes = nodes;
     machine.host.assignment = assignment;
-    HandedOut handed_out;
-    (void)replay(log, machine, {.observer = &handed_out});
-    return working_set(handed_out).any_cache;
+    PacketsOfNodes packets_of_nodes;
+    (void)replay(log, machine, {.observer = &packets_of_nodes});
+    return working_set(packets_of_nodes).any_cache;
   };
   EXPECT_TRUE(holds_for_any_cache(1, Assignment::dynamic));
   EXPECT_TRUE(holds_for_any_cache(2, Assignment::interleaved));
@@ -134,9 +134,9 @@ TEST(WorkingSet, ACountThatDiffersIsAFaultOfOurs) {
   test::Random random(4);
   const WorkLog log = test::random_log(random, 6, 6);
   const MachineConfig machine;
-  HandedOut handed_out;
-  MachineResult result = replay(log, machine, {.observer = &handed_out});
-  const WorkingSet set = working_set(handed_out);
+  PacketsOfNodes packets_of_nodes;
+  MachineResult result = replay(log, machine, {.observer = &packets_of_nodes});
+  const WorkingSet set = working_set(packets_of_nodes);
   EXPECT_NO_THROW(check_working_set(set, machine, result));
   --result.nodes[1].references.hits[0];
   EXPECT_THROW(check_working_set(set, machine, result), sim::InternalError);

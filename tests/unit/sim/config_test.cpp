@@ -19,7 +19,7 @@ Schema example() {
   Schema schema;
   schema.section("cache", "The private cache of a node.");
   schema.size("cache.size", "16 KiB", {"0 B", "1 GiB"}, "Capacity; 0 leaves the cache out");
-  schema.choice("cache.replacement", "lru", {"lru", "fifo", "random"}, "Which line makes room");
+  schema.choice("cache.replacement", "lru", {"lru", "fifo", "random"}, "Which line is replaced");
   schema.integer("cache.ways", 4, {1, std::nullopt}, "lines", "Lines in a set");
   schema.boolean("cache.split", false, "One cache for each kind of record");
   schema.integer("nodes", 16, {1, 65536}, "nodes", "Processor nodes");

@@ -15,7 +15,7 @@
 
 #include "studies/sweep/work/memory_gate.h"
 #include "studies/sweep/work/progress.h"
-#include "studies/sweep/work/strip_shelf.h"
+#include "studies/sweep/work/stripped_log_cache.h"
 #include "studies/tables/text_units.h"
 #include "tests/support/random_machine.h"
 
@@ -27,7 +27,7 @@ using processors::StrippedLog;
 using processors::WorkLog;
 
 constexpr std::uint64_t plenty = std::numeric_limits<std::uint64_t>::max();
-constexpr std::size_t enough = StripShelf::fewest_machines;
+constexpr std::size_t enough = StrippedLogCache::fewest_machines;
 
 std::shared_ptr<const WorkLog> some_log(std::uint64_t seed) {
   test::Random random(seed);
@@ -50,14 +50,14 @@ void on_threads(unsigned count, const Work& work) {
   }
 }
 
-TEST(StripShelf, OneIsMadeForAllThatAsk) {
+TEST(StrippedLogCache, OneIsMadeForAllThatAsk) {
   const std::shared_ptr<const WorkLog> log = some_log(1);
-  StripShelf shelf(plenty);
+  StrippedLogCache cache(plenty);
   std::array<std::shared_ptr<const StrippedLog>, 8> found;
   on_threads(8, [&](unsigned thread) {
     MachineConfig machine = with_line(32);
     machine.nodes = 1 + thread;  // machines of other sizes share it
-    found.at(thread) = shelf.get(0, log, machine, 8, four_ways);
+    found.at(thread) = cache.get(0, log, machine, 8, four_ways);
   });
   ASSERT_NE(found[0], nullptr);
   EXPECT_TRUE(found[0]->fits(*log));
@@ -65,59 +65,77 @@ TEST(StripShelf, OneIsMadeForAllThatAsk) {
   for (const auto& other : found) {
     EXPECT_EQ(other, found[0]);
   }
-  EXPECT_NE(shelf.get(0, log, with_line(64), 8, four_ways), found[0]);
-  EXPECT_NE(shelf.get(1, log, with_line(32), 8, four_ways), found[0]) << "another frame's";
+  EXPECT_NE(cache.get(0, log, with_line(64), 8, four_ways), found[0]);
+  EXPECT_NE(cache.get(1, log, with_line(32), 8, four_ways), found[0]) << "another frame's";
 }
 
-TEST(StripShelf, NoneWhereItDoesNotPayOrFit) {
+TEST(StrippedLogCache, OnePassServesAllWays) {
+  const std::shared_ptr<const WorkLog> log = some_log(5);
+  StrippedLogCache cache(plenty);
+  constexpr std::array<std::uint32_t, 4> all_ways = {0, 1, 2, 8};
+  const std::uint32_t sets = memory::shape_of(with_line(32).cache.cache).sets;
+  for (const std::uint32_t ways : all_ways) {
+    MachineConfig machine = with_line(32);
+    machine.cache.cache.ways = ways == 0 ? 2 : ways;
+    machine.cache.cache.size = std::uint64_t{sets} * machine.cache.cache.ways * 32;
+    machine.cache.cache.replacement = ways == 0 ? memory::Replacement::fifo : memory::Replacement::lru;
+    const auto found = cache.get(0, log, machine, enough, all_ways);
+    ASSERT_NE(found, nullptr);
+    EXPECT_EQ(found->ways(), ways);
+    EXPECT_EQ(found->references(), StrippedLog::make(*log, machine)->references());
+    EXPECT_EQ(cache.get(0, log, machine, enough, all_ways), found) << "made once";
+  }
+}
+
+TEST(StrippedLogCache, NoneWhereItDoesNotPayOrFit) {
   const std::shared_ptr<const WorkLog> log = some_log(2);
-  StripShelf shelf(plenty);
-  EXPECT_EQ(shelf.get(0, log, with_line(32), enough - 1, four_ways), nullptr);
+  StrippedLogCache cache(plenty);
+  EXPECT_EQ(cache.get(0, log, with_line(32), enough - 1, four_ways), nullptr);
   MachineConfig without = with_line(32);
   without.cache.organisation = processors::CacheOrganisation::none;
-  EXPECT_EQ(shelf.get(0, log, without, 100, four_ways), nullptr);
-  const auto made = shelf.get(0, log, with_line(32), enough, four_ways);
+  EXPECT_EQ(cache.get(0, log, without, 100, four_ways), nullptr);
+  const auto made = cache.get(0, log, with_line(32), enough, four_ways);
   ASSERT_NE(made, nullptr);
   // Room for one and a half: each may take its part of it only.
-  StripShelf small(made->bytes_of_words() * 3 / 2);
+  StrippedLogCache small(made->bytes_of_words() * 3 / 2);
   EXPECT_EQ(small.get(0, log, with_line(32), enough, four_ways), nullptr);
   EXPECT_EQ(small.get(0, log, with_line(32), enough, four_ways), nullptr) << "the same the second time";
 }
 
-TEST(StripShelf, KeepsThoseUsedLast) {
+TEST(StrippedLogCache, KeepsThoseUsedLast) {
   const std::shared_ptr<const WorkLog> log = some_log(3);
-  StripShelf shelf(plenty);
-  static_assert(StripShelf::most_kept == 2);
-  std::weak_ptr<const StrippedLog> first = shelf.get(0, log, with_line(16), enough, four_ways);
-  const std::weak_ptr<const StrippedLog> second = shelf.get(0, log, with_line(32), enough, four_ways);
-  EXPECT_EQ(shelf.get(0, log, with_line(16), enough, four_ways), first.lock());
-  std::shared_ptr<const StrippedLog> third = shelf.get(0, log, with_line(64), enough, four_ways);
+  StrippedLogCache cache(plenty);
+  static_assert(StrippedLogCache::most_kept == 2);
+  std::weak_ptr<const StrippedLog> first = cache.get(0, log, with_line(16), enough, four_ways);
+  const std::weak_ptr<const StrippedLog> second = cache.get(0, log, with_line(32), enough, four_ways);
+  EXPECT_EQ(cache.get(0, log, with_line(16), enough, four_ways), first.lock());
+  std::shared_ptr<const StrippedLog> third = cache.get(0, log, with_line(64), enough, four_ways);
   EXPECT_FALSE(first.expired()) << "used later than the second";
   EXPECT_TRUE(second.expired());
-  shelf.drop(1);
+  cache.drop(1);
   EXPECT_FALSE(first.expired()) << "of another frame";
-  shelf.drop(0);
+  cache.drop(0);
   EXPECT_TRUE(first.expired());
   EXPECT_NE(third, nullptr);
-  EXPECT_EQ(third.use_count(), 1) << "the shelf has let go, the user has not";
+  EXPECT_EQ(third.use_count(), 1) << "the cache has let go, the user has not";
 }
 
-TEST(StripShelf, ThreadsOfManyBatches) {
+TEST(StrippedLogCache, ThreadsOfManyBatches) {
   const std::shared_ptr<const WorkLog> log = some_log(4);
   std::array<std::uint64_t, 4> references{};
   for (std::size_t i = 0; i < references.size(); ++i) {
     references.at(i) = StrippedLog::make(*log, with_line(16U << i))->references();
   }
-  StripShelf shelf(plenty);
+  StrippedLogCache cache(plenty);
   on_threads(6, [&](unsigned thread) {
     test::Random random(thread);
     for (int round = 0; round < 20; ++round) {
       const std::size_t which = random() % references.size();
-      const auto found = shelf.get(0, log, with_line(16U << which), enough, four_ways);
+      const auto found = cache.get(0, log, with_line(16U << which), enough, four_ways);
       ASSERT_NE(found, nullptr);
       EXPECT_EQ(found->references(), references.at(which));
       if (random() % 8 == 0) {
-        shelf.drop(0);
+        cache.drop(0);
       }
     }
   });

@@ -161,7 +161,7 @@ TEST_F(DamagedStore, ChangedValuesAreRefused) {
         "UPDATE buckets SET highest = 7 WHERE lowest = 0", "UPDATE waits SET name = 'w' WHERE id = 0",
         "UPDATE store SET value = 'x' WHERE what = 'checksum'", "DELETE FROM store WHERE what = 'checksum'",
         "DROP VIEW histograms", "DROP VIEW summary; CREATE VIEW summary AS SELECT * FROM points"}) {
-    expect_refused(change, "its plan is not what its checksum says");
+    expect_refused(change, "its plan does not match its checksum");
   }
 }
 

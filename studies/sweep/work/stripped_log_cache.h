@@ -15,10 +15,10 @@
 namespace marti::studies {
 
 /// Thread-safe. Keeps those used last.
-class StripShelf {
+class StrippedLogCache {
  public:
   /// `most_bytes`: of all stripped logs together, except those still in use when others are made.
-  explicit StripShelf(std::uint64_t most_bytes) : most_bytes_(most_bytes) {}
+  explicit StrippedLogCache(std::uint64_t most_bytes) : most_bytes_(most_bytes) {}
 
   /// The log stripped for the machine; null where that is impossible, takes too much memory, or does not pay
   /// because only `sharing` machines use the pass that strips it. The first that asks makes it together with

@@ -1,8 +1,8 @@
-#include "processors/walk/handed_out.h"
+#include "processors/walk/packets_of_nodes.h"
 
 namespace marti::processors {
 
-void HandedOut::begin(const ReplayInput& input) {
+void PacketsOfNodes::begin(const ReplayInput& input) {
   log_ = &input.log;
   config_ = input.config;
   config_.placement = Placement::shared;  // so that every miss stops a walk,
@@ -13,14 +13,14 @@ void HandedOut::begin(const ReplayInput& input) {
   packets_of_.assign(input.config.all_nodes(), {});
 }
 
-void HandedOut::spent(std::uint32_t /*node*/, NodeState /*state*/, sim::Ticks /*from*/, sim::Ticks /*to*/,
-                      PixelPlace /*pixel*/) {}
+void PacketsOfNodes::spent(std::uint32_t /*node*/, NodeState /*state*/, sim::Ticks /*from*/,
+                           sim::Ticks /*to*/, PixelPlace /*pixel*/) {}
 
-void HandedOut::began_packet(std::uint32_t node, std::uint64_t packet, sim::Ticks /*start*/) {
+void PacketsOfNodes::began_packet(std::uint32_t node, std::uint64_t packet, sim::Ticks /*start*/) {
   packets_of_[node].push_back(packet);
 }
 
-ReplayInput HandedOut::input(bool step_by_step) const {
+ReplayInput PacketsOfNodes::input(bool step_by_step) const {
   return {.log = *log_,
           .config = config_,
           .layout = *layout_,

@@ -1,4 +1,4 @@
-#include "studies/sweep/work/strip_shelf.h"
+#include "studies/sweep/work/stripped_log_cache.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace marti::studies {
 
-std::shared_ptr<const processors::StrippedLog> StripShelf::get(
+std::shared_ptr<const processors::StrippedLog> StrippedLogCache::get(
     std::size_t frame, const std::shared_ptr<const processors::WorkLog>& log,
     const processors::MachineConfig& machine, std::size_t sharing, std::span<const std::uint32_t> ways) {
   const std::string key = processors::StrippedLog::key_of(machine);
@@ -42,7 +42,7 @@ std::shared_ptr<const processors::StrippedLog> StripShelf::get(
   return entry->logs[static_cast<std::size_t>(wanted - ways.begin())];
 }
 
-void StripShelf::drop(std::size_t frame) {
+void StrippedLogCache::drop(std::size_t frame) {
   const std::lock_guard lock(mutex_);
   entries_.remove_if([frame](const std::shared_ptr<Entry>& entry) { return entry->frame == frame; });
 }

@@ -17,7 +17,7 @@ namespace marti::processors {
 
 /// Only for the image scheme with a given tree: where the tree is built, other nodes decide what a node
 /// reads. With dynamic assignment a node's packets depend on the whole machine, hence the recording.
-class HandedOut : public Observer {
+class PacketsOfNodes : public Observer {
  public:
   void begin(const ReplayInput& input) override;
   void spent(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to, PixelPlace pixel) override;

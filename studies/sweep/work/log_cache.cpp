@@ -1,4 +1,4 @@
-#include "studies/sweep/work/log_shelf.h"
+#include "studies/sweep/work/log_cache.h"
 
 #include <condition_variable>
 #include <map>
@@ -36,7 +36,7 @@ std::uint64_t memory_of(const processors::WorkLog& log) {
   return bytes;
 }
 
-class LogShelf::Book : public std::enable_shared_from_this<Book> {
+class LogCache::Book : public std::enable_shared_from_this<Book> {
  public:
   explicit Book(std::uint64_t limit) : limit_(limit) {}
 
@@ -181,14 +181,14 @@ class LogShelf::Book : public std::enable_shared_from_this<Book> {
   std::uint64_t clock_ = 0;
 };
 
-LogShelf::LogShelf(std::uint64_t memory_limit) : book_(std::make_shared<Book>(memory_limit)) {}
-LogShelf::~LogShelf() = default;
+LogCache::LogCache(std::uint64_t memory_limit) : book_(std::make_shared<Book>(memory_limit)) {}
+LogCache::~LogCache() = default;
 
-void LogShelf::put(std::size_t frame, FrameLog log) { book_->put(frame, std::move(log)); }
-std::shared_ptr<const FrameLog> LogShelf::take(std::size_t frame, const Trace& trace) {
+void LogCache::put(std::size_t frame, FrameLog log) { book_->put(frame, std::move(log)); }
+std::shared_ptr<const FrameLog> LogCache::take(std::size_t frame, const Trace& trace) {
   return book_->take(frame, trace);
 }
-void LogShelf::drop(std::size_t frame) { book_->drop(frame); }
-std::uint64_t LogShelf::in_memory() const { return book_->in_memory(); }
+void LogCache::drop(std::size_t frame) { book_->drop(frame); }
+std::uint64_t LogCache::in_memory() const { return book_->in_memory(); }
 
 }  // namespace marti::studies

@@ -1,6 +1,6 @@
-// The shelf: with any limit, taking a log gives the log of its frame, and memory stays within
+// The cache of logs: with any limit, taking a log gives the log of its frame, and memory stays within
 // bounds.
-#include "studies/sweep/work/log_shelf.h"
+#include "studies/sweep/work/log_cache.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -32,11 +32,11 @@ std::vector<FrameLog> some_frames(std::size_t count) {
   return frames;
 }
 
-// The shelf is to be the only owner.
+// The cache is to be the only owner.
 FrameLog copy_of(const FrameLog& frame) {
   return {std::make_shared<const processors::WorkLog>(*frame.log), frame.row};
 }
-LogShelf::Trace tracing(const FrameLog& frame) {
+LogCache::Trace tracing(const FrameLog& frame) {
   return [&frame] { return copy_of(frame); };
 }
 FrameLog never() { throw sim::InternalError("traced again"); }
@@ -65,70 +65,70 @@ void run_on_threads(unsigned threads, const std::function<void(unsigned)>& work)
   }
 }
 
-RC_GTEST_PROP(LogShelf, GivesTheLogOfEachFrame, (std::uint64_t seed)) {
+RC_GTEST_PROP(LogCache, GivesTheLogOfEachFrame, (std::uint64_t seed)) {
   Random random(seed);
   const std::vector<FrameLog> frames = some_frames(6);
   const std::uint64_t most = largest(frames) + random() % (4 * largest(frames));
-  LogShelf shelf(most);
+  LogCache cache(most);
   for (int step = 0; step < 40; ++step) {
     const std::size_t i = random() % frames.size();
     switch (random() % 4) {
       case 0:
-        shelf.put(i, copy_of(frames[i]));
+        cache.put(i, copy_of(frames[i]));
         break;
       case 1:
-        shelf.drop(i);
+        cache.drop(i);
         break;
       default:
-        RC_ASSERT(equal(*shelf.take(i, tracing(frames[i])), frames[i]));
-        RC_ASSERT(equal(*shelf.take(i, never), frames[i]));
+        RC_ASSERT(equal(*cache.take(i, tracing(frames[i])), frames[i]));
+        RC_ASSERT(equal(*cache.take(i, never), frames[i]));
     }
-    RC_ASSERT(shelf.in_memory() <= most);
+    RC_ASSERT(cache.in_memory() <= most);
   }
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    shelf.drop(i);
+    cache.drop(i);
   }
-  RC_ASSERT(shelf.in_memory() == 0U);
+  RC_ASSERT(cache.in_memory() == 0U);
 }
 
-TEST(LogShelf, ManyThreadsShareALittleMemory) {
+TEST(LogCache, ManyThreadsShareALittleMemory) {
   const std::vector<FrameLog> frames = some_frames(8);
   std::uint64_t all = 0;
   for (const FrameLog& frame : frames) {
     all += memory_of(*copy_of(frame).log);
   }
   for (const std::uint64_t limit : {std::uint64_t{0}, 2 * largest(frames), 5 * largest(frames)}) {
-    LogShelf shelf(limit);
+    LogCache cache(limit);
     std::atomic<std::uint64_t> wrong{0};
     std::atomic<std::uint64_t> traced{0};
     run_on_threads(4, [&](unsigned thread) {
       Random random(thread);
       for (int step = 0; step < 60; ++step) {
         const std::size_t i = random() % frames.size();
-        const std::shared_ptr<const FrameLog> log = shelf.take(i, [&] {
+        const std::shared_ptr<const FrameLog> log = cache.take(i, [&] {
           ++traced;
           return copy_of(frames[i]);
         });
         wrong += equal(*log, frames[i]) ? 0U : 1U;
-        wrong += shelf.in_memory() <= std::max(limit, largest(frames)) ? 0U : 1U;
+        wrong += cache.in_memory() <= std::max(limit, largest(frames)) ? 0U : 1U;
       }
     });
     EXPECT_EQ(wrong, 0U);
     EXPECT_EQ(traced > frames.size(), all > limit) << "some had to go";
     for (std::size_t i = 0; i < frames.size(); ++i) {
-      shelf.drop(i);
+      cache.drop(i);
     }
-    EXPECT_EQ(shelf.in_memory(), 0U);
+    EXPECT_EQ(cache.in_memory(), 0U);
   }
 }
 
-TEST(LogShelf, WithRoomForAllEachIsTracedOnce) {
+TEST(LogCache, WithRoomForAllEachIsTracedOnce) {
   const std::vector<FrameLog> frames = some_frames(3);
-  LogShelf shelf(3 * largest(frames));
+  LogCache cache(3 * largest(frames));
   std::atomic<int> traced{0};
   run_on_threads(4, [&](unsigned) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
-      EXPECT_TRUE(equal(*shelf.take(i,
+      EXPECT_TRUE(equal(*cache.take(i,
                                     [&] {
                                       ++traced;
                                       return copy_of(frames[i]);
@@ -139,16 +139,16 @@ TEST(LogShelf, WithRoomForAllEachIsTracedOnce) {
   EXPECT_EQ(traced, 3);
 }
 
-TEST(LogShelf, WaitsForRoom) {
+TEST(LogCache, WaitsForRoom) {
   const std::vector<FrameLog> frames = some_frames(2);
-  LogShelf shelf(largest(frames));
-  shelf.put(0, copy_of(frames[0]));
-  shelf.put(1, copy_of(frames[1]));  // replaces the first, which is not in use
-  std::shared_ptr<const FrameLog> held = shelf.take(0, tracing(frames[0]));
+  LogCache cache(largest(frames));
+  cache.put(0, copy_of(frames[0]));
+  cache.put(1, copy_of(frames[1]));  // replaces the first, which is not in use
+  std::shared_ptr<const FrameLog> held = cache.take(0, tracing(frames[0]));
   std::atomic<bool> let_go{false};
   bool waited = false;
   std::thread other([&] {
-    const std::shared_ptr<const FrameLog> log = shelf.take(1, tracing(frames[1]));
+    const std::shared_ptr<const FrameLog> log = cache.take(1, tracing(frames[1]));
     waited = let_go;
     EXPECT_TRUE(equal(*log, frames[1]));
   });
@@ -159,27 +159,27 @@ TEST(LogShelf, WaitsForRoom) {
   EXPECT_TRUE(waited);
 }
 
-TEST(LogShelf, WhatCannotBeTracedMayBeTriedAgain) {
+TEST(LogCache, WhatCannotBeTracedMayBeTriedAgain) {
   const std::vector<FrameLog> frames = some_frames(1);
-  LogShelf shelf(0);
-  EXPECT_THROW(static_cast<void>(shelf.take(0, never)), sim::InternalError);
-  EXPECT_TRUE(equal(*shelf.take(0, tracing(frames[0])), frames[0]));
-  shelf.put(1, copy_of(frames[0]));  // the first has to go, but its size is known
-  const std::uint64_t before = shelf.in_memory();
-  EXPECT_THROW(static_cast<void>(shelf.take(0, never)), sim::InternalError);
-  EXPECT_LE(shelf.in_memory(), before);
-  EXPECT_TRUE(equal(*shelf.take(0, tracing(frames[0])), frames[0]));
+  LogCache cache(0);
+  EXPECT_THROW(static_cast<void>(cache.take(0, never)), sim::InternalError);
+  EXPECT_TRUE(equal(*cache.take(0, tracing(frames[0])), frames[0]));
+  cache.put(1, copy_of(frames[0]));  // the first has to go, but its size is known
+  const std::uint64_t before = cache.in_memory();
+  EXPECT_THROW(static_cast<void>(cache.take(0, never)), sim::InternalError);
+  EXPECT_LE(cache.in_memory(), before);
+  EXPECT_TRUE(equal(*cache.take(0, tracing(frames[0])), frames[0]));
 }
 
-TEST(LogShelf, ALogOutlivesItsShelf) {
+TEST(LogCache, ALogOutlivesItsCache) {
   const std::vector<FrameLog> frames = some_frames(1);
   std::shared_ptr<const FrameLog> log;
   {
-    LogShelf shelf(0);
-    shelf.put(0, copy_of(frames[0]));
-    log = shelf.take(0, never);
-    shelf.drop(0);
-    EXPECT_GT(shelf.in_memory(), 0U);
+    LogCache cache(0);
+    cache.put(0, copy_of(frames[0]));
+    log = cache.take(0, never);
+    cache.drop(0);
+    EXPECT_GT(cache.in_memory(), 0U);
   }
   EXPECT_TRUE(equal(*log, frames[0]));
 }

@@ -24,21 +24,21 @@ struct FrameLog {
 ///
 /// What take() returns is in use until the last copy of that pointer is gone; the log inside must not be held
 /// longer than it. Logs in use stay in memory; others make room, those first that were used longest ago.
-class LogShelf {
+class LogCache {
  public:
   /// Makes the log of one frame, the same each time.
   using Trace = std::function<FrameLog()>;
 
   /// `memory_limit`: bytes of all logs together; one log may always be there.
-  explicit LogShelf(std::uint64_t memory_limit);
-  ~LogShelf();
-  LogShelf(const LogShelf&) = delete;
-  LogShelf& operator=(const LogShelf&) = delete;
+  explicit LogCache(std::uint64_t memory_limit);
+  ~LogCache();
+  LogCache(const LogCache&) = delete;
+  LogCache& operator=(const LogCache&) = delete;
 
-  /// Puts a new log on the shelf; it is dropped if it does not fit beside those in use. A log that is already
-  /// there stays. Never waits for room.
+  /// Puts a new log into the cache; it is dropped if it does not fit beside those in use. A log that is
+  /// already there stays. Never waits for room.
   void put(std::size_t frame, FrameLog log);
-  /// The log of that frame: the one on the shelf, or else what `trace` makes, one call at a time for each
+  /// The log of that frame: the one in the cache, or else what `trace` makes, one call at a time for each
   /// frame. If the log would exceed the limit, waits until other threads release theirs, so the calling
   /// thread must not hold a log. Throws what `trace` throws.
   [[nodiscard]] std::shared_ptr<const FrameLog> take(std::size_t frame, const Trace& trace);
