@@ -19,10 +19,15 @@ namespace marti::memory {
 /// without an unpredictable branch.
 template <std::uint32_t Depth>
 class RecencyLists {
-  static_assert(Depth >= 4 && Depth % 4 == 0);
+  static_assert(Depth >= 4 && Depth % 4 == 0 && Depth < 32);
 
  public:
   explicit RecencyLists(std::uint32_t sets) : index_(sets), lists_(sets) {}
+  RecencyLists(const RecencyLists&) = delete;  // touched_ refers to lists_
+  RecencyLists& operator=(const RecencyLists&) = delete;
+  RecencyLists(RecencyLists&&) noexcept = default;
+  RecencyLists& operator=(RecencyLists&&) noexcept = default;
+  ~RecencyLists() = default;
 
   /// The place of `line` in its set's list, 0 for the newest; Depth when the list does not have it. Moves it
   /// to the front; the last line of a full list is lost.

@@ -9,13 +9,12 @@
 
 namespace marti::sim {
 
-/// A priority queue of events. `pop` leaves a hole at the root that a following `push` fills, because a
-/// handler nearly always posts one event: that is one pass down the heap instead of two.
+/// A priority queue of events. `pop` leaves a hole at the root, which a following `push` fills if one comes
+/// before the next event is looked at: that is one pass down the heap instead of two.
 class EventHeap {
  public:
   [[nodiscard]] bool empty() const { return heap_.size() == (hole_ ? 1U : 0U); }
   [[nodiscard]] std::size_t size() const { return heap_.size() - (hole_ ? 1U : 0U); }
-  void reserve(std::size_t events) { heap_.reserve(events); }
 
   void push(const Event& event) {
     if (hole_) {
@@ -45,7 +44,7 @@ class EventHeap {
   /// Calls visit(event) for the few events that may be next unless an earlier one is pushed.
   template <class Visit>
   void each_likely_next(const Visit& visit) const {
-    for (std::size_t at = 1; at <= arity && at < heap_.size(); ++at) {
+    for (std::size_t at = hole_ ? 1 : 0; at <= arity && at < heap_.size(); ++at) {
       visit(heap_[at]);
     }
   }

@@ -24,7 +24,10 @@ namespace marti::sim {
 /// An event that is pushed must not be earlier than the one popped last.
 class EventQueue {
  public:
-  explicit EventQueue(std::uint32_t days = few_days) : days_(days, none), busy_days_(days) {}
+  EventQueue() : days_(few_days, none), busy_days_(few_days) {}
+
+  /// Bytes of host memory for each pending event.
+  static constexpr std::size_t bytes_an_event = 24 + sizeof(Event);
 
   [[nodiscard]] bool empty() const { return in_calendar_ == 0 && heap_.empty(); }
   [[nodiscard]] std::size_t size() const { return in_calendar_ + heap_.size(); }
@@ -83,6 +86,7 @@ class EventQueue {
     Event event;
     std::uint32_t next = none;  // of its day, or of the entries that are free
   };
+  static_assert(sizeof(Entry) + sizeof(Event) == bytes_an_event);
 
   // Days are counted from time 0; those that are open, as many as days_ has, begin with that of last_.
   [[nodiscard]] std::uint32_t place_of(Ticks time) const {
@@ -138,8 +142,8 @@ class EventQueue {
     return entry.event;
   }
 
-  // Chooses the length of a day so that the open days are four times as long as events are pushed ahead on
-  // average.
+  // Chooses the length of a day so that the open days are four to sixteen times as long as events are pushed
+  // ahead on average.
   void tune() {
     const double wanted =
         4.0 * ahead_ / static_cast<double>(tuned_after_last_) / static_cast<double>(days_.size());

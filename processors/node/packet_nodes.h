@@ -106,7 +106,7 @@ class PacketNodes : public NodeArray {
   }
   /// Host bytes that every kind of node takes: the cursor, statistics, an event, and the write buffer.
   [[nodiscard]] std::size_t common_bytes() const {
-    return sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(sim::Event) +
+    return sizeof(Cursor) + sizeof(NodeStatistics) + sim::EventQueue::bytes_an_event +
            input_.config.write_buffer * sizeof(sim::Ticks) + (late_.empty() ? 0 : sizeof(LateWrites));
   }
 

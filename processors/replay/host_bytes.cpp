@@ -3,6 +3,8 @@
 #include "memory/cache.h"
 #include "memory/tags.h"
 #include "processors/cost/accounting.h"
+#include "processors/walk/log_cursor.h"
+#include "sim/event_queue.h"
 
 namespace marti::processors {
 
@@ -21,7 +23,8 @@ std::uint64_t tag_bytes(const memory::CacheConfig& cache) {
 
 std::uint64_t host_bytes(const MachineConfig& config) {
   // A node's counts, while it runs and in the result, and its cursor, event and place in the posting order.
-  constexpr std::uint64_t bytes_a_node = 2 * sizeof(NodeStatistics) + 160;
+  constexpr std::uint64_t bytes_a_node =
+      2 * sizeof(NodeStatistics) + sizeof(Cursor) + sim::EventQueue::bytes_an_event + 8;
   std::uint64_t tags = 0;
   if (config.cache.organisation == CacheOrganisation::unified) {
     tags = tag_bytes(config.cache.cache);
@@ -48,7 +51,7 @@ std::uint64_t host_bytes(const MachineConfig& config) {
     homes += config.clusters * memory::network_bytes(config.network, config.nodes) +
              config.all_nodes() * bytes_a_ray * (1 + std::uint64_t{queue});
   }
-  constexpr std::uint64_t bytes_a_context = 200;
+  constexpr std::uint64_t bytes_a_context = sizeof(Cursor) + 64 + sim::EventQueue::bytes_an_event;
   constexpr std::uint64_t bytes_a_port = 80;
   const std::uint64_t contexts =
       config.ports_of_node() == 1 ? 0

@@ -38,13 +38,15 @@ class BehindCache {
     const memory::Service service =
         own_read_ ? memory::Service{sim::add_ticks(time, *own_read_), 0, *own_read_, 0, 0}
                   : local_.read(bytes, time);
-    read_bytes_ += bytes;
+    if (own_read_) {
+      read_bytes_ += bytes;
+    }
     add_service(division, service);
     time = service.done;
     return service;
   }
 
-  /// Counts the bytes read since the last call for the cluster of `node`.
+  /// Counts the bytes that `node` has read over an ideal interconnect since the last call.
   void count_bytes(std::uint32_t node) {
     if (!own_read_bytes_.empty()) {
       own_read_bytes_[node / nodes_] += std::exchange(read_bytes_, 0);
@@ -60,7 +62,7 @@ class BehindCache {
   bool reads_alone_;
   std::uint32_t nodes_;
   std::vector<std::int64_t> own_read_bytes_;  // of each cluster; empty where the interconnect is asked
-  std::int64_t read_bytes_ = 0;               // not counted yet
+  std::int64_t read_bytes_ = 0;               // over the ideal interconnect, since count_bytes()
 };
 
 }  // namespace marti::processors

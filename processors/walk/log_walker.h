@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -29,7 +30,8 @@ class LogWalker {
  public:
   static constexpr bool steps_singly = true;  ///< can stop after every reference
 
-  LogWalker(const ReplayInput& input, Caches caches)
+  /// `plan`: what visits_of() has returned; null where no walker shares it.
+  LogWalker(const ReplayInput& input, Caches caches, std::shared_ptr<const VisitPlan> plan = nullptr)
       : input_(input),
         caches_(std::move(caches)),
         topology_(input.log.topology.nodes.data()),
@@ -43,9 +45,17 @@ class LogWalker {
         behind_(input),
         passes_misses_on_(!behind_.only_reads()) {
     if (Caches::present && !counted && !guarded && !input.step_by_step) {
-      plan_ = plan_visits(input.log, input.layout, input.node_rank, unit_shift_, ticks_);
-      plan_limit_ = plan_.empty() ? 0 : 2U << operand_bits;
+      plan_ = plan != nullptr ? std::move(plan) : visits_of(input);
+      plan_limit_ = plan_->empty() ? 0 : 2U << operand_bits;
     }
+  }
+
+  /// The visits that walkers of this input plan. Walkers of several threads can share them.
+  [[nodiscard]] static std::shared_ptr<const VisitPlan> visits_of(const ReplayInput& input) {
+    return std::make_shared<const VisitPlan>(
+        plan_visits(input.log, input.layout, input.node_rank,
+                    static_cast<unsigned>(std::countr_zero(input.config.reference_bytes())),
+                    step_ticks(input.config, input.log)));
   }
 
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
@@ -112,9 +122,6 @@ class LogWalker {
     }
     const memory::Address next = ((cursor.at >> unit_shift_) + 1) << unit_shift_;
     return static_cast<std::uint32_t>(std::min(cursor.end, next) - cursor.at);
-  }
-  [[nodiscard]] memory::RecordKind missed_kind(const Cursor& cursor) const {
-    return in_visit(cursor) ? kind_of_label(label_of(cursor.line)) : cursor.kind;
   }
   /// Counts what the wait for the reference that missed was for, where that is counted.
   void note_wait(const Cursor& cursor, const memory::Service& service) const {
@@ -193,11 +200,11 @@ class LogWalker {
     sim::Ticks time = cursor.time;
     VisitTally sum = tally;
     for (; word != word_end && *word < limit; ++word) {
-      const Visit& visit = plan_.visits[operand_of(*word)];
+      const Visit& visit = plan_->visits[operand_of(*word)];
       if (visit.lines == 0) [[unlikely]] {
         break;
       }
-      const std::uint32_t* const first = plan_.lines.data() + visit.begin;
+      const std::uint32_t* const first = plan_->lines.data() + visit.begin;
       const std::uint32_t* const end = first + visit.lines;
       const std::uint32_t* line = first;
       while (line != end && look_up(cache, line)) {
@@ -278,7 +285,7 @@ class LogWalker {
   }
 
   [[nodiscard]] std::uint32_t label_of(const std::uint32_t* line) const {
-    return plan_.labels[static_cast<std::size_t>(line - plan_.lines.data())];
+    return plan_->labels[static_cast<std::size_t>(line - plan_->lines.data())];
   }
 
   // Makes record `index` the current one and reads it; `bytes` may span several records of an array.
@@ -491,7 +498,7 @@ class LogWalker {
   // Branches and leaves are the two lowest steps, so one comparison tells a planned step. plan_limit_ is 0
   // without a plan.
   static_assert(static_cast<std::uint32_t>(Step::branch) == 0 && static_cast<std::uint32_t>(Step::leaf) == 1);
-  VisitPlan plan_;
+  std::shared_ptr<const VisitPlan> plan_;  // null where no visit is planned
   std::uint32_t plan_limit_ = 0;
   const accel::TopologyNode* topology_;
   const std::uint32_t* entries_;

@@ -203,16 +203,18 @@ template <class Caches>
 class StrippedLog::Stripper {
  public:
   /// `left`: bytes that all threads together may still write.
-  Stripper(const ReplayInput& input, std::uint32_t taken_out, std::atomic<std::int64_t>& left)
+  Stripper(const ReplayInput& input, std::uint32_t taken_out, std::shared_ptr<const VisitPlan> plan,
+           std::atomic<std::int64_t>& left)
       : log_(input.log),
         packets_(input.config.packets),
-        walker_(input, Caches(input.config, taken_out)),
+        walker_(input, Caches(input.config, taken_out), std::move(plan)),
         left_(left) {}
 
   /// Strips row `number` of packets.
   void strip(std::uint32_t number, std::vector<BandWriter> writers, std::vector<PacketTotals>& totals) {
     Caches& caches = walker_.caches();
     caches.writers = std::move(writers);
+    totals.reserve((log_.width - 1) / packets_.width + 1);
     const std::uint32_t y0 = number * packets_.height;
     const std::uint32_t y1 = y0 + std::min(packets_.height, log_.height - y0);
     bool fits = true;
@@ -266,6 +268,8 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const WorkLog&
                                                                   const MachineConfig& config,
                                                                   std::span<const std::uint32_t> ways,
                                                                   std::uint64_t most_bytes) {
+  sim::ensure(!ways.empty() && *std::max_element(ways.begin(), ways.end()) <= most_ways,
+              "a log is stripped for no ways, or for too many");
   std::vector<std::shared_ptr<const StrippedLog>> made(ways.size());
   const std::string key = key_of(config);
   if (key.empty()) {
@@ -283,6 +287,11 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const WorkLog&
     if (layout.end() / plain.cache.cache.line >= most_lines) {
       return made;
     }
+    const std::uint64_t fixed = packets.size() * (sizeof(PacketTotals) + ways.size() * sizeof(Place));
+    if (fixed > most_bytes) {
+      return made;
+    }
+    most_bytes -= fixed;
     const std::vector<std::uint32_t> rank = node_ranks(log, plain);
     const ReplayInput input = {log, plain, layout, packets, rank};
     const std::size_t bands =
@@ -296,8 +305,9 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const WorkLog&
         std::min<std::uint64_t>(most_bytes, std::numeric_limits<std::int64_t>::max()));
     const std::uint32_t taken_out = std::max(1U, *std::min_element(ways.begin(), ways.end()));
     const auto strip_with = [&]<class Caches>() {
+      const std::shared_ptr<const VisitPlan> plan = LogWalker<Caches>::visits_of(input);
       tbb::enumerable_thread_specific<Stripper<Caches>> strippers(
-          [&] { return Stripper<Caches>(input, taken_out, left); });
+          [&] { return Stripper<Caches>(input, taken_out, plan, left); });
       tbb::parallel_for(std::size_t{0}, bands, [&](std::size_t number) {
         std::vector<BandWriter> writers;
         for (const std::shared_ptr<StrippedLog>& each : logs) {
@@ -331,7 +341,7 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const WorkLog&
       std::copy(logs.begin(), logs.end(), made.begin());
     }
   } catch (const sim::UserError&) {
-    // A time overflows; the replay itself reports that, with the machine's clock.
+    // The machine cannot be replayed, or a time overflows; the replay itself reports that.
   }
   return made;
 }

@@ -83,7 +83,8 @@ class StrippedLog {
 
   struct StrippedPacket {
     std::span<const std::uint64_t> words;  ///< of its pixels, row by row
-    /// Lines, with their record kinds, that are asked for when the packet ends, without time and uncounted.
+    /// Lines, each with some record kind of its cache, that are asked for when the packet ends, without time
+    /// and uncounted.
     std::span<const std::uint32_t> at_end;
     const PacketTotals& totals;
   };
@@ -114,7 +115,7 @@ class StrippedLog {
     std::uint32_t word = 0;
     std::uint32_t at_end = 0;
   };
-  // One row of packets.
+  // One row of packets, written by one thread.
   struct Band {
     std::vector<std::uint64_t> words;
     std::vector<std::uint32_t> at_end;

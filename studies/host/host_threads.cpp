@@ -71,8 +71,10 @@ void limit_threads_to_available() {
   std::size_t threads = processors;
   if (there < wanted) {
     threads = there < others + 2 ? 1 : (there - others) / 2;
-    // For as long as the program runs.
-    static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    // Never destroyed: at the program's end its destructor would start the threads that there are not.
+    static const auto* const limit =
+        new tbb::global_control(tbb::global_control::max_allowed_parallelism, threads);
+    static_cast<void>(limit);
   }
   start_pool(threads);
 }

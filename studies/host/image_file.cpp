@@ -24,7 +24,8 @@ const ImageCodec& load_codec() {
   // half-made pool of threads would wait for ever. A thread of its own has no catch, so nothing is unwound,
   // and the program ends with the message of studies/cli/last_words.cpp.
   std::thread([&] {
-    // Found by the program's RUNPATH (studies/CMakeLists.txt). It stays loaded: OpenImageIO keeps threads.
+    // Found as the libraries are that the program is linked to: by the loader's settings, then its RUNPATH
+    // (studies/CMakeLists.txt). It stays loaded, because OpenImageIO keeps threads.
     void* const library = dlopen("marti_image_codec.so", RTLD_LAZY);
     function = library == nullptr ? nullptr : dlsym(library, "marti_image_codec");
     if (function == nullptr) {

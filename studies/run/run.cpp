@@ -83,9 +83,10 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
 }
 
 // The log stripped for `machine` and `other`, which both walk it; null where that would not be faster or
-// would take more than half of the memory that is left.
+// would take more than half of the memory that the work log, the machine and heat maps leave.
 std::shared_ptr<const processors::StrippedLog> strip_for_both(const FrameConfig& frame,
                                                               const processors::WorkLog& log,
+                                                              std::uint64_t log_bytes,
                                                               const processors::MachineConfig& machine,
                                                               const processors::MachineConfig& other) {
   using processors::StrippedLog;
@@ -93,7 +94,10 @@ std::shared_ptr<const processors::StrippedLog> strip_for_both(const FrameConfig&
   const bool pays = StrippedLog::ways_of(machine) != 0 &&
                     StrippedLog::ways_of(machine) == StrippedLog::ways_of(other) &&
                     StrippedLog::key_of(machine) == StrippedLog::key_of(other);
-  return pays ? StrippedLog::make(log, machine, frame.memory.left() / 2) : nullptr;
+  const std::uint64_t taken = log_bytes + processors::host_bytes(machine) +
+                              HeatMap::host_bytes(std::uint64_t{frame.render.width} * frame.render.height);
+  const std::uint64_t left = frame.memory.left();
+  return pays && taken < left ? StrippedLog::make(log, machine, (left - taken) / 2) : nullptr;
 }
 
 // Times the frame on the machine and on one node, and derives all other figures.
@@ -106,7 +110,7 @@ void time_frame(const RecordConfig& record, const std::filesystem::path& directo
   } else {
     const processors::MachineConfig one_node = processors::one_node_of(result.machine);
     const std::shared_ptr<const processors::StrippedLog> stripped =
-        strip_for_both(result.frame_config, log, result.machine, one_node);
+        strip_for_both(result.frame_config, log, result.functional.totals.bytes, result.machine, one_node);
     result.timed = watched_replay(record, directory, stripped.get(), result);
     processors::ReplayOptions options;
     keep(result.frame_config.keep, options);

@@ -28,10 +28,15 @@ using Machines = std::vector<const processors::MachineConfig*>;
 // Whether the sweep will strip the log for this machine, one of those of a frame.
 bool shares_stripped(const processors::MachineConfig& machine, const Machines& machines) {
   const std::string key = processors::StrippedLog::key_of(machine);
-  const auto sharing = std::count_if(
-      machines.begin(), machines.end(),
-      [&](const processors::MachineConfig* other) { return processors::StrippedLog::key_of(*other) == key; });
-  return !key.empty() && static_cast<std::size_t>(sharing) >= StrippedLogCache::fewest_machines;
+  std::size_t sharing = 0;
+  bool lru = false;
+  for (const processors::MachineConfig* other : machines) {
+    if (processors::StrippedLog::key_of(*other) == key) {
+      ++sharing;
+      lru = lru || processors::StrippedLog::ways_of(*other) != 0;
+    }
+  }
+  return !key.empty() && StrippedLogCache::pays(sharing, lru);
 }
 
 // Estimates for one frame and one of its machines, scaled up from a small image.

@@ -79,7 +79,7 @@ for (const [kind, report] of Object.entries(reports)) {
           assert.ok(rows.length > 0, name);
           const shown = (await rowsOf(page, name)).filter(({ kind }) => kind !== "cursor");  // the slider's place
           assertRows(shown, rows, name);
-          // A page's curves have fewer digits, and the explorer adds where it is read.
+          // The rows come from one script; two programs print their numbers.
           const beside = readCsv(join(report.plots, `${name}.csv`));
           assertRows(rows.filter((row) => row.kind !== "cursor"), beside.filter((row) => row.kind !== "cursor"), `${name} beside its plot`, 1e-4);
         }

@@ -291,10 +291,10 @@ TEST_F(ReportCommand, ReplacesNothingButPages) {
     EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
   };
   const std::string result = read(run / "result.json");
-  refused(run / "result.json", "no HTML page");
+  refused(run / "result.json", "not an HTML page");
   EXPECT_EQ(read(run / "result.json"), result);
   write(place("empty"), "");
-  refused(place("empty"), "no HTML page");
+  refused(place("empty"), "not an HTML page");
   refused(run, "is no regular file");
   fs::create_symlink("none", place("link"));
   refused(place("link"), "is no regular file");

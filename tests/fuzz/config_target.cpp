@@ -10,6 +10,7 @@
 #include "studies/keys/record_keys.h"
 #include "studies/run/run_result.h"
 #include "studies/sweep/plan/sweep_keys.h"
+#include "studies/sweep/plan/sweep_points.h"
 #include "studies/sweep/plan/sweep_table.h"
 #include "target.h"
 
@@ -39,7 +40,8 @@ void read_sweep(std::string_view text) {
   const sim::Config config = sim::Config::from_text(schema, text, "fuzz.toml");
   const studies::SweepTable table = studies::read_sweep_table(config);
   promise(!table.axes.empty(), "a sweep without an axis");
-  promise(table.points() >= 1 && table.points() <= studies::most_sweep_points, "too many points");
+  const std::uint64_t points = studies::SweepPoints(config, table).size();
+  promise(points >= 1 && points <= studies::most_sweep_points, "too many points");
   (void)studies::read_prices(config);
 }
 

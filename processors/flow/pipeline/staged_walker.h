@@ -68,11 +68,11 @@ class StagedWalker : public LogWalker<Caches> {
     if (word >= plan_limit_) {
       return nullptr;
     }
-    const Visit& visit = plan_.visits[operand_of(word)];
+    const Visit& visit = plan_->visits[operand_of(word)];
     return visit.lines == 0 ? nullptr : &visit;
   }
   void begin_lines(Cursor& cursor, std::uint32_t first, std::uint32_t lines) const {
-    cursor.line = plan_.lines.data() + first;
+    cursor.line = plan_->lines.data() + first;
     cursor.line_end = cursor.line + lines;
     cursor.tests_begun = 0;
   }

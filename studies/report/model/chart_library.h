@@ -1,5 +1,5 @@
-// The charts of reports: specifications (studies/report/charts/*.vl.json, built into the program) with the
-// rows of a table.
+// The charts of reports: specifications (studies/report/model/charts/*.vl.json, built into the program) with
+// the rows of a table.
 #pragma once
 
 #include <initializer_list>

@@ -28,7 +28,7 @@ using Clock = std::chrono::steady_clock;
 }
 
 /// A file in memory, of which the child has another descriptor. It can neither fill up nor be closed by the
-/// one that reads it, so that nobody waits for anybody.
+/// one that reads it, so neither of the two programs can block on the other.
 class MemoryFile {
  public:
   explicit MemoryFile(std::string_view content = {}) : descriptor_(::memfd_create("marti", MFD_CLOEXEC)) {
@@ -137,10 +137,18 @@ std::string run_child(const ChildProcess& child, std::string_view input, std::si
   const Clock::time_point end = Clock::now() + child.limit;
   const std::array<MemoryFile, 3> files{MemoryFile(input), MemoryFile(), MemoryFile()};
   const pid_t process = start(child, files);
-  const AtSignal with_us([process](int /*signal*/) { ::kill(process, SIGKILL); });
+  const AtSignal kill_child_at_signal([process](int /*signal*/) { ::kill(process, SIGKILL); });
   int status = 0;
   std::string fault;
-  while (::waitpid(process, &status, fault.empty() ? WNOHANG : 0) == 0) {
+  for (;;) {
+    const pid_t ended = ::waitpid(process, &status, fault.empty() ? WNOHANG : 0);
+    if (ended == process) {
+      break;
+    }
+    if (ended < 0 && errno != EINTR) {
+      throw sim::UserError(name +
+                           ": its end cannot be waited for: " + std::generic_category().message(errno));
+    }
     if (files[1].size() > most || files[2].size() > most) {
       fault = " wrote more than " + std::to_string(most) + " bytes and was ended";
     } else if (Clock::now() >= end) {

@@ -14,7 +14,7 @@
 
 namespace marti::studies {
 
-// The text of studies/report/draw.js, embedded by cmake/embed_text.cmake.
+// The text of studies/report/plots/draw.js, embedded by cmake/embed_text.cmake.
 std::string_view draw_script();
 
 namespace {

@@ -133,7 +133,8 @@ void take_text(const fs::path& file, ReportData& report) {
 // What a study has found, claim by claim (studies/tables/claim.h): its answer.
 void take_claims(SqliteConnection& connection, ReportData& report) {
   SqliteStatement rows(connection,
-                       "SELECT subject, coalesce(here, '?'), verdict FROM claims ORDER BY rowid LIMIT 12");
+                       "SELECT CAST(coalesce(subject, '?') AS TEXT), CAST(coalesce(here, '?') AS TEXT), "
+                       "CAST(coalesce(verdict, '?') AS TEXT) FROM claims ORDER BY rowid LIMIT 12");
   while (rows.next()) {
     report.answer.push_back(fmt::format("{}: {} ({}).", rows.text(0), rows.text(1), rows.text(2)));
   }

@@ -62,14 +62,15 @@ class ByteWriter {
 /// Throws InternalError for bytes that a ByteWriter has not written.
 class ByteReader {
  public:
-  explicit ByteReader(std::string_view bytes) : left_(bytes) {}
+  /// `what`: the bytes, for the message.
+  ByteReader(std::string_view bytes, std::string_view what) : left_(bytes), what_(what) {}
 
   template <class... Values>
   ByteReader& read(Values&... values) {
     (get(values), ...);
     return *this;
   }
-  void end() const { sim::ensure(left_.empty(), "bytes go on after their end"); }
+  void end() const { require(left_.empty(), "goes on after its end"); }
 
  private:
   template <std::integral Number>
@@ -79,7 +80,7 @@ class ByteReader {
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       value |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
     }
-    sim::ensure(!std::same_as<Number, bool> || value <= 1, "bytes that are garbled");
+    require(!std::same_as<Number, bool> || value <= 1, "is garbled");
     number = static_cast<Number>(value);
   }
   void get(std::string& text) {
@@ -112,13 +113,18 @@ class ByteReader {
   }
 
   std::string_view take(std::uint64_t bytes) {
-    sim::ensure(bytes <= left_.size(), "bytes end too early");
+    require(bytes <= left_.size(), "ends too early");
     const std::string_view taken = left_.substr(0, bytes);
     left_.remove_prefix(bytes);
     return taken;
   }
 
+  void require(bool holds, std::string_view fault) const {
+    sim::ensure(holds, holds ? std::string() : std::string(what_) + " " + std::string(fault));
+  }
+
   std::string_view left_;
+  std::string_view what_;
 };
 
 }  // namespace marti::studies

@@ -34,7 +34,7 @@ SweepMessage decode_sweep_message(std::string_view bytes) {
   SweepTask& task = message.task;
   std::uint8_t kind = 0;
   std::uint8_t task_kind = 0;
-  ByteReader(bytes)
+  ByteReader(bytes, "a message between ranks")
       .read(kind, message.number, message.nanoseconds, message.frame, message.machine, message.bytes)
       .read(task_kind, task.frame, task.sharing, task.ways, task.machines)
       .end();

@@ -60,7 +60,7 @@ std::string why_no_lock(int descriptor) {
 
 std::string host_name() {
   std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "an unknown host";
 }
 
 StoreLock::StoreLock(const std::filesystem::path& store) : file_(store.string() + ".lock") {

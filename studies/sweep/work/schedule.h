@@ -28,11 +28,11 @@ struct SweepTask {
   std::vector<std::uint32_t> ways{};
 };
 
-/// Machines of a frame that can share a stripped log form a batch. A place (a process, with all its threads)
-/// is given machines of one batch as long as there are any, then a new batch, then some of the batch with the
-/// most work left. One log is traced ahead of the machines that are being timed, so that nobody waits when a
-/// frame comes to its end. Costs are measured: the mean time of the batch's machines, or else of all
-/// machines.
+/// Machines of a frame whose logs can be stripped in one pass form a batch. A place (a process, with all its
+/// threads) is given machines of one batch as long as there are any, then a new batch, then some of the batch
+/// with the most work left. One log is traced ahead of the machines that are being timed, so that nobody
+/// waits when a frame comes to its end. Costs are measured: the mean time of the batch's machines, or else of
+/// all machines.
 class Schedule {
  public:
   /// `machines_done` and `frames_done` as SweepStore gives them. A frame whose machines are all done is

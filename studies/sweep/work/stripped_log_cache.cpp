@@ -9,9 +9,10 @@ namespace marti::studies {
 std::shared_ptr<const processors::StrippedLog> StrippedLogCache::get(
     std::size_t frame, const std::shared_ptr<const processors::WorkLog>& log,
     const processors::MachineConfig& machine, std::size_t sharing, std::span<const std::uint32_t> ways) {
-  const std::string key = processors::StrippedLog::key_of(machine);
-  const bool lru = !ways.empty() && ways.back() != 0;
-  if (key.empty() || sharing < (lru ? fewest_machines : fewest_without_lru)) {
+  using processors::StrippedLog;
+  const std::string key = StrippedLog::key_of(machine);
+  if (key.empty() ||
+      !pays(sharing, std::any_of(ways.begin(), ways.end(), [](auto each) { return each != 0; }))) {
     return nullptr;
   }
   std::shared_ptr<Entry> entry;
@@ -34,12 +35,29 @@ std::shared_ptr<const processors::StrippedLog> StrippedLogCache::get(
   }
   const std::lock_guard making(entry->making);
   if (!entry->made) {
-    entry->logs = processors::StrippedLog::make(*log, machine, ways, most_bytes_ / most_kept);
-    entry->made = true;
+    make(*entry, *log, machine, ways);
   }
-  const auto wanted = std::find(ways.begin(), ways.end(), processors::StrippedLog::ways_of(machine));
-  sim::ensure(wanted != ways.end(), "a log is not stripped for a machine of its batch");
-  return entry->logs[static_cast<std::size_t>(wanted - ways.begin())];
+  const auto wanted = std::find(entry->ways.begin(), entry->ways.end(), StrippedLog::ways_of(machine));
+  sim::ensure(wanted != entry->ways.end(), "a log is not stripped for a machine of its batch");
+  return entry->logs[static_cast<std::size_t>(wanted - entry->ways.begin())];
+}
+
+void StrippedLogCache::make(Entry& entry, const processors::WorkLog& log,
+                            const processors::MachineConfig& machine,
+                            std::span<const std::uint32_t> ways) const {
+  using processors::StrippedLog;
+  std::uint64_t left = most_bytes_ / most_kept;
+  entry.ways.assign(ways.begin(), ways.end());
+  entry.logs = StrippedLog::make(log, machine, ways, left);
+  const auto missing = [](const auto& each) { return each == nullptr; };
+  if (ways.size() > 1 && std::all_of(entry.logs.begin(), entry.logs.end(), missing)) {
+    // They do not fit together. Those for many ways take the least memory.
+    for (std::size_t i = ways.size(); i-- > 0;) {
+      entry.logs[i] = StrippedLog::make(log, machine, ways.subspan(i, 1), left).front();
+      left -= entry.logs[i] == nullptr ? 0 : std::min(left, entry.logs[i]->bytes_of_words());
+    }
+  }
+  entry.made = true;
 }
 
 void StrippedLogCache::drop(std::size_t frame) {

@@ -22,7 +22,8 @@ class StrippedLogCache {
 
   /// The log stripped for the machine; null where that is impossible, takes too much memory, or does not pay
   /// because only `sharing` machines use the pass that strips it. The first that asks makes it together with
-  /// those for `ways`, which must include the machine's; other threads that ask for one of them wait.
+  /// those for `ways`, ascending, which must include the machine's; other threads that ask for one of them
+  /// wait.
   [[nodiscard]] std::shared_ptr<const processors::StrippedLog> get(
       std::size_t frame, const std::shared_ptr<const processors::WorkLog>& log,
       const processors::MachineConfig& machine, std::size_t sharing, std::span<const std::uint32_t> ways);
@@ -32,8 +33,12 @@ class StrippedLogCache {
 
   /// Stripping a log takes less time than it saves for this many machines, some of them with LRU caches.
   static constexpr std::size_t fewest_machines = 2;
-  /// The same where only references to the newest line can be taken out.
+  /// The number where only references to the newest line can be taken out.
   static constexpr std::size_t fewest_without_lru = 4;
+  /// Whether a pass pays that serves so many machines. `lru`: it strips a log for LRU caches.
+  [[nodiscard]] static constexpr bool pays(std::size_t sharing, bool lru) {
+    return sharing >= (lru ? fewest_machines : fewest_without_lru);
+  }
   /// This many passes are kept, their logs together of at most their part of the memory.
   static constexpr std::size_t most_kept = 2;
 
@@ -43,8 +48,12 @@ class StrippedLogCache {
     std::string key;
     std::mutex making;
     bool made = false;
-    std::vector<std::shared_ptr<const processors::StrippedLog>> logs;
+    std::vector<std::uint32_t> ways;
+    std::vector<std::shared_ptr<const processors::StrippedLog>> logs;  // one for each of `ways`
   };
+
+  void make(Entry& entry, const processors::WorkLog& log, const processors::MachineConfig& machine,
+            std::span<const std::uint32_t> ways) const;
 
   std::uint64_t most_bytes_;
   std::mutex mutex_;

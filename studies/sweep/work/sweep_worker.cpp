@@ -78,7 +78,7 @@ void do_time(SweepSite& site, TaskSource& source, const SweepTask& task) {
       const MemoryGate::Pass pass(site.machines, processors::host_bytes(machine.config));
       processors::ReplayOptions options;
       options.stripped = stripped.get();
-      // The events that a row holds must not depend on whether there was room for a stripped log.
+      // Rows count an event for each read, whatever the interconnect is.
       options.keep_read_events = true;
       row = sim::with_places(all_of(machine.settings), site.plan.file, [&] {
         return sweep_row(machine.config, processors::replay(*log->log, machine.config, options));

@@ -63,6 +63,26 @@ TEST(Bus, SplitReadsOverlapTheirBanks) {
   EXPECT_EQ(ports.interconnect->statistics().busy, 100);
 }
 
+// A read of the only port takes one event, with the outcome that it has beside a port that asks for nothing.
+TEST(Bus, TheOnlyPortIsServedLikeOneOfTwo) {
+  const std::vector<test::IssuedTransaction> issues = {
+      {0, {0, 0, 32}},   {200, {0, 96, 64}, true}, {200, {0, 128, 64}, true}, {205, {0, 32, 32}},
+      {600, {0, 64, 8}}, {700, {0, 0, 512}, true}, {701, {0, 32, 32}}};
+  Ports alone(bus(BusMode::split), two_banks(), issues, 1);
+  Ports beside(bus(BusMode::split), two_banks(), issues, 2);
+  ASSERT_EQ(alone.services[0].size(), beside.services[0].size());
+  for (std::size_t i = 0; i < alone.services[0].size(); ++i) {
+    EXPECT_EQ(alone.services[0][i].done, beside.services[0][i].done);
+    EXPECT_EQ(alone.services[0][i].wait_interconnect, beside.services[0][i].wait_interconnect);
+    EXPECT_EQ(alone.services[0][i].wait_bank, beside.services[0][i].wait_bank);
+  }
+  EXPECT_EQ(alone.written[0], beside.written[0]);
+  EXPECT_EQ(alone.interconnect->statistics().busy, beside.interconnect->statistics().busy);
+  EXPECT_EQ(alone.interconnect->statistics().waits.sum, beside.interconnect->statistics().waits.sum);
+  EXPECT_EQ(alone.interconnect->statistics().waits.count, beside.interconnect->statistics().waits.count);
+  EXPECT_LT(alone.engine.events(), beside.engine.events());
+}
+
 TEST(Bus, SplitReadsOfOneBankWaitForIt) {
   // The bank is busy from 10 to 70; the second access starts there and is ready at 110.
   Ports ports(bus(BusMode::split), two_banks(), {{0, {0, 0, 32}}, {0, {1, 64, 32}}});

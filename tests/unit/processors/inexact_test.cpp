@@ -39,7 +39,7 @@ std::vector<std::uint64_t> everything(std::uint64_t packets) {
 
 RC_GTEST_PROP(Inexact, AStrippedLogGivesTheSameSample, (std::uint64_t seed)) {
   test::Random random(seed);
-  const WorkLog log = small_log(random);
+  const WorkLog log = test::small_log(random);
   const MachineConfig machine = random_sampled(random);
   const auto stripped = StrippedLog::make(log, machine);
   if (stripped == nullptr) {

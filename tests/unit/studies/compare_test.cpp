@@ -213,7 +213,7 @@ TEST(Compare, SaysWhatItExpects) {
   EXPECT_NE(message(place + "/sweep:-1", place + "/run").find("no such point"), std::string::npos);
   EXPECT_NE(message(place + "/run:0", place + "/run").find("no such file"), std::string::npos);
   write(directory.path() / "run" / "results.sqlite", "");
-  EXPECT_NE(message(place + "/run", place + "/run").find("name the file"), std::string::npos);
+  EXPECT_NE(message(place + "/run", place + "/run").find("holds both a run"), std::string::npos);
   EXPECT_EQ(message(place + "/run/result.json", place + "/sweep:0"), "no UserError");
 }
 

@@ -151,6 +151,39 @@ TEST_F(Plots, HaveTheRowsOfTheExplorer) {
   EXPECT_EQ(plots[3].content, "value,end\r\n1 KiB,\r\n2 KiB,4\r\n");
 }
 
+// A curve of the model with its bands, zones and saturation, worked out by hand: errors are factors of 1.25
+// between the points and of 2 beyond them.
+TEST_F(Plots, HaveTheCurveOfTheExplorer) {
+  ReportChart curve = chart("curve");
+  curve.spec["data"]["values"] = nlohmann::ordered_json::array();
+  curve.live = {{"rows", "explorer"}};
+  ReportData report = report_of({curve});
+  report.explorer = nlohmann::ordered_json::parse(
+      R"({"axis": 0, "start": 0, "place": [[0, 1, 2]], "ordinal": [0, 1, 2], "front": [],
+          "axes": [{"name": "machine.nodes", "texts": ["1", "2", "4"], "values": [1, 2, 4]}],
+          "columns": {"end": [8, 4, 2], "speed_up": [1, 2, 4], "efficiency": [1, 1, 1]},
+          "models": {"0": {"x": [1, 2, 4, 8],
+            "error": {"between": {"known": true, "p95": 0.25}, "beyond": {"known": true, "p95": 1}},
+            "speed_up_error": {"between": {"known": true, "p95": 0.25}, "beyond": {"known": false}},
+            "curves": {"*": {"ms": [8, 4, 2, 1], "bound": [8, 4, 2, 2], "base": 8, "saturation": 3}}}}})");
+  const std::vector<Plot> plots = draw_plots(report, directory_, /*pdf=*/false);
+  ASSERT_EQ(plots.size(), 2U);
+  EXPECT_EQ(
+      plots[1].content,
+      "kind,zone,x,x2,ms,ms_low,ms_high,ms_bound,ideal,speed_up,speed_up_low,speed_up_high,speed_up_bound\r\n"
+      "zone,above,4,8,,,,,,,,,\r\n"
+      "saturation,,3,,,,,,,,,,\r\n"
+      "model,below,1,,8,4,16,8,1,,,,\r\n"
+      "model,between,1,,8,6.4,10,8,1,1,0.8,1.25,1\r\n"
+      "model,between,2,,4,3.2,5,4,2,2,1.6,2.5,2\r\n"
+      "model,between,4,,2,1.6,2.5,2,4,4,3.2,5,4\r\n"
+      "model,above,4,,2,1,4,2,4,,,,\r\n"
+      "model,above,8,,1,0.5,2,2,8,,,,\r\n"
+      "exact,between,1,,8,,,,1,1,,,\r\n"
+      "exact,between,2,,4,,,,2,2,,,\r\n"
+      "exact,between,4,,2,,,,4,4,,,\r\n");
+}
+
 TEST_F(Plots, AreTheSameBytesAgain) {
   const std::vector<Plot> plots = draw_plots(report_of({chart("speedup")}), directory_, /*pdf=*/true);
   const std::vector<Plot> again = draw_plots(report_of({chart("speedup")}), directory_, /*pdf=*/true);

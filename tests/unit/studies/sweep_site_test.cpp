@@ -91,11 +91,27 @@ TEST(StrippedLogCache, NoneWhereItDoesNotPayOrFit) {
   const std::shared_ptr<const WorkLog> log = some_log(2);
   StrippedLogCache cache(plenty);
   EXPECT_EQ(cache.get(0, log, with_line(32), enough - 1, four_ways), nullptr);
+  constexpr std::array<std::uint32_t, 1> no_lru = {0};
+  MachineConfig fifo = with_line(32);
+  fifo.cache.cache.replacement = memory::Replacement::fifo;
+  EXPECT_EQ(cache.get(3, log, fifo, StrippedLogCache::fewest_without_lru - 1, no_lru), nullptr);
+  EXPECT_NE(cache.get(3, log, fifo, StrippedLogCache::fewest_without_lru, no_lru), nullptr);
   MachineConfig without = with_line(32);
   without.cache.organisation = processors::CacheOrganisation::none;
   EXPECT_EQ(cache.get(0, log, without, 100, four_ways), nullptr);
   const auto made = cache.get(0, log, with_line(32), enough, four_ways);
   ASSERT_NE(made, nullptr);
+  // Room for one of two: the one with more ways is made.
+  constexpr std::array<std::uint32_t, 2> two_and_four = {2, 4};
+  MachineConfig two = with_line(32);
+  two.cache.cache.ways = 2;
+  two.cache.cache.size /= 2;
+  const std::uint64_t larger = StrippedLog::make(*log, two)->bytes_of_words();
+  ASSERT_GT(larger, made->bytes_of_words());
+  const std::uint64_t packets = std::uint64_t{3} * 3 * (sizeof(processors::PacketTotals) + 2 * 8);
+  StrippedLogCache narrow(StrippedLogCache::most_kept * (made->bytes_of_words() + packets));
+  EXPECT_NE(narrow.get(0, log, with_line(32), enough, two_and_four), nullptr);
+  EXPECT_EQ(narrow.get(0, log, two, enough, two_and_four), nullptr);
   // Room for one and a half: each may take its part of it only.
   StrippedLogCache small(made->bytes_of_words() * 3 / 2);
   EXPECT_EQ(small.get(0, log, with_line(32), enough, four_ways), nullptr);

@@ -207,8 +207,10 @@ TEST(SweepStore, RefusesOtherFormatsAndVersions) {
     const fs::path other = directory.path() / "other.sqlite";
     fs::copy_file(file, other, fs::copy_options::overwrite_existing);
     execute(other, sql);
+    const std::string before = sim::read_file(other, std::int64_t{1} << 24U);
     const std::string message = user_error_of([&] { SweepStore(other, made_plan(2)); });
     EXPECT_NE(message.find(reason), std::string::npos) << message;
+    EXPECT_TRUE(sim::read_file(other, std::int64_t{1} << 24U) == before) << sql << ": the store was touched";
   };
   refused_after("PRAGMA application_id = 7", "not the store of a sweep");
   refused_after("PRAGMA user_version = 3", "format 3");
