@@ -62,7 +62,7 @@ TEST(LongestDuration, IsTheCyclesOrTheClockWhicheverIsUnusual) {
   EXPECT_EQ(longest_duration({}), "");
   const auto message = [&](std::string clock, std::string latency) {
     return test::user_error_of(
-        [&] { placed(values(clock, latency), "a.toml", [] { throw TimeOverflow("too long"); }); });
+        [&] { with_places(values(clock, latency), "a.toml", [] { throw TimeOverflow("too long"); }); });
   };
   EXPECT_EQ(message("1 Hz", "7"), "a.toml:3: bus.clock: too long");
   EXPECT_EQ(message("100 MHz", "1000000000"), "--set bus.latency_cycles=1000000000: too long");
