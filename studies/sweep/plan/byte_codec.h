@@ -120,7 +120,9 @@ class ByteReader {
   }
 
   void require(bool holds, std::string_view fault) const {
-    sim::ensure(holds, holds ? std::string() : std::string(what_) + " " + std::string(fault));
+    if (!holds) {
+      throw sim::InternalError(std::string(what_) + " " + std::string(fault));
+    }
   }
 
   std::string_view left_;

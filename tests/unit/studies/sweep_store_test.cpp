@@ -10,6 +10,7 @@
 #include <random>
 
 #include "sim/error.h"
+#include "sim/files.h"
 #include "studies/tables/sqlite_connection.h"
 #include "studies/version.h"
 #include "tests/support/temporary_directory.h"
