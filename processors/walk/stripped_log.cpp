@@ -30,15 +30,11 @@ class StrippedLog::BandWriter {
   /// began, the packet has asked for `others` lines of its set; `again`: it has asked for this line before.
   [[gnu::always_inline]] void refer(sim::Ticks time, sim::Ticks end, std::uint32_t what, std::uint32_t others,
                                     bool again) {
-    if (ways_ == 0) {
-      put(time - since_, what);
-    } else if (others >= ways_) {
-      put(time - since_, what | sure_miss);
-    } else if (!again) {
-      put(time - since_, what);
-    } else {
+    const bool sure = ways_ != 0 && others >= ways_;
+    if (ways_ != 0 && again && !sure) {
       return;
     }
+    put(time - since_, sure ? what | sure_miss : what);
     since_ = end;
   }
   void end_pixel(sim::Ticks time) { put(time - since_, end_of_pixel); }
@@ -211,7 +207,7 @@ class StrippedLog::Stripper {
         left_(left) {}
 
   /// Strips row `number` of packets.
-  void strip(std::uint32_t number, std::vector<BandWriter> writers, std::vector<PacketTotals>& totals) {
+  void strip(std::uint32_t number, std::vector<BandWriter>&& writers, std::vector<PacketTotals>& totals) {
     Caches& caches = walker_.caches();
     caches.writers = std::move(writers);
     totals.reserve((log_.width - 1) / packets_.width + 1);
