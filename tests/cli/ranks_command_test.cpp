@@ -62,7 +62,7 @@ class RankedSweep : public ::testing::Test {
     write(config_, config_text);
   }
   [[nodiscard]] std::string sweep(const fs::path& directory) const {
-    return "sweep " + quoted(config_) + " -o " + quoted(directory);
+    return "sweep " + quoted(config_) + " -o " + quoted(directory) + settings_;
   }
   [[nodiscard]] fs::path at(const char* name) const { return directory_.path() / name; }
   [[nodiscard]] std::string store_of_one_process() const {
@@ -73,6 +73,7 @@ class RankedSweep : public ::testing::Test {
 
   TemporaryDirectory directory_;
   fs::path config_ = directory_.path() / "sweep.toml";
+  std::string settings_;  // of all sweeps of a test, beside those of the file
 };
 
 TEST_F(RankedSweep, GivesTheStoreOfOneProcess) {
@@ -199,6 +200,7 @@ pid_t process_of_rank(pid_t parent, int rank) {
 class KilledRank : public RankedSweep, public ::testing::WithParamInterface<int> {};
 
 TEST_P(KilledRank, LosesOnlyWhatWasInFlight) {
+  settings_ = " --set image.width=160 --set image.height=160";  // so that it is not over before it is killed
   const std::string expected = store_of_one_process();
   const fs::path directory = at("killed");
   const std::string command =
