@@ -27,7 +27,7 @@ class NumberSet {
       high_ &= ~bit(number / 4096);
     }
   }
-  /// The least member from `number` on or, if there is none, the least member. The set must not be empty.
+  /// The least member from `number` on; if all are less, the least of all. The set must not be empty.
   [[nodiscard]] std::uint32_t next(std::uint32_t number) const {
     if (const std::uint64_t word = low_[number / 64] & from(number); word != 0) [[likely]] {
       return number / 64 * 64 + first(word);

@@ -14,11 +14,7 @@ using LoggedNodes = ImageNodes<Caches, LogWalker<Caches>>;
 }  // namespace
 
 std::unique_ptr<NodeArray> make_image_nodes(const ReplayInput& input, sim::Engine& engine, Host& host) {
-  if (input.line_set != 0) {
-    return std::make_unique<LoggedNodes<NonReplacingCaches>>(
-        input, engine, host, NonReplacingCaches(input.config, input.line_set));
-  }
-  return make_nodes<LoggedNodes>(input, engine, host);
+  return make_plain_nodes<LoggedNodes>(input, engine, host);
 }
 
 }  // namespace marti::processors

@@ -59,4 +59,15 @@ std::unique_ptr<NodeArray> make_nodes(const ReplayInput& input, sim::Engine& eng
   });
 }
 
+/// As make_nodes(), but with caches that never replace a line where the replay may use them. For nodes that
+/// only look lines up and bring them in.
+template <template <class> class Nodes>
+std::unique_ptr<NodeArray> make_plain_nodes(const ReplayInput& input, sim::Engine& engine, Host& host) {
+  if (input.line_set != 0) {
+    return std::make_unique<Nodes<NonReplacingCaches>>(input, engine, host,
+                                                       NonReplacingCaches(input.config, input.line_set));
+  }
+  return make_nodes<Nodes>(input, engine, host);
+}
+
 }  // namespace marti::processors

@@ -12,11 +12,7 @@ using StrippedNodes = ImageNodes<Caches, StrippedWalker<Caches>>;
 }  // namespace
 
 std::unique_ptr<NodeArray> make_stripped_nodes(const ReplayInput& input, sim::Engine& engine, Host& host) {
-  if (input.line_set != 0) {
-    return std::make_unique<StrippedNodes<NonReplacingCaches>>(
-        input, engine, host, NonReplacingCaches(input.config, input.line_set));
-  }
-  return make_nodes<StrippedNodes>(input, engine, host);
+  return make_plain_nodes<StrippedNodes>(input, engine, host);
 }
 
 }  // namespace marti::processors

@@ -28,7 +28,8 @@ class BehindCache {
   [[nodiscard]] bool reads_alone() const { return reads_alone_; }
   [[nodiscard]] const PrivateSecondLevel& second_level() const { return second_level_; }
 
-  /// Looks a miss up in the node's second level; false where there is none. A hit's time is added to both.
+  /// Looks a miss up in the node's second level, if it has one. A hit's time is added to `time` and
+  /// `division`.
   bool second_level_holds(std::uint32_t node, std::uint32_t line, sim::Ticks& time, TimeDivision& division) {
     return second_level_.access(node, line, time, division);
   }

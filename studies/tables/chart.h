@@ -22,7 +22,7 @@ struct ChartSpecification {
 /// All of them, in alphabetical order.
 [[nodiscard]] std::span<const ChartSpecification> chart_specifications();
 
-/// The one of this name. Throws InternalError when there is none.
+/// The chart of this name. Throws InternalError if no chart has it.
 [[nodiscard]] const ChartSpecification& chart_named(std::span<const ChartSpecification> charts,
                                                     std::string_view name);
 

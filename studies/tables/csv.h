@@ -13,8 +13,8 @@ namespace marti::studies {
 /// A real is the shortest text that reads back as the same double, or nan, inf, -inf.
 [[nodiscard]] std::string csv_of(const Table& table);
 
-/// The same of a list of objects. The columns are the names of all of them, in the order in which they first
-/// occur; a row that lacks one, or has null there, has an empty cell.
+/// A list of objects as CSV, a row each. The columns are the names of all of them, in the order in which they
+/// first occur; a row that lacks one, or has null there, has an empty cell.
 [[nodiscard]] std::string csv_of_rows(const nlohmann::ordered_json& rows);
 
 }  // namespace marti::studies
