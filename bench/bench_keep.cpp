@@ -30,7 +30,7 @@ void run_once(const std::string& scene, const std::string& size, const studies::
   const std::vector<std::string> keys = {"scene.source=" + scene, "image.width=" + size,
                                          "image.height=" + size};
   sim::Config config = sim::Config::from_text(studies::run_schema(), "", "bench", keys);
-  static_cast<void>(studies::run(config, {}, keep));
+  static_cast<void>(studies::run(config, {.keep = keep}));
 }
 
 // A plain fork is safe, because the parent starts no threads.

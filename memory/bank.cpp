@@ -1,6 +1,5 @@
 #include "memory/bank.h"
 
-#include <algorithm>
 #include <bit>
 
 #include "sim/error.h"
@@ -29,16 +28,6 @@ BankAccess Banks::read_cached(Address address, sim::Ticks arrival) {
   const BankAccess filled = access(bank_of(address), arrival);
   cache_->fill(filled.ready);
   return filled;
-}
-
-BankAccess Banks::access(std::uint32_t bank, sim::Ticks arrival) {
-  const sim::Ticks start = std::max(arrival, free_at_[bank]);
-  free_at_[bank] = sim::add_ticks(start, busy_ticks_);
-  BankStatistics& statistics = statistics_[bank];
-  ++statistics.accesses;
-  statistics.busy = sim::add_ticks(statistics.busy, busy_ticks_);
-  statistics.waits.add(start - arrival);
-  return {start, sim::add_ticks(start, access_ticks_)};
 }
 
 }  // namespace marti::memory

@@ -2,6 +2,7 @@
 // cache before them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -59,7 +60,15 @@ class Banks {
 
   /// Queues an access that arrives at `arrival` and bypasses the cache. Accesses to one bank must come in
   /// order of arrival.
-  BankAccess access(std::uint32_t bank, sim::Ticks arrival);
+  BankAccess access(std::uint32_t bank, sim::Ticks arrival) {
+    const sim::Ticks start = std::max(arrival, free_at_[bank]);
+    free_at_[bank] = sim::add_ticks(start, busy_ticks_);
+    BankStatistics& statistics = statistics_[bank];
+    ++statistics.accesses;
+    statistics.busy = sim::add_ticks(statistics.busy, busy_ticks_);
+    statistics.waits.add(start - arrival);
+    return {start, sim::add_ticks(start, access_ticks_)};
+  }
 
   [[nodiscard]] std::uint32_t count() const { return count_; }
   [[nodiscard]] const std::vector<BankStatistics>& statistics() const { return statistics_; }

@@ -13,9 +13,21 @@ class Bus final : public Interconnect {
  public:
   Bus(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site);
 
-  void read(const Transaction& transaction) override;
-  void write(const Transaction& transaction) override;
-  void reply(std::uint32_t port) override;
+  void read(const Transaction& transaction) override { read_for(site_.client, transaction); }
+  void write(const Transaction& transaction) override { write_for(site_.client, transaction); }
+  void reply(std::uint32_t port) override { reply_for(site_.client, port); }
+
+  /// read(), write() and reply() for the site's client, with its own class, so that the compiler can join
+  /// their code with that of the client.
+  template <class Client>
+  void read_for(Client& client, const Transaction& transaction);
+  template <class Client>
+  void write_for(Client& client, const Transaction& transaction);
+  template <class Client>
+  void reply_for(Client& client, std::uint32_t port) {
+    send_data(client, port, site_.engine.now());
+  }
+
   [[nodiscard]] const InterconnectStatistics& statistics() const override { return statistics_; }
   [[nodiscard]] const std::vector<BankStatistics>& bank_statistics() const override {
     return banks_.statistics();
@@ -35,7 +47,8 @@ class Bus final : public Interconnect {
   // Grants the bus to a tenure of `length` that arrives at `arrival`; returns when it starts.
   sim::Ticks take(sim::Ticks arrival, sim::Ticks length);
   // Sends the data of the port's read, which are ready at `ready`.
-  void send_data(std::uint32_t port, sim::Ticks ready);
+  template <class Client>
+  void send_data(Client& client, std::uint32_t port, sim::Ticks ready);
 
   InterconnectSite site_;
   BusMode mode_;
@@ -47,5 +60,65 @@ class Bus final : public Interconnect {
   std::vector<Pending> pending_;
   InterconnectStatistics statistics_;
 };
+
+inline sim::Ticks Bus::take(sim::Ticks arrival, sim::Ticks length) {
+  const sim::Ticks start = link_.begin(arrival);
+  link_.hold_until(sim::add_ticks(start, length));
+  statistics_.busy = sim::add_ticks(statistics_.busy, length);
+  statistics_.waits.add(start - arrival);
+  return start;
+}
+
+template <class Client>
+void Bus::read_for(Client& client, const Transaction& transaction) {
+  using sim::add_ticks;
+  ++statistics_.reads;
+  statistics_.bytes += transaction.bytes;
+  const sim::Ticks now = site_.engine.now();
+  if (mode_ == BusMode::split) {
+    const sim::Ticks start = take(now, address_);
+    const sim::Ticks sent = add_ticks(start, address_);
+    const BankAccess access = banks_.read(transaction.address, sent);
+    pending_[transaction.port] = {
+        {0, start - now, address_, access.start - sent, access.ready - access.start}, transaction.bytes};
+    if (site_.ports == 1) {
+      // The one port asks for nothing before its data have come, so nothing can take the bus until then.
+      send_data(client, transaction.port, access.ready);
+    } else {
+      site_.engine.post_in_order(
+          sim::Event::make(access.ready, site_.reply_class, site_.first_component + transaction.port));
+    }
+    return;
+  }
+  const sim::Ticks start = link_.begin(now);
+  const sim::Ticks sent = add_ticks(start, address_);
+  const BankAccess access = banks_.read(transaction.address, sent);
+  const sim::Ticks data = beats_(transaction.bytes);
+  const sim::Ticks done = add_ticks(access.ready, data);
+  take(now, done - start);
+  client.read_done(transaction.port, {done, start - now, add_ticks(address_, data), access.start - sent,
+                                      access.ready - access.start});
+}
+
+template <class Client>
+void Bus::send_data(Client& client, std::uint32_t port, sim::Ticks ready) {
+  const sim::Ticks data = beats_(pending_[port].bytes);
+  const sim::Ticks start = take(ready, data);
+  Service service = pending_[port].service;
+  service.wait_interconnect += start - ready;
+  service.transfer += data;
+  service.done = sim::add_ticks(start, data);
+  client.read_done(port, service);
+}
+
+template <class Client>
+void Bus::write_for(Client& client, const Transaction& transaction) {
+  ++statistics_.writes;
+  statistics_.bytes += transaction.bytes;
+  const sim::Ticks length = sim::add_ticks(address_, beats_(transaction.bytes));
+  const sim::Ticks sent = sim::add_ticks(take(site_.engine.now(), length), length);
+  const BankAccess access = banks_.write(transaction.address, sent);
+  client.write_done(transaction.port, access.ready);
+}
 
 }  // namespace marti::memory

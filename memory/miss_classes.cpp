@@ -16,9 +16,11 @@ MissClass MissClassifier::miss(std::uint32_t cache, std::uint32_t line) {
   return in_full ? MissClass::conflict : MissClass::capacity;
 }
 
-void MissClassifier::invalidated(std::uint32_t cache, std::uint32_t line) {
+void MissClassifier::written(std::uint32_t cache, std::uint32_t line, bool held) {
   (void)full_.remove(cache, line);
-  taken_[cache].insert(line);
+  if (held) {
+    taken_[cache].insert(line);
+  }
 }
 
 }  // namespace marti::memory

@@ -32,8 +32,9 @@ class MissClassifier {
   /// Call hit() or miss() for every reference of a cache, in order.
   void hit(std::uint32_t cache, std::uint32_t line) { (void)full_.access(cache, line); }
   MissClass miss(std::uint32_t cache, std::uint32_t line);
-  /// A write has removed a line that the cache held.
-  void invalidated(std::uint32_t cache, std::uint32_t line);
+  /// Another node has written the line, which removes it. `held`: the cache had it, so that its next miss of
+  /// the line is due to the write.
+  void written(std::uint32_t cache, std::uint32_t line, bool held);
 
  private:
   TagArray full_;

@@ -116,6 +116,11 @@ std::span<const Value> Config::values(std::string_view key) const {
 
 bool Config::given(std::string_view key) const { return given_at(index_of(key)); }
 
+bool Config::assigned(std::string_view key) const {
+  const Entry& entry = entries_[index_of(key)];
+  return entry.given != nullptr && entry.line() == 0;
+}
+
 std::string Config::where(std::string_view key) const { return where(entries_[index_of(key)]); }
 
 std::string Config::where(const Entry& entry) const {
@@ -140,11 +145,7 @@ void Config::mark_unused_reason(std::string_view key_or_section, std::string_vie
                                 std::string_view decided_by) {
   ensure(schema_->find(key_or_section).has_value() || schema_->is_section(key_or_section),
          "a reason is given for a key that is not declared");
-  bool by_assignment = false;
-  if (!decided_by.empty()) {
-    const Entry& decider = entries_[index_of(decided_by)];
-    by_assignment = decider.given != nullptr && decider.line() == 0;
-  }
+  const bool by_assignment = !decided_by.empty() && assigned(decided_by);
   unused_reasons_.push_back({std::string(key_or_section), std::string(reason), by_assignment});
 }
 

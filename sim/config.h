@@ -75,6 +75,8 @@ class Config {
 
   /// Whether the key is given, in the file or by --set. Does not mark it as used.
   [[nodiscard]] bool given(std::string_view key) const;
+  /// Whether the key is given by --set or another assignment, not by the file. Does not mark it as used.
+  [[nodiscard]] bool assigned(std::string_view key) const;
   /// "file:line", "--set key=value" or "default".
   [[nodiscard]] std::string where(std::string_view key) const;
   /// Throws the UserError "file:line: key: message" or "--set key=value: message"; for a key that is not

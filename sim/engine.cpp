@@ -27,13 +27,11 @@ void Engine::run(std::uint64_t limit_per_tick) {
   std::uint64_t at_this_tick = 0;
   while (!queue_.empty()) {
     const Event event = queue_.pop();
-    if (queue_.size() > many_pending) {
-      queue_.each_likely_next([this](const Event& next) {
-        if (EventHandler* handler = handlers_[next.event_class() % max_classes]) {
-          handler->prepare(next);
-        }
-      });
-    }
+    look_ahead([this](const Event& next) {
+      if (EventHandler* handler = handlers_[next.event_class() % max_classes]) {
+        handler->prepare(next);
+      }
+    });
     handle(event, at_this_tick, limit_per_tick);
   }
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "sim/event_queue.h"
@@ -33,18 +34,28 @@ class Engine {
   void attach(std::uint8_t event_class, EventHandler& handler) { handlers_.at(event_class) = &handler; }
 
   /// `event` must not lie in the past; that is a fault of the simulator, never of its input.
-  void post(const Event& event) {
-    ensure(event.time >= now_, "an event was posted in the past");
-    if (event.time < turn_end_ && event.component() == turn_) [[unlikely]] {
-      ahead_.push_back(event);
-      return;
+  [[gnu::always_inline]] void post(const Event& event) {
+    if (!goes_ahead(event)) [[likely]] {
+      queue_.push(event);
     }
-    queue_.push(event);
+  }
+  /// post() for an event that is likely to be later than those that were posted in this way before. It is
+  /// handled when a posted one would be, and cheaper if that is so.
+  [[gnu::always_inline]] void post_in_order(const Event& event) {
+    if (!goes_ahead(event)) [[likely]] {
+      queue_.push_in_order(event);
+    }
   }
 
   /// Handles events until none is left. Throws InternalError when more than `limit_per_tick` events are
   /// handled at one tick, which only a machine that makes no progress can cause.
   void run(std::uint64_t limit_per_tick);
+
+  /// run() where all events go to one handler, whose class is known to the compiler, and without a limit.
+  /// `handler` has handle_in_order(event) beside the members of EventHandler: handle() for an event of
+  /// post_in_order().
+  template <class Handler>
+  void run_all(Handler& handler);
 
   /// Trades exactness for speed: simulated time is cut into pieces of `quantum` ticks, and within a piece the
   /// component of the next event first handles all events that it posts for itself before another component
@@ -58,6 +69,22 @@ class Engine {
   void reserve(std::size_t events) { queue_.reserve(events); }
 
  private:
+  // Whether the component whose turn it is handles `event` in this turn; it is then noted.
+  bool goes_ahead(const Event& event) {
+    ensure(event.time >= now_, "an event was posted in the past");
+    if (event.time < turn_end_ && event.component() == turn_) [[unlikely]] {
+      ahead_.push_back(event);
+      return true;
+    }
+    return false;
+  }
+  // Has handlers prepare for the events that are likely to be next, if many are pending.
+  template <class Prepare>
+  void look_ahead(const Prepare& prepare) const {
+    if (queue_.size() > many_pending) [[unlikely]] {
+      queue_.each_likely_next(prepare);
+    }
+  }
   // Passes one event to its handler.
   void handle(const Event& event, std::uint64_t& at_this_tick, std::uint64_t limit_per_tick);
   void run_relaxed(std::uint64_t limit_per_tick);
@@ -71,5 +98,31 @@ class Engine {
   std::uint32_t turn_ = 0;
   std::vector<Event> ahead_;  // what the component has posted for itself in its turn
 };
+
+template <class Handler>
+void Engine::run_all(Handler& handler) {
+  if (quantum_ > 1) {
+    run(std::numeric_limits<std::uint64_t>::max());
+    return;
+  }
+  std::uint64_t events = 0;
+  while (!queue_.empty()) {
+    const auto prepare = [&handler](const Event& next) { handler.prepare(next); };
+    ++events;
+    // The two kinds are handled apart, because which comes next is not predictable and costs a branch here.
+    if (queue_.next_is_in_order()) {
+      const Event event = queue_.pop_in_order();
+      now_ = event.time;
+      look_ahead(prepare);
+      handler.handle_in_order(event);
+    } else {
+      const Event event = queue_.pop_other();
+      now_ = event.time;
+      look_ahead(prepare);
+      handler.handle(event);
+    }
+  }
+  events_ += events;
+}
 
 }  // namespace marti::sim

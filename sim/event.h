@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "sim/time.h"
 
@@ -22,6 +23,10 @@ struct Event {
     return {time, (std::uint64_t{event_class} << (component_bits + sequence_bits)) |
                       (std::uint64_t{component} << sequence_bits) |
                       (sequence & ((1U << sequence_bits) - 1U))};
+  }
+  /// Later than every event of a simulation, whose classes end far below 255.
+  [[nodiscard]] static constexpr Event never() {
+    return {std::numeric_limits<Ticks>::max(), std::numeric_limits<std::uint64_t>::max()};
   }
   [[nodiscard]] std::uint8_t event_class() const {
     return static_cast<std::uint8_t>(order >> (component_bits + sequence_bits));

@@ -9,19 +9,13 @@
 
 namespace marti::sim {
 
-/// A priority queue of events. `pop` leaves a hole at the root, which a following `push` fills if one comes
-/// before the next event is looked at: that is one pass down the heap instead of two.
+/// A priority queue of events.
 class EventHeap {
  public:
-  [[nodiscard]] bool empty() const { return heap_.size() == (hole_ ? 1U : 0U); }
-  [[nodiscard]] std::size_t size() const { return heap_.size() - (hole_ ? 1U : 0U); }
+  [[nodiscard]] bool empty() const { return heap_.empty(); }
+  [[nodiscard]] std::size_t size() const { return heap_.size(); }
 
   void push(const Event& event) {
-    if (hole_) {
-      hole_ = false;
-      sift_down(event);
-      return;
-    }
     heap_.push_back(event);
     std::size_t at = heap_.size() - 1;
     while (at > 0) {
@@ -35,40 +29,30 @@ class EventHeap {
     heap_[at] = event;
   }
 
-  /// The earliest event. The heap must not be empty.
-  [[nodiscard]] const Event& front() {
-    fill_hole();
-    return heap_.front();
-  }
+  /// The earliest event, or Event::never() while the heap is empty.
+  [[nodiscard]] Event front() const { return heap_.empty() ? Event::never() : heap_.front(); }
 
   /// Calls visit(event) for the few events that may be next unless an earlier one is pushed.
   template <class Visit>
   void each_likely_next(const Visit& visit) const {
-    for (std::size_t at = hole_ ? 1 : 0; at <= arity && at < heap_.size(); ++at) {
+    for (std::size_t at = 0; at <= arity && at < heap_.size(); ++at) {
       visit(heap_[at]);
     }
   }
 
-  /// Removes and returns the earliest event. The heap must not be empty.
-  Event pop() {
-    fill_hole();
-    hole_ = true;
-    return heap_.front();
+  /// Removes the earliest event. The heap must not be empty.
+  void pop() {
+    const Event last = heap_.back();
+    heap_.pop_back();
+    if (!heap_.empty()) {
+      sift_down(last);
+    }
   }
 
  private:
   static constexpr std::size_t arity = 4;
 
-  void fill_hole() {
-    if (hole_) {
-      hole_ = false;
-      const Event last = heap_.back();
-      heap_.pop_back();
-      sift_down(last);
-    }
-  }
-
-  // Moves the root's hole down until `event` fits in it.
+  // Puts `event` in the root's place and moves it down to its own.
   void sift_down(const Event& event) {
     const std::size_t size = heap_.size();
     std::size_t at = 0;
@@ -97,7 +81,6 @@ class EventHeap {
   }
 
   LargeVector<Event> heap_;
-  bool hole_ = false;
 };
 
 }  // namespace marti::sim

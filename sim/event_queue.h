@@ -8,159 +8,121 @@
 #include <vector>
 
 #include "sim/event.h"
+#include "sim/event_calendar.h"
 #include "sim/event_heap.h"
-#include "sim/large_pages.h"
-#include "sim/number_set.h"
+#include "sim/event_lane.h"
 
 namespace marti::sim {
 
-/// A priority queue of events: a calendar of short days for the near future (R. Brown, "Calendar queues: a
-/// fast O(1) priority queue implementation for the simulation event set problem", Communications of the ACM
-/// 31(10), 1988), and a heap for what does not fit there. The events of a day are a sorted list, and the
-/// length of a day follows from how far ahead events are pushed, so that pushing and popping take constant
-/// time. What is popped never depends on the calendar: it is the earlier of the calendar's first event and
-/// the heap's.
+/// A priority queue of events: a calendar for the near future, a lane for events that are pushed nearly in
+/// order, and a heap for what fits into neither. The length of the calendar's days follows from how far ahead
+/// events are pushed, so that pushing and popping take constant time. What is popped does not depend on where
+/// events are kept: it is the earliest of all three.
 ///
 /// An event that is pushed must not be earlier than the one popped last.
 class EventQueue {
  public:
-  EventQueue() : days_(few_days, none), busy_days_(few_days) {}
+  EventQueue() : calendar_(fewest_days) {}
 
-  /// Bytes of host memory for each pending event.
-  static constexpr std::size_t bytes_an_event = 24 + sizeof(Event);
-
-  [[nodiscard]] bool empty() const { return in_calendar_ == 0 && heap_.empty(); }
-  [[nodiscard]] std::size_t size() const { return in_calendar_ + heap_.size(); }
-  /// For so many pending events. The queue must be empty.
-  void reserve(std::size_t events) {
-    entries_.reserve(events);
-    if (events > few_days) {
-      days_.assign(NumberSet::most, none);
-      busy_days_ = NumberSet(NumberSet::most);
-    }
+  /// Bytes of host memory for each pending event, and beside them for a queue of so many.
+  static constexpr std::size_t bytes_an_event = EventCalendar::bytes_an_event;
+  [[nodiscard]] static std::size_t bytes_of_days(std::size_t events) {
+    return EventCalendar::bytes_a_day * days_for(events);
   }
 
-  void push(const Event& event) {
+  [[nodiscard]] bool empty() const { return size() == 0; }
+  [[nodiscard]] std::size_t size() const { return lane_.size() + calendar_.size() + heap_.size(); }
+  /// Chooses the number of days for so many pending events. The queue must be empty.
+  void reserve(std::size_t events) { calendar_ = EventCalendar(days_for(events)); }
+
+  [[gnu::always_inline]] void push(const Event& event) {
     ahead_ += static_cast<double>(event.time - last_);
-    if (!push_into_calendar(event)) {
-      heap_.push(event);
+    if (!calendar_.push(event, last_)) [[unlikely]] {
+      push_into_heap(event);
+    }
+    if (event < first_) {
+      first_ = event;
     }
     if (++pushed_ == tuned_at_) [[unlikely]] {
       tune();
     }
   }
 
+  /// push() for an event that is likely to be later than those that were pushed in this way before.
+  [[gnu::always_inline]] void push_in_order(const Event& event) {
+    if (!lane_.push(event)) [[unlikely]] {
+      push(event);
+    }
+  }
+
+  /// Whether the earliest event lies in the lane. All events there are of push_in_order(); some of those,
+  /// which came too far out of order, are elsewhere.
+  [[nodiscard]] bool next_is_in_order() const { return lane_.front() < first_; }
+
   /// Calls visit(event) for a few events that may be next unless an earlier one is pushed.
   template <class Visit>
   void each_likely_next(const Visit& visit) const {
-    if (in_calendar_ != 0) {
-      std::uint32_t number = days_[first_day()];
-      for (int count = 0; count < 2 && number != none; ++count) {
-        visit(entries_[number].event);
-        number = entries_[number].next;
-      }
-    }
+    lane_.each_likely_next(visit);
+    calendar_.each_likely_next(visit);
     heap_.each_likely_next(visit);
   }
 
   /// Removes and returns the earliest event. The queue must not be empty.
-  Event pop() {
-    if (in_calendar_ != 0) [[likely]] {
-      const std::uint32_t day = first_day();
-      if (heap_.empty() || entries_[days_[day]].event < heap_.front()) {
-        return pop_of(day);
-      }
-    }
-    const Event event = heap_.pop();
+  Event pop() { return next_is_in_order() ? pop_in_order() : pop_other(); }
+  /// pop() where next_is_in_order().
+  [[gnu::always_inline]] Event pop_in_order() {
+    const Event event = lane_.pop();
     last_ = event.time;
+    return event;
+  }
+  /// pop() where not next_is_in_order().
+  [[gnu::always_inline]] Event pop_other() {
+    const Event event = first_;
+    last_ = event.time;
+    if (calendar_.front() < heap_first_) [[likely]] {
+      calendar_.pop();
+    } else {
+      heap_.pop();
+      heap_first_ = heap_.front();
+    }
+    first_ = std::min(calendar_.front(), heap_first_);
     return event;
   }
 
  private:
-  static constexpr std::uint32_t none = 0xffffffffU;
-  static constexpr std::uint32_t few_days = 64 * 64;
-  static constexpr int longest_walk = 16;             // along the list of a day
+  static constexpr std::uint32_t fewest_days = 256;
   static constexpr std::uint64_t tuned_after = 1024;  // pushed events
 
-  struct Entry {
-    Event event;
-    std::uint32_t next = none;  // of its day, or of the entries that are free
-  };
-  static_assert(sizeof(Entry) + sizeof(Event) == bytes_an_event);
-
-  // Days are counted from time 0; those that are open, as many as days_ has, begin with that of last_.
-  [[nodiscard]] std::uint32_t place_of(Ticks time) const {
-    return static_cast<std::uint32_t>(static_cast<std::uint64_t>(time) >> shift_) &
-           (static_cast<std::uint32_t>(days_.size()) - 1U);
-  }
-  [[nodiscard]] std::uint32_t first_day() const { return busy_days_.next(place_of(last_)); }
-
-  // False when the event is on a day that is not open, or its day has many events.
-  bool push_into_calendar(const Event& event) {
-    const std::uint64_t days_ahead =
-        (static_cast<std::uint64_t>(event.time) >> shift_) - (static_cast<std::uint64_t>(last_) >> shift_);
-    if (days_ahead >= days_.size()) {
-      return false;
-    }
-    const std::uint32_t day = place_of(event.time);
-    std::uint32_t* link = &days_[day];
-    if (*link == none) {
-      busy_days_.insert(day);
-    } else {
-      for (int walked = 0; *link != none && entries_[*link].event < event; ++walked) {
-        if (walked == longest_walk) {
-          return false;
-        }
-        link = &entries_[*link].next;
-      }
-    }
-    const std::uint32_t next = *link;
-    if (free_ != none) [[likely]] {
-      const std::uint32_t number = free_;
-      free_ = entries_[number].next;
-      entries_[number] = {event, next};
-      *link = number;
-    } else {
-      *link = static_cast<std::uint32_t>(entries_.size());  // before push_back, which may move the link
-      entries_.push_back({event, next});
-    }
-    ++in_calendar_;
-    return true;
+  void push_into_heap(const Event& event) {
+    heap_.push(event);
+    heap_first_ = heap_.front();
   }
 
-  Event pop_of(std::uint32_t day) {
-    const std::uint32_t number = days_[day];
-    Entry& entry = entries_[number];
-    days_[day] = entry.next;
-    if (entry.next == none) {
-      busy_days_.erase(day);
-    }
-    entry.next = free_;
-    free_ = number;
-    --in_calendar_;
-    last_ = entry.event.time;
-    return entry.event;
+  // Four to eight for each event, so that most days have at most one.
+  [[nodiscard]] static std::uint32_t days_for(std::size_t events) {
+    constexpr std::size_t most = EventCalendar::most_days;
+    const std::size_t days = events >= most ? most : 4 * std::bit_ceil(events);
+    return static_cast<std::uint32_t>(std::clamp<std::size_t>(days, fewest_days, most));
   }
 
   // Chooses the length of a day so that the open days are four to sixteen times as long as events are pushed
   // ahead on average.
   void tune() {
     const double wanted =
-        4.0 * ahead_ / static_cast<double>(tuned_after_last_) / static_cast<double>(days_.size());
+        4.0 * ahead_ / static_cast<double>(tuned_after_last_) / static_cast<double>(calendar_.days());
     const auto shift =
         wanted < 1.0 ? 0U : static_cast<unsigned>(std::bit_width(static_cast<std::uint64_t>(wanted)));
-    if (shift > shift_ || shift + 1 < shift_) {
+    if (shift > calendar_.shift() || shift + 1 < calendar_.shift()) {
       std::vector<Event> events;
-      events.reserve(in_calendar_);
-      const Ticks last = last_;
-      while (in_calendar_ != 0) {
-        events.push_back(pop_of(first_day()));
+      events.reserve(calendar_.size());
+      while (calendar_.size() != 0) {
+        events.push_back(calendar_.front());
+        calendar_.pop();
       }
-      last_ = last;
-      shift_ = shift;
+      calendar_.set_shift(shift);
       for (const Event& event : events) {
-        if (!push_into_calendar(event)) {
-          heap_.push(event);
+        if (!calendar_.push(event, last_)) {
+          push_into_heap(event);
         }
       }
     }
@@ -169,14 +131,12 @@ class EventQueue {
     tuned_at_ = pushed_ + tuned_after_last_;
   }
 
+  EventLane lane_;
+  EventCalendar calendar_;
   EventHeap heap_;
-  LargeVector<std::uint32_t> days_;  // the first entry of each open day
-  NumberSet busy_days_;              // those that have events
-  LargeVector<Entry> entries_;
-  std::uint32_t free_ = none;
-  std::size_t in_calendar_ = 0;
-  unsigned shift_ = 0;  // a day has 2^shift_ ticks
-  Ticks last_ = 0;      // time of the event popped last
+  Event heap_first_ = Event::never();  // the earliest of the heap
+  Event first_ = Event::never();       // the earliest of calendar and heap
+  Ticks last_ = 0;                     // time of the event popped last
   double ahead_ = 0.0;  // sum over the events pushed since the last tuning: ticks from the event popped last
   std::uint64_t pushed_ = 0;
   std::uint64_t tuned_at_ = tuned_after;

@@ -33,9 +33,10 @@ TEST(MissClasses, AgreeWithListsAndSetsWhileLinesAreTakenOut) {
     for (int i = 0; i < 1500; ++i) {
       const auto line = static_cast<std::uint32_t>(random() % (3 * lines));
       if (random() % 16 == 0) {
-        if (cache.invalidate(line, 1) == 1) {
-          classifier.invalidated(2, line);
-          std::erase(full, line);
+        const bool held = cache.invalidate(line, 1) == 1;
+        classifier.written(2, line, held);
+        std::erase(full, line);
+        if (held) {
           taken.insert(line);
         }
         continue;

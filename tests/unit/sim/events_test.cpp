@@ -57,11 +57,16 @@ RC_GTEST_PROP(EventQueue, AgreesWithASetWhileDistancesChange, (std::uint64_t see
   for (int phase = 0; phase < 4; ++phase) {
     const Ticks distance = Ticks{1} << (random() % 40);
     const std::size_t pending = 1 + random() % 300;
+    const std::uint64_t in_order = random() % 5;  // quarters of the events
     for (int step = 0; step < 3000; ++step) {
       while (set.size() < pending) {
         const Ticks ahead = random() % 8 == 0 ? 0 : static_cast<Ticks>(random()) & (2 * distance - 1);
         const Event event = Event::make(now + ahead, static_cast<std::uint8_t>(random() % 4), number++);
-        queue.push(event);
+        if (random() % 4 < in_order) {
+          queue.push_in_order(event);
+        } else {
+          queue.push(event);
+        }
         set.emplace(event.time, event.order);
       }
       RC_ASSERT(queue.size() == set.size());
@@ -72,6 +77,45 @@ RC_GTEST_PROP(EventQueue, AgreesWithASetWhileDistancesChange, (std::uint64_t see
       set.erase(set.begin());
     }
   }
+}
+
+TEST(EventQueue, KeepsEventsOfTheLastTick) {
+  constexpr Ticks last = std::numeric_limits<Ticks>::max();
+  EventQueue queue;
+  queue.push(Event::make(last, 1, 2));
+  queue.push(Event::make(last, 1, 1));
+  queue.push_in_order(Event::make(last, 1, 0));
+  for (const std::uint32_t component : {0U, 1U, 2U}) {
+    EXPECT_EQ(queue.pop().component(), component);
+  }
+  EXPECT_TRUE(queue.empty());
+}
+
+// Replies of a queue with several servers come nearly in order; all of them, whatever the order, must be
+// popped as if they had been pushed like others.
+TEST(EventLane, TakesWhatIsNearlyInOrderAndRefusesTheRest) {
+  std::mt19937_64 random(7);
+  EventLane lane;
+  std::vector<Event> sorted;
+  int refused = 0;
+  for (std::uint32_t number = 0; number < 5000; ++number) {
+    const Event event = Event::make(number * 10 + static_cast<Ticks>(random() % 400), 0, number);
+    const auto place = std::upper_bound(sorted.begin(), sorted.end(), event);
+    const bool near = sorted.end() - place <= 16;
+    ASSERT_EQ(lane.push(event), near);
+    refused += near ? 0 : 1;
+    if (near) {
+      sorted.insert(place, event);
+    }
+    if (random() % 3 != 0 && !sorted.empty()) {
+      ASSERT_EQ(lane.front().order, sorted.front().order);
+      ASSERT_EQ(lane.pop().order, sorted.front().order);
+      sorted.erase(sorted.begin());
+    }
+    ASSERT_EQ(lane.size(), sorted.size());
+  }
+  EXPECT_GT(refused, 100);
+  EXPECT_LT(refused, 1000);
 }
 
 TEST(NumberSet, FindsTheNextMember) {
@@ -112,6 +156,62 @@ TEST(Event, OrdersByTimeThenClassThenComponentThenSequence) {
   for (std::size_t i = 1; i < ascending.size(); ++i) {
     EXPECT_TRUE(ascending[i - 1] < ascending[i]);
     EXPECT_FALSE(ascending[i] < ascending[i - 1]);
+  }
+}
+
+// Posts two events for each one that it handles, until `left` have been posted, at random distances and in
+// either way, which depend on the event alone.
+class Spreader final : public EventHandler {
+ public:
+  Spreader(Engine& engine, int left) : engine_(engine), left_(left) {
+    engine_.attach(0, *this);
+    engine_.attach(1, *this);
+  }
+  void handle(const Event& event) override {
+    handled.emplace_back(event.time, event.order);
+    std::mt19937_64 random(event.order * 31 + static_cast<std::uint64_t>(event.time));
+    for (int i = 0; i < 2 && left_ > 0; ++i, --left_) {
+      const auto ahead = static_cast<Ticks>(random() % (random() % 3 == 0 ? 100'000 : 50));
+      const auto component = static_cast<std::uint32_t>(left_);
+      if (random() % 2 == 0) {
+        engine_.post(Event::make(event.time + ahead, 0, component));
+      } else {
+        engine_.post_in_order(Event::make(event.time + ahead, 1, component));
+      }
+    }
+  }
+  void handle_in_order(const Event& event) {
+    EXPECT_EQ(event.event_class(), 1);
+    ++in_order;
+    handle(event);
+  }
+  std::vector<std::pair<Ticks, std::uint64_t>> handled;
+  int in_order = 0;
+
+ private:
+  Engine& engine_;
+  int left_;
+};
+
+TEST(Engine, HandlesTheSameWithOneHandlerAsWithHandlersByClass) {
+  constexpr int events = 20'000;  // many are pending at a time
+  for (const Ticks quantum : {0, 100}) {
+    Engine by_class;
+    Spreader first(by_class, events);
+    by_class.relax(quantum);
+    by_class.post(Event::make(0, 0, 0));
+    by_class.run(events);
+    Engine all;
+    Spreader second(all, events);
+    all.relax(quantum);
+    all.post(Event::make(0, 0, 0));
+    all.run_all(second);
+    EXPECT_EQ(first.handled, second.handled);
+    EXPECT_EQ(first.handled.size(), std::size_t{events} + 1);
+    EXPECT_EQ(by_class.events(), all.events());
+    EXPECT_TRUE(quantum != 0 || second.in_order > 100);
+    const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };
+    EXPECT_TRUE(quantum != 0 || std::is_sorted(first.handled.begin(), first.handled.end(), earlier));
   }
 }
 

@@ -1,0 +1,78 @@
+// Pending events that are pushed nearly in order.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+
+#include "sim/event.h"
+#include "sim/large_pages.h"
+
+namespace marti::sim {
+
+/// A sorted ring of events. Pushing walks back from the latest event, so it takes constant time where events
+/// come nearly in their order, as the replies of a queue do that serves requests in the order of arrival.
+class EventLane {
+ public:
+  EventLane() : events_(fewest) {}
+
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// The earliest event; one later than all others when the lane is empty.
+  [[nodiscard]] Event front() const { return size_ == 0 ? Event::never() : events_[first_]; }
+
+  /// Calls visit(event) for the earliest two events.
+  template <class Visit>
+  void each_likely_next(const Visit& visit) const {
+    for (std::size_t number = 0; number < 2 && number < size_; ++number) {
+      visit(events_[(first_ + number) & (events_.size() - 1)]);
+    }
+  }
+
+  /// Inserts `event`. False, and nothing is done, when more than a few events are later.
+  bool push(const Event& event) {
+    if (size_ == events_.size()) [[unlikely]] {
+      grow();
+    }
+    std::size_t later = 0;
+    while (later < size_ && event < at(size_ - 1 - later)) {
+      if (++later > longest_walk) {
+        return false;
+      }
+    }
+    for (std::size_t moved = 0; moved < later; ++moved) {
+      at(size_ - moved) = at(size_ - 1 - moved);
+    }
+    at(size_ - later) = event;
+    ++size_;
+    return true;
+  }
+
+  /// Removes and returns the earliest event. The lane must not be empty.
+  Event pop() {
+    const Event event = events_[first_];
+    first_ = (first_ + 1) & (events_.size() - 1);
+    --size_;
+    return event;
+  }
+
+ private:
+  static constexpr std::size_t fewest = 16;  // a power of two
+  static constexpr std::size_t longest_walk = 16;
+
+  Event& at(std::size_t number) { return events_[(first_ + number) & (events_.size() - 1)]; }
+
+  void grow() {
+    LargeVector<Event> events(2 * events_.size());
+    for (std::size_t number = 0; number < size_; ++number) {
+      events[number] = at(number);
+    }
+    events_ = std::move(events);
+    first_ = 0;
+  }
+
+  LargeVector<Event> events_;  // a power of two
+  std::size_t first_ = 0;
+  std::size_t size_ = 0;
+};
+
+}  // namespace marti::sim
