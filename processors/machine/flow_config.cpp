@@ -58,12 +58,6 @@ void check_flow(const MachineConfig& config) {
   if (config.scheme == Scheme::image) {
     return;
   }
-  const std::string scheme(scheme_names[static_cast<std::size_t>(config.scheme)]);
-  if (config.build.sharing != Sharing::given) {
-    throw sim::KeyError("build.sharing",
-                        "with machine.scheme = \"" + scheme +
-                            "\" the tree must be given: only nodes that take packets build it");
-  }
   if (config.messages.ray_bytes == 0 || config.messages.contribution_bytes == 0) {
     throw sim::KeyError(config.messages.ray_bytes == 0 ? "messages.ray_bytes" : "messages.contribution_bytes",
                         "must not be 0");

@@ -3,6 +3,7 @@
 #include <bit>
 #include <string>
 
+#include "processors/machine/combinations.h"
 #include "sim/key_error.h"
 
 namespace marti::processors {
@@ -14,14 +15,6 @@ void check_order(const MachineConfig& config) {
   if (config.build.sharing != Sharing::shared || !writes_done_later(config)) {
     return;
   }
-  if (config.placement == Placement::distributed) {
-    throw sim::KeyError(
-        "build.sharing",
-        "a read may overtake another node's write in the network, so nodes cannot share a "
-        "tree "
-        "that is built in a distributed memory (database.placement = \"distributed\"); use \"private\" or "
-        "\"none\"");
-  }
   throw sim::KeyError(
       "build.sharing",
       "a read may overtake another node's write on a bus that is not granted first come first "
@@ -31,11 +24,6 @@ void check_order(const MachineConfig& config) {
 
 void check_distribution(const MachineConfig& config) {
   const DistributionConfig& distribution = config.distribution;
-  if (config.scheme != Scheme::image) {
-    throw sim::KeyError("database.placement",
-                        "\"distributed\" is for machine.scheme = \"image\"; where rays move, each node "
-                        "holds what it needs");
-  }
   if (!std::has_single_bit(distribution.interleave)) {
     throw sim::KeyError("database.interleave", "must be a power of two");
   }
@@ -81,6 +69,7 @@ void check(const MachineConfig& config) {
   if (std::uint64_t{config.clusters} * config.nodes > most_nodes) {
     throw sim::KeyError("machine.nodes", "a machine of more than 2^24 nodes");
   }
+  check_combinations(config);
   check_contexts(config);
   check_flow(config);
   if (config.write_buffer == 0 || config.word_bytes == 0) {

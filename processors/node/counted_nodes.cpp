@@ -1,3 +1,8 @@
+#include <utility>
+
+#include "processors/node/context_building_nodes.h"
+#include "processors/node/context_nodes.h"
+#include "processors/node/dynamic_nodes.h"
 #include "processors/node/image_nodes.h"
 #include "processors/node/node_factory.h"
 #include "processors/walk/counted_caches.h"
@@ -5,11 +10,19 @@
 namespace marti::processors {
 
 std::unique_ptr<NodeArray> make_counted_nodes(const ReplayInput& input, sim::Engine& engine, Host& host) {
-  if (input.config.cache.organisation == CacheOrganisation::none) {
-    return std::make_unique<ImageNodes<CountedCaches<false>>>(input, engine, host,
-                                                              CountedCaches<false>(input));
-  }
-  return std::make_unique<ImageNodes<CountedCaches<true>>>(input, engine, host, CountedCaches<true>(input));
+  return with_counted_caches(input, [&]<class Caches>(Caches caches) -> std::unique_ptr<NodeArray> {
+    const bool contexts = has_context_nodes(input);
+    if (input.tree != nullptr && contexts) {
+      return std::make_unique<ContextBuildingNodes<Caches>>(input, engine, host, std::move(caches));
+    }
+    if (input.tree != nullptr) {
+      return std::make_unique<DynamicNodes<Caches>>(input, engine, host, std::move(caches));
+    }
+    if (contexts) {
+      return std::make_unique<ContextNodes<Caches>>(input, engine, host, std::move(caches));
+    }
+    return std::make_unique<ImageNodes<Caches>>(input, engine, host, std::move(caches));
+  });
 }
 
 }  // namespace marti::processors

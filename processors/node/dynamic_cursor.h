@@ -5,6 +5,7 @@
 
 #include "memory/record_kind.h"
 #include "processors/machine/packets.h"
+#include "processors/walk/attribution.h"
 #include "sim/time.h"
 
 namespace marti::processors {
@@ -26,6 +27,10 @@ enum class Todo : std::uint8_t {
   done,     ///< the branch's own record was written
 };
 
+/// Whether a node at this point reads for the splitting of a branch: what follows a lock in the list above
+/// does.
+[[nodiscard]] constexpr bool is_for_split(Todo todo) { return todo == Todo::inherit || todo >= Todo::lock; }
+
 /// The result of a lock transaction.
 enum class Lock : std::uint8_t { won, wait, built };
 
@@ -38,21 +43,20 @@ struct DynamicCursor {
   const std::uint32_t* entry = nullptr;  ///< primitives still to be tested or sorted
   const std::uint32_t* entry_end = nullptr;
   const std::uint32_t* tested = nullptr;  ///< of a mailed leaf: a bit for each entry; null: all are tested
-  sim::Ticks arrived = 0;                 ///< waiting: when the lock transaction was done; -1 before
-  sim::Ticks published = 0;               ///< waiting: when the branch can be seen; -1 before
-  std::uint32_t node = 0;             ///< the leaf that is tested, or the branch that is looked at or split
-  std::uint32_t child = 0;            ///< next child to make
-  std::uint32_t eager = 0;            ///< next branch to split before the frame
-  std::uint32_t tests = 0;            ///< entries of the leaf's list to read
-  std::uint32_t entry_number = 0;     ///< of `entry` in the mailed leaf's list
-  std::uint32_t first_waiter = none;  ///< list of the nodes that wait for this node to publish
-  std::uint32_t next_waiter = none;   ///< in the list that this node waits in
+  std::uint32_t node = 0;   ///< the leaf that is tested, or the branch that is looked at or split
+  std::uint32_t child = 0;  ///< next child to make
+  std::uint32_t children =
+      none;                 ///< guarded caches: a branch that was read, whose children may be prefetched
+  std::uint32_t eager = 0;  ///< next branch to split before the frame
+  std::uint32_t tests = 0;  ///< entries of the leaf's list to read
+  std::uint32_t entry_number = 0;  ///< of `entry` in the mailed leaf's list
   std::uint32_t x = 0;
   std::uint32_t y = 0;
   std::uint32_t writes = 0;  ///< where the next posted write goes in the write buffer
   Packet packet;
   memory::RecordKind kind = memory::RecordKind::node;
   Todo todo = Todo::step;
+  Origin origin;  ///< of the present reference, but for `splitting`; kept only where it is counted
   Lock lock = Lock::won;
   bool writing = false;  ///< the bytes are written, not read
   bool due = false;      ///< the simulation has reached the reference that comes next
@@ -64,7 +68,9 @@ struct DynamicCursor {
 
 /// Why a walk stopped. due: the reference at the cursor must wait until the simulation reaches the cursor's
 /// time. lock, miss: it needs the interconnect. write: it posts a write, of a pixel when todo is `step`.
-/// ready: no branch is left to split before the frame.
-enum class DynamicStop : std::uint8_t { due, miss, lock, write, ready };
+/// ready: no branch is left to split before the frame. With guarded caches only: line: the next reference is
+/// to a line that may be under way; children: a branch was read whose children are to be prefetched; other:
+/// another context of the node splits the branch that the walk has come to, in the node's own tree.
+enum class DynamicStop : std::uint8_t { due, miss, lock, write, ready, line, children, other };
 
 }  // namespace marti::processors

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 #include <utility>
 
 #include "processors/cost/accounting.h"
@@ -17,12 +18,15 @@
 #include "processors/cost/step_time.h"
 #include "processors/node/branch_lists.h"
 #include "processors/node/build_result.h"
+#include "processors/node/counted_look_ups.h"
 #include "processors/node/dynamic_cursor.h"
 #include "processors/node/tree_addresses.h"
 #include "processors/node/tree_copies.h"
 #include "processors/program/work_log.h"
+#include "processors/walk/lines_under_way.h"
 #include "processors/walk/local_memory.h"
 #include "processors/walk/node_caches.h"
+#include "processors/walk/prefetch_lines.h"
 #include "processors/walk/replay_input.h"
 #include "processors/walk/second_level.h"
 #include "processors/walk/visit_plan.h"
@@ -50,7 +54,7 @@ class DynamicWalker {
         local_base_(input.config.placement == Placement::replicated ? 0
                     : private_()                                    ? plan_.lower_base()
                                                                     : ~memory::Address{0}) {
-    if (Caches::present && !input.step_by_step) {
+    if (plans && !input.step_by_step) {
       visits_ = plan_initial_visits(plan_, input.log, layout_, unit_shift_, ticks_);
       planned_limit_ = visits_.empty() ? 0 : 2U << operand_bits;
     }
@@ -64,9 +68,21 @@ class DynamicWalker {
   [[nodiscard]] TreeCopies& copies() { return copies_; }
   [[nodiscard]] const TreeCopies& copies() const { return copies_; }
   [[nodiscard]] const PrivateSecondLevel& second_level() const { return second_level_; }
+  /// See PrivateSecondLevel::hit.
+  std::optional<sim::Ticks> second_level_hit(std::uint32_t node, std::uint32_t line) {
+    return second_level_.hit(node, line);
+  }
+  [[nodiscard]] Caches& caches() { return caches_.caches(); }
+  [[nodiscard]] const Caches& caches() const { return caches_.caches(); }
+  /// The counts beyond hits and misses; empty where nothing is counted.
+  [[nodiscard]] CacheCountResult counts() const { return caches_.counts(); }
+  /// Counts what the wait for a transaction was for, where that is counted.
+  void note_wait(const DynamicCursor& cursor, const memory::Service& service) const {
+    caches_.note_wait(cursor, service);
+  }
   /// Removes a line from a node's caches; returns how many copies there were.
   [[nodiscard]] std::int64_t take_out(std::uint32_t node, std::uint32_t line) {
-    return caches_.view(node).remove(line) + second_level_.remove(node, line);
+    return caches().view(node).remove(line) + second_level_.remove(node, line);
   }
 
   /// Continues `node` from its cursor. Without RunAhead it stops before every reference.
@@ -75,7 +91,7 @@ class DynamicWalker {
                       BuildCounts& built) {
     const std::uint32_t copy = copies_.copy_of(node);
     const LineStates lines = copies_.lines(copy);
-    const typename Caches::View cache = caches_.view(node);
+    const View cache = caches().view(node);
     for (;;) {
       while (cursor.at < cursor.end) {
         if (cursor.writing) {
@@ -88,6 +104,14 @@ class DynamicWalker {
           return stop;
         }
       }
+      if constexpr (guarded) {
+        if (cursor.todo == Todo::step && cursor.children != DynamicCursor::none) {
+          if (wants_children(copy, lines, cache, cursor.children)) {
+            return DynamicStop::children;
+          }
+          cursor.children = DynamicCursor::none;
+        }
+      }
       switch (cursor.todo) {
         case Todo::step:
           if (cursor.before) {
@@ -97,7 +121,7 @@ class DynamicWalker {
             read_record(cursor, copy, plan_.eager()[cursor.eager++], Todo::split);
             break;
           }
-          if constexpr (RunAhead && Caches::present) {
+          if constexpr (RunAhead && plans) {
             take_planned(lines, cache, cursor, statistics);
           }
           if (cursor.word == cursor.word_end) {
@@ -135,6 +159,10 @@ class DynamicWalker {
             spend(cursor, build_ticks_.lock, 1);
             cursor.todo = Todo::lock;
             return DynamicStop::lock;
+          } else if (guarded && copies_.taken(copy, plan_.place(cursor.node).lazy)) {
+            if (read_again(copy, cursor)) {
+              return DynamicStop::other;
+            }
           } else if (addresses_.has_slot(plan_.place(cursor.node))) {
             cursor.todo = Todo::inherit;
             read(cursor, memory::RecordKind::node, addresses_.initial_record(cursor.node), node_bytes());
@@ -150,7 +178,14 @@ class DynamicWalker {
           }
           break;
         case Todo::inherit:
-          take(node, copy, cursor, built);
+          // While a node with several contexts waited for the record, another one may have taken the branch.
+          if (guarded && copies_.taken(copy, plan_.place(cursor.node).lazy)) {
+            if (read_again(copy, cursor)) {
+              return DynamicStop::other;
+            }
+          } else {
+            take(node, copy, cursor, built);
+          }
           break;
         case Todo::lock:
           if (cursor.lock == Lock::won) {
@@ -201,17 +236,42 @@ class DynamicWalker {
     return addresses_.record(copies_.copy_of(node), cursor.node);
   }
 
+  /// Whether the branch that a cursor is to read again is still being split.
+  [[nodiscard]] bool is_being_split(std::uint32_t node, const DynamicCursor& cursor) const {
+    return !copies_.built(copies_.copy_of(node), plan_.place(cursor.node).lazy);
+  }
+  /// Calls visit(line) for the lines of the records of a branch's children that are not in the node's own
+  /// memory, in ascending order, until one call returns false; returns the last call's result, or true.
+  template <class Visit>
+  bool each_child_line(std::uint32_t copy, std::uint32_t branch, const Visit& visit) const {
+    const accel::TopologyNode& node = topology_.nodes[branch];
+    return each_line_of(
+        node.count, node_bytes(), unit_shift_,
+        [&](std::uint32_t number) -> std::optional<memory::Address> {
+          const memory::Address address = addresses_.record(copy, node.first + number);
+          return address < local_base_ ? std::optional(address) : std::nullopt;
+        },
+        visit);
+  }
+  /// Notes that the node's cache holds a line which other nodes may still write.
+  void note_cached(std::uint32_t node, std::uint32_t line) {
+    if (!private_()) {
+      copies_.note_cached(copies_.copy_of(node), line);
+    }
+  }
+
   /// Brings in the line of a miss whose time has come. False when the second level has served the miss.
   bool miss(std::uint32_t node, DynamicCursor& cursor, NodeStatistics& statistics) {
     const std::uint32_t copy = copies_.copy_of(node);
     const auto line = static_cast<std::uint32_t>(cursor.at >> unit_shift_);
-    (void)caches_.view(node).access(cursor.kind, line);
+    (void)LookUps::access(caches().view(node), cursor, line, is_own(cursor));
     ++statistics.references.misses[static_cast<std::size_t>(cursor.kind)];
-    if (Caches::present && !private_()) {
-      copies_.note_cached(copy, line);
+    if (Caches::present) {
+      note_cached(node, line);
     }
     look(copy, cursor);
     if (second_level_.access(node, line, cursor.time, statistics.time)) {
+      caches_.note_second_level_hit(cursor);
       pass(cursor);
       return false;
     }
@@ -228,7 +288,29 @@ class DynamicWalker {
 
  private:
   using View = typename Caches::View;
+  using LookUps = CountedLookUps<Caches>;
+  static constexpr bool guarded = requires { Caches::guarded; };
+  static constexpr bool plans = Caches::present && !are_counted<Caches> && !guarded;  // see take_planned()
 
+  // Whether reading the branch prefetches something, or may at that time: a line that is not settled may be
+  // taken out of the cache until then.
+  bool wants_children(std::uint32_t copy, const LineStates& lines, View cache, std::uint32_t branch) const {
+    return Caches::present && input_.config.prefetch.children &&
+           !each_child_line(copy, branch, [&](std::uint32_t line) {
+             return lines.settled(line) && cache.holds(memory::RecordKind::node, line);
+           });
+  }
+  // Another context of the node has taken the branch: its record is read again when it is split. True when it
+  // is not yet.
+  bool read_again(std::uint32_t copy, DynamicCursor& cursor) const {
+    read_record(cursor, copy, cursor.node, Todo::branch);
+    return !copies_.built(copy, plan_.place(cursor.node).lazy);
+  }
+
+  // Whether the present reference is to the part of a private tree that the node has built itself.
+  [[nodiscard]] bool is_own(const DynamicCursor& cursor) const {
+    return private_() && cursor.at >= plan_.lower_base();
+  }
   [[nodiscard]] bool private_() const { return input_.config.build.sharing == Sharing::private_trees; }
   [[nodiscard]] std::uint32_t node_bytes() const { return layout_.record_bytes(memory::RecordKind::node); }
   [[nodiscard]] std::uint32_t part(const DynamicCursor& cursor) const {
@@ -252,9 +334,13 @@ class DynamicWalker {
   void read_record(DynamicCursor& cursor, std::uint32_t copy, std::uint32_t tree_node, Todo todo) const {
     cursor.node = tree_node;
     cursor.todo = todo;
+    LookUps::note_level(cursor, topology_.nodes[tree_node].level);
     read(cursor, memory::RecordKind::node, addresses_.record(copy, tree_node), node_bytes());
   }
   void read_one(DynamicCursor& cursor, memory::RecordKind kind, std::uint64_t index) const {
+    if (!of_tree(kind)) {
+      LookUps::note_level(cursor, 0);
+    }
     read(cursor, kind, layout_.address(kind, index), layout_.record_bytes(kind, index));
   }
 
@@ -318,9 +404,16 @@ class DynamicWalker {
       stop = DynamicStop::due;
       return false;
     }
-    cursor.due = false;
     const bool local = cursor.at >= local_base_;
-    if (local ? cache.access(cursor.kind, line) : cache.touch(cursor.kind, line)) [[likely]] {
+    if constexpr (guarded) {
+      if (!local && cache.awaits(cursor.kind, line, cursor.time) != LinesUnderWay::none) {
+        stop = DynamicStop::line;
+        return false;
+      }
+    }
+    cursor.due = false;
+    if (local ? LookUps::access(cache, cursor, line, is_own(cursor)) : LookUps::touch(cache, cursor, line))
+        [[likely]] {
       ++statistics.references.hits[static_cast<std::size_t>(cursor.kind)];
       spend(cursor, ticks_.hit, 1);
     } else if (!local) {
@@ -331,6 +424,8 @@ class DynamicWalker {
       if (!second_level_.access(node, line, cursor.time, statistics.time)) {
         ++built.local_misses;
         use_local(cursor, statistics, Caches::present ? line_bytes_ : part(cursor));
+      } else {
+        caches_.note_second_level_hit(cursor);
       }
     }
     look(copy, cursor);
@@ -339,7 +434,10 @@ class DynamicWalker {
   }
 
   void use_local(DynamicCursor& cursor, NodeStatistics& statistics, std::uint32_t bytes) const {
-    cursor.time = sim::add_ticks(cursor.time, local_.use(bytes, statistics.time));
+    const memory::Service service = local_.read(bytes, cursor.time);
+    add_service(statistics.time, service);
+    caches_.note_wait(cursor, service);
+    cursor.time = service.done;
   }
 
   void write_local(std::uint32_t copy, DynamicCursor& cursor, NodeStatistics& statistics,
@@ -426,6 +524,9 @@ class DynamicWalker {
       case Step::branch:
         ++steps.branches;
         spend(cursor, ticks_.branch, 1);
+        if constexpr (guarded) {
+          cursor.children = operand;
+        }
         read_record(cursor, copy, operand,
                     plan_.place(operand).lazy == TreePlan::none ? Todo::step : Todo::branch);
         break;
@@ -443,6 +544,7 @@ class DynamicWalker {
         break;
       }
       case Step::ray:
+        LookUps::note_ray(cursor, operand);
         ++(steps.*ray_counters[operand & 3U]);
         spend(cursor, ticks_.ray[operand & 3U], 1);
         break;
@@ -477,7 +579,7 @@ class DynamicWalker {
   const TreePlan& plan_;
   const memory::Layout& layout_;
   const accel::Topology& topology_;
-  Caches caches_;
+  LookUps caches_;
   std::uint32_t line_bytes_;
   unsigned unit_shift_;
   TreeCopies copies_;

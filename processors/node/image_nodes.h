@@ -57,7 +57,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
         dispatch(node);
         break;
       case EventClass::reply:
-        interconnect_of(node).reply(port_of(node));
+        Base::reply(node, port_of(node));
         break;
       case EventClass::memory:
         interconnect_of(node).proceed(port_of(node), event.sequence());
@@ -72,6 +72,15 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
         break;
     }
   }
+
+  // Only a bus posts events in order: those of its data.
+  void handle_in_order(const sim::Event& event) {
+    sim::ensure(event.event_class() == static_cast<std::uint8_t>(EventClass::reply),
+                "an event that is no reply was posted in order");
+    Base::reply(event.component(), port_of(event.component()));
+  }
+
+  void run_all(sim::Engine& engine) override { engine.run_all(*this); }
 
   void prepare(const sim::Event& event) override {
     const std::uint32_t node = event.component();
@@ -93,8 +102,8 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
   SecondLevelResult second_level() const override { return walker_.behind().second_level().result(); }
 
   CacheCountResult cache_counts() const override {
-    if constexpr (requires { Caches::counted; }) {
-      return walker_.caches().counting().result();
+    if constexpr (are_counted<Caches>) {
+      return walker_.counts();
     } else {
       return {};
     }
@@ -152,7 +161,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
 
   void read(std::uint32_t node) {
     const Cursor& cursor = cursors_[node];
-    interconnect_of(node).read({port_of(node), walker_.missed_address(cursor), walker_.missed_bytes(cursor)});
+    Base::read_memory(node, {port_of(node), walker_.missed_address(cursor), walker_.missed_bytes(cursor)});
   }
 
   void read_done(std::uint32_t node, const memory::Service& service) {

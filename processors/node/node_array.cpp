@@ -17,6 +17,10 @@ std::vector<std::uint32_t> order_drawn_from(std::uint64_t seed, std::size_t coun
   return order;
 }
 
+bool has_context_nodes(const ReplayInput& input) {
+  return input.with_contexts || input.config.contexts > 1 || input.config.prefetch.on();
+}
+
 std::unique_ptr<NodeArray> make_node_array(const ReplayInput& input, sim::Engine& engine, Host& host) {
   if (input.stripped != nullptr) {
     return make_stripped_nodes(input, engine, host);
@@ -24,10 +28,11 @@ std::unique_ptr<NodeArray> make_node_array(const ReplayInput& input, sim::Engine
   if (input.config.count.any()) {
     return make_counted_nodes(input, engine, host);
   }
+  const bool contexts = has_context_nodes(input);
   if (input.tree != nullptr) {
-    return make_dynamic_nodes(input, engine, host);
+    return contexts ? make_context_building_nodes(input, engine, host)
+                    : make_dynamic_nodes(input, engine, host);
   }
-  const bool contexts = input.with_contexts || input.config.contexts > 1 || input.config.prefetch.on();
   return contexts ? make_context_nodes(input, engine, host) : make_image_nodes(input, engine, host);
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -31,6 +32,9 @@ class NodeArray : public sim::EventHandler {
  public:
   /// Posts each node's first event, in an order drawn from `seed` (0: ascending); the result is the same.
   virtual void start(std::uint64_t seed) = 0;
+  /// Handles all events of `engine`. No limit is needed: each event moves a node or a ray on by at least one
+  /// step of a finite log, or is the only one at its node or cluster that finds nothing to do.
+  virtual void run_all(sim::Engine& engine) { engine.run(std::numeric_limits<std::uint64_t>::max()); }
   /// The interconnect of each cluster; set before start().
   virtual void connect(std::vector<memory::Interconnect*> interconnects) = 0;
   /// The client to plug into cluster `cluster`'s interconnect.

@@ -17,8 +17,13 @@ namespace marti::processors {
                                                             Host& host);
 [[nodiscard]] std::unique_ptr<NodeArray> make_dynamic_nodes(const ReplayInput& input, sim::Engine& engine,
                                                             Host& host);
+[[nodiscard]] std::unique_ptr<NodeArray> make_context_building_nodes(const ReplayInput& input,
+                                                                     sim::Engine& engine, Host& host);
 [[nodiscard]] std::unique_ptr<NodeArray> make_stripped_nodes(const ReplayInput& input, sim::Engine& engine,
                                                              Host& host);
+
+/// Whether the nodes need code for several contexts or for prefetching.
+[[nodiscard]] bool has_context_nodes(const ReplayInput& input);
 
 /// Nodes that can count more than hits and misses.
 [[nodiscard]] std::unique_ptr<NodeArray> make_counted_nodes(const ReplayInput& input, sim::Engine& engine,

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "memory/bus.h"
 #include "processors/machine/machine_config.h"
 #include "processors/node/node_array.h"
 #include "processors/walk/observer.h"
@@ -25,6 +26,13 @@ class PacketNodes : public NodeArray {
  public:
   void connect(std::vector<memory::Interconnect*> interconnects) override {
     interconnects_ = std::move(interconnects);
+    for (memory::Interconnect* const interconnect : interconnects_) {
+      if (auto* const bus = dynamic_cast<memory::Bus*>(interconnect)) {
+        buses_.push_back(bus);
+      }
+    }
+    sim::ensure(buses_.empty() || buses_.size() == interconnects_.size(),
+                "clusters with interconnects of different classes");
   }
   memory::InterconnectClient& client(std::uint32_t cluster) override { return clients_[cluster]; }
   sim::Ticks end() const override { return end_; }
@@ -62,6 +70,24 @@ class PacketNodes : public NodeArray {
     return (node - cluster_of(node) * input_.config.nodes) * ports_;
   }
   memory::Interconnect& interconnect_of(std::uint32_t node) { return *interconnects_[cluster_of(node)]; }
+  // Reads through one of the node's ports. A bus that serves first come first served is the common case, so
+  // its code is joined with that of the nodes.
+  void read_memory(std::uint32_t node, const memory::Transaction& transaction) {
+    const std::uint32_t cluster = cluster_of(node);
+    if (!buses_.empty()) [[likely]] {
+      buses_[cluster]->read_for(clients_[cluster], transaction);
+    } else {
+      interconnects_[cluster]->read(transaction);
+    }
+  }
+  void reply(std::uint32_t node, std::uint32_t port) {
+    const std::uint32_t cluster = cluster_of(node);
+    if (!buses_.empty()) [[likely]] {
+      buses_[cluster]->reply_for(clients_[cluster], port);
+    } else {
+      interconnects_[cluster]->reply(port);
+    }
+  }
   void post(EventClass event_class, sim::Ticks time, std::uint32_t node) {
     engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(event_class), node));
   }
@@ -174,7 +200,13 @@ class PacketNodes : public NodeArray {
       enter_write(node, not_known);
       ++late_writes_;
     }
-    interconnect_of(node).write({port_of(node), address, bytes});
+    const std::uint32_t cluster = cluster_of(node);
+    const memory::Transaction transaction = {port_of(node), address, bytes};
+    if (!buses_.empty()) [[likely]] {
+      buses_[cluster]->write_for(clients_[cluster], transaction);
+    } else {
+      interconnects_[cluster]->write(transaction);
+    }
   }
   // Whether the end of every write posted so far is known.
   [[nodiscard]] bool all_writes_known() const { return late_writes_ == 0; }
@@ -279,6 +311,7 @@ class PacketNodes : public NodeArray {
   std::int64_t late_writes_ = 0;         // number of writes whose end is not known
   std::vector<Client> clients_;
   std::vector<memory::Interconnect*> interconnects_;
+  std::vector<memory::Bus*> buses_;        // the interconnects, if they are of this class; else empty
   std::vector<std::int64_t> seen_misses_;  // already reported to the observer; empty without one
 };
 

@@ -65,7 +65,7 @@ void TreeCopies::count_open(std::uint32_t copy, memory::Address begin, std::uint
   }
 }
 
-void TreeCopies::take(std::uint32_t copy, std::uint32_t lazy, std::uint32_t processor) {
+void TreeCopies::take(std::uint32_t copy, std::uint32_t lazy, std::uint32_t builder) {
   sim::ensure(!taken(copy, lazy), "a branch is split twice in one tree");
   const TreePlan::LazyBranch& branch = plan_.lazy()[lazy];
   const memory::Address block = next_[copy];
@@ -74,7 +74,7 @@ void TreeCopies::take(std::uint32_t copy, std::uint32_t lazy, std::uint32_t proc
   if (private_) {
     return;
   }
-  builder_[at(copy, lazy)] = processor;
+  builder_[at(copy, lazy)] = builder;
   allocated_[copy] = static_cast<std::uint32_t>(next_[copy] >> line_shift_);
   // The whole block is open until it is published, a P node's record in it until the P node is published.
   count_open(copy, block, branch.block_bytes, 1);

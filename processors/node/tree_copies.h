@@ -48,13 +48,13 @@ class TreeCopies {
   [[nodiscard]] memory::Address block(std::uint32_t copy, std::uint32_t lazy) const {
     return block_[at(copy, lazy)];
   }
-  /// The processor that took the branch; for shared trees only.
+  /// Who took the branch: what take() was told; for shared trees only.
   [[nodiscard]] std::uint32_t builder(std::uint32_t copy, std::uint32_t lazy) const {
     return builder_[at(copy, lazy)];
   }
 
-  /// `processor` begins to split the branch: its block is allocated.
-  void take(std::uint32_t copy, std::uint32_t lazy, std::uint32_t processor);
+  /// `builder` begins to split the branch: its block is allocated.
+  void take(std::uint32_t copy, std::uint32_t lazy, std::uint32_t builder);
   /// Makes the branch's children visible.
   void publish(std::uint32_t copy, std::uint32_t lazy);
 

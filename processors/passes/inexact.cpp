@@ -1,14 +1,16 @@
 // Which machines can be replayed in part, or out of order.
 #include <string>
+#include <string_view>
 
+#include "processors/machine/combinations.h"
 #include "processors/replay/replay.h"
 #include "sim/key_error.h"
 
 namespace marti::processors {
 
 void check_sampled(const MachineConfig& config) {
-  const auto refuse = [](const char* key, const std::string& reason) {
-    throw sim::KeyError(key, "a sample of packets is replayed with " + reason + " only");
+  const auto refuse = [](std::string_view key, const std::string& reason) {
+    throw sim::KeyError(std::string(key), "a sample of packets is replayed with " + reason + " only");
   };
   if (config.scheme != Scheme::image) {
     refuse("machine.scheme", "machine.scheme = \"image\"");
@@ -19,20 +21,16 @@ void check_sampled(const MachineConfig& config) {
   if (config.host.assignment != Assignment::dynamic) {
     refuse("host.assignment", "host.assignment = \"dynamic\"");
   }
-  if (config.contexts > 1 || config.prefetch.on()) {
-    refuse(config.contexts > 1         ? "node.contexts"
-           : config.prefetch.next_line ? "prefetch.next_line"
-                                       : "prefetch.children",
-           "one context (node.contexts) and without prefetching");
+  for (const Feature feature : {Feature::contexts, Feature::prefetch}) {
+    if (has(config, feature)) {
+      refuse(key_of(config, feature), "one context (node.contexts) and without prefetching");
+    }
   }
   if (config.l2.sharing != SecondLevel::none) {
     refuse("l2.sharing", "one level of caches (l2.sharing = \"none\")");
   }
   if (config.count.any() || config.count.working_set) {
-    refuse(config.count.working_set    ? "count.working_set"
-           : config.count.miss_classes ? "count.miss_classes"
-           : config.count.sharing      ? "count.sharing"
-                                       : "count.attribution",
+    refuse(config.count.working_set ? "count.working_set" : key_of(config.count),
            "nothing counted beside hits and misses ([count])");
   }
 }

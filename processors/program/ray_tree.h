@@ -22,6 +22,9 @@ struct LoggedRay {
   std::uint32_t next_sibling = none;
   std::uint32_t bounce = 0;
   RayKind kind = RayKind::camera;
+
+  /// The operand of its `ray` step.
+  [[nodiscard]] std::uint32_t operand() const { return static_cast<std::uint32_t>(kind) | bounce << 2U; }
 };
 
 /// The words of the first camera ray and of all rays that it led to, from `words`, which are a pixel's words

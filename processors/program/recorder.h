@@ -15,6 +15,7 @@
 #include "accel/ray.h"
 #include "accel/visitor.h"
 #include "processors/program/work_log.h"
+#include "sim/chunks.h"
 #include "sim/error.h"
 
 namespace marti::processors {
@@ -74,8 +75,9 @@ class RowRecorder {
   /// Ends the row and copies it out.
   void end_row(LogRow& row) {
     begin_pixel();
-    row.words.assign(buffer_.get(), next_);
-    row.begin.assign(begin_.begin(), begin_.end());
+    const sim::ChunkAllocator<std::uint32_t> chunks(chunks_);
+    row.words = sim::ChunkVector<std::uint32_t>(buffer_.get(), next_, chunks);
+    row.begin = sim::ChunkVector<std::uint32_t>(begin_.begin(), begin_.end(), chunks);
   }
 
  private:
@@ -117,6 +119,7 @@ class RowRecorder {
   std::uint32_t* next_ = nullptr;
   std::uint32_t* end_ = nullptr;
   std::vector<std::uint32_t> begin_;
+  sim::Chunks chunks_;  // of the rows
 };
 
 }  // namespace marti::processors

@@ -22,8 +22,11 @@ void check_log_capacity(std::size_t nodes, std::size_t materials, std::size_t li
   fits("textures", textures);
 }
 
-LogTotals totals_of(const WorkLog& log) {
+LogTotals totals_of(const WorkLog& log, std::vector<std::uint64_t>* shades) {
   LogTotals totals;
+  if (shades != nullptr) {
+    shades->assign(log.materials, 0);
+  }
   std::vector<std::uint32_t> tests(log.topology.nodes.size());  // of each leaf tested whole
   std::transform(log.topology.nodes.begin(), log.topology.nodes.end(), tests.begin(),
                  [](const accel::TopologyNode& node) { return node.leaf ? node.count : 0; });
@@ -67,6 +70,9 @@ LogTotals totals_of(const WorkLog& log) {
           break;
         case Step::shade:
           ++totals.shades;
+          if (shades != nullptr) {
+            ++(*shades)[operand_of(word)];
+          }
           break;
         case Step::light:
           ++totals.lights;

@@ -18,6 +18,7 @@
 #include "accel/quadric_shape.h"
 #include "accel/topology.h"
 #include "accel/traversal.h"
+#include "sim/chunks.h"
 
 namespace marti::processors {
 
@@ -102,8 +103,8 @@ inline constexpr std::uint32_t camera_ray = make_word(Step::ray, 0);
 
 /// One image row: the words of its pixels from left to right. Pixel x is words[begin[x] .. begin[x + 1]).
 struct LogRow {
-  std::vector<std::uint32_t> words;
-  std::vector<std::uint32_t> begin;  ///< width + 1 offsets
+  sim::ChunkVector<std::uint32_t> words;
+  sim::ChunkVector<std::uint32_t> begin;  ///< width + 1 offsets
 };
 
 /// How much a log holds; also the denominators of bytes per ray and steps per ray.
@@ -159,7 +160,7 @@ struct WorkLog {
 /// Throws UserError when a database with that many records does not fit the operands of a log.
 void check_log_capacity(std::size_t nodes, std::size_t materials, std::size_t lights, std::size_t textures);
 
-/// Counts the whole log in one pass.
-[[nodiscard]] LogTotals totals_of(const WorkLog& log);
+/// Counts the whole log in one pass; with `shades`, also the shaded points of each material.
+[[nodiscard]] LogTotals totals_of(const WorkLog& log, std::vector<std::uint64_t>* shades = nullptr);
 
 }  // namespace marti::processors

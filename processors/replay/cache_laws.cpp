@@ -10,8 +10,10 @@ namespace {
 void check_private(const MachineResult& result) {
   require(result.l2.caches.size() == result.nodes.size(), "every node has a second level");
   for (std::size_t node = 0; node < result.nodes.size(); ++node) {
-    require(result.l2.caches[node].references() == result.nodes[node].references.all_misses(),
-            "what misses in a node's first level is what its second level is asked for");
+    const std::int64_t prefetches = result.contexts.nodes.empty() ? 0 : result.contexts.nodes[node].issued;
+    require(result.l2.caches[node].references() == result.nodes[node].references.all_misses() + prefetches,
+            "what misses in a node's first level, and what it prefetches, is what its second level is asked "
+            "for");
   }
 }
 
@@ -30,9 +32,10 @@ void check_cluster(const ClusterResult& cluster, const memory::CacheCounters* ca
 
 }  // namespace
 
-std::int64_t misses_beyond_caches(const MachineConfig& config, const MachineResult& result) {
-  return config.l2.sharing == SecondLevel::private_caches ? result.l2.counters().misses
-                                                          : result.references().all_misses();
+std::int64_t reads_beyond_caches(const MachineConfig& config, const MachineResult& result) {
+  return config.l2.sharing == SecondLevel::private_caches
+             ? result.l2.counters().misses
+             : result.references().all_misses() + result.contexts.counts().issued;
 }
 
 void check_second_level_laws(const MachineConfig& config, const MachineResult& result) {

@@ -91,11 +91,18 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
   }
   const BuildCounts built = result.build.counts();
   const bool own_memories = config.placement == Placement::replicated || config.scheme == Scheme::space;
-  const std::int64_t misses = own_memories ? 0 : misses_beyond_caches(config, result) - built.local_misses;
-  require(reads == misses + built.locks + result.contexts.counts().issued,
-          "every miss, every lock and every prefetch is one read of the interconnect");
+  const std::int64_t beyond = own_memories ? 0 : reads_beyond_caches(config, result) - built.local_misses;
+  require(reads == beyond + built.locks,
+          "every miss and prefetch that no private second level serves, and every lock, is one read of the "
+          "interconnect");
   check_second_level_laws(config, result);
-  check_counts(result.counts, result.references(), result.time());
+  check_counts(result.counts, result.references(), result.contexts.counts().issued, result.time());
+  // With a replicated database everything is in the nodes' own memories; a second level serves own misses,
+  // too.
+  if (result.counts.sharing && !own_memories && config.l2.sharing != SecondLevel::private_caches) {
+    require(result.counts.own_misses == built.local_misses,
+            "the misses that only one node can have are those of what it has built in its own memory");
+  }
   require(writes == steps.pixels + built.writes,
           "every pixel and every part of the tree is one write of the interconnect");
   // Posted writes wait too, but the nodes do not.

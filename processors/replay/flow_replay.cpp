@@ -1,6 +1,5 @@
 #include "processors/replay/flow_replay.h"
 
-#include <limits>
 #include <optional>
 
 #include "processors/replay/bounds.h"
@@ -42,8 +41,7 @@ MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
   }
   nodes->start(options.start_seed);
-  // No limit: an event moves a ray on, or is the only one at a node or cluster that finds nothing to do.
-  engine.run(std::numeric_limits<std::uint64_t>::max());
+  nodes->run_all(engine);
   nodes->finish();
 
   if (input.observer != nullptr) {

@@ -42,7 +42,8 @@ std::uint64_t host_bytes(const MachineConfig& config) {
       config.l2.sharing == SecondLevel::shared ? config.clusters * tag_bytes(second_level_cache(config)) : 0;
   if (config.placement == Placement::distributed) {
     constexpr std::uint64_t bytes_a_home = 900;
-    homes += config.all_nodes() * bytes_a_home +
+    constexpr std::uint64_t bytes_a_further_port = 100;
+    homes += config.all_nodes() * (bytes_a_home + bytes_a_further_port * (config.ports_of_node() - 1)) +
              config.clusters * memory::network_bytes(config.network, config.nodes);
   }
   if (config.scheme != Scheme::image) {
@@ -57,7 +58,9 @@ std::uint64_t host_bytes(const MachineConfig& config) {
       config.ports_of_node() == 1 ? 0
                                   : config.contexts * bytes_a_context + config.ports_of_node() * bytes_a_port;
   // At most 2^24 nodes of five caches of 2^28 lines: this cannot overflow.
-  return homes +
+  const std::uint64_t events =
+      sim::EventQueue::bytes_of_days(std::size_t{config.all_nodes()} * config.ports_of_node());
+  return homes + events +
          config.all_nodes() * (bytes_a_node + contexts + config.write_buffer * sizeof(sim::Ticks) + tags);
 }
 

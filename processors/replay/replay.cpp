@@ -1,6 +1,5 @@
 #include "processors/replay/replay.h"
 
-#include <limits>
 #include <memory>
 #include <optional>
 
@@ -145,8 +144,7 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   const LeftOut left_out = leave_out(options, input);
   if (options.stripped != nullptr) {
     sim::ensure(options.stripped->fits(log) && !options.step_by_step && !options.with_contexts &&
-                    options.stripped->key() == StrippedLog::key_of(config) &&
-                    options.stripped->ways() == StrippedLog::ways_of(config),
+                    options.stripped->suits(config),
                 "a stripped log is walked by a machine that it was not made for");
   }
   if (options.observer != nullptr) {
@@ -161,8 +159,7 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   }
   nodes->start(options.start_seed);
   engine.relax(options.quantum);
-  // Every event moves some node on by at least one step of a finite log, so no limit is needed.
-  engine.run(std::numeric_limits<std::uint64_t>::max());
+  nodes->run_all(engine);
   nodes->finish();
 
   if (options.observer != nullptr) {

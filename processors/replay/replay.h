@@ -88,7 +88,7 @@ struct ReplayOptions {
   /// Not exact (sim::Engine::relax): where first come is first served, requests of one quantum may be served
   /// in another order. For machines that pass check_relaxed(). 0 or 1: exact.
   sim::Ticks quantum = 0;
-  bool with_contexts = false;  ///< with a given tree: nodes that can hold several contexts, even for one;
+  bool with_contexts = false;  ///< nodes that can hold several contexts and prefetch, even for one context;
                                ///< same result
 };
 

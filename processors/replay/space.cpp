@@ -6,6 +6,7 @@
 #include "processors/flow/space/space_nodes.h"
 #include "processors/node/node_factory.h"
 #include "processors/replay/flow_replay.h"
+#include "processors/walk/counted_caches.h"
 
 namespace marti::processors {
 
@@ -26,9 +27,11 @@ MachineResult replay_space(const WorkLog& log, const MachineConfig& config, cons
   SpacePlan plan;
   const auto make = [&](const FlowParts& parts) {
     plan = plan_space(log, own_memories, parts.input.layout);
-    return with_caches(own_memories, [&]<class Caches>(Caches caches) -> std::unique_ptr<FlowNodes> {
+    const auto make_nodes = [&]<class Caches>(Caches caches) -> std::unique_ptr<FlowNodes> {
       return std::make_unique<SpaceNodes<Caches>>(parts, plan, std::move(caches));
-    });
+    };
+    return own_memories.count.any() ? with_counted_caches(parts.input, make_nodes)
+                                    : with_caches(own_memories, make_nodes);
   };
   MachineResult result = replay_flow(log, own_memories, options, admission_limit(config), make);
   result.copies = config.clusters;

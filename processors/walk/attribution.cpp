@@ -6,10 +6,10 @@ namespace marti::processors {
 
 AttributionCounts& Attribution::at(memory::RecordKind record, Origin origin) {
   const std::size_t level = std::min<std::uint32_t>(origin.level, levels - 1);
-  const std::size_t cell =
-      (origin.ray * std::size_t{levels} + level) * memory::record_kinds + static_cast<std::size_t>(record);
+  const std::size_t work = origin.ray * std::size_t{2} + (origin.splitting ? 1 : 0);
+  const std::size_t cell = (work * levels + level) * memory::record_kinds + static_cast<std::size_t>(record);
   if (cell >= cells_.size()) {
-    cells_.resize((origin.ray + std::size_t{1}) * levels * memory::record_kinds);
+    cells_.resize((work + 1) * levels * memory::record_kinds);
   }
   return cells_[cell];
 }
@@ -29,10 +29,11 @@ std::vector<AttributionRow> Attribution::rows() const {
       continue;
     }
     const std::size_t place = cell / memory::record_kinds;
-    const std::size_t ray = place / levels;
+    const std::size_t work = place / levels;
+    const std::size_t ray = work / 2;
     rows.push_back({static_cast<memory::RecordKind>(cell % memory::record_kinds),
                     static_cast<std::uint32_t>(place % levels), static_cast<RayKind>(ray % ray_kinds),
-                    static_cast<std::uint32_t>(ray / ray_kinds), cells_[cell]});
+                    static_cast<std::uint32_t>(ray / ray_kinds), work % 2 == 1, cells_[cell]});
   }
   return rows;
 }

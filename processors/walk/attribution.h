@@ -20,13 +20,15 @@ namespace marti::processors {
 }
 
 /// What a reference was for: a work log's `ray` operand (RayKind | bounce << 2, the bounce at most
-/// Origin::most_bounces), and the level of the tree node whose record, list or primitives were read; 0 for
-/// materials and texels.
+/// Origin::most_bounces), the level of the tree node whose record, list or primitives were read (0 for
+/// materials and texels), and whether they were read to split a branch: for the ray that needed it, or before
+/// the frame, when there is no ray yet and `ray` is 0.
 struct Origin {
   static constexpr std::uint32_t most_bounces = 255;
 
   std::uint16_t ray = 0;
   std::uint8_t level = 0;
+  bool splitting = false;
 
   void begin_ray(std::uint32_t operand) {
     const std::uint32_t bounce = operand >> 2U;
@@ -61,12 +63,13 @@ struct AttributionCounts {
 };
 static_assert(sim::declares_every_member<AttributionCounts>());
 
-/// The counts of one combination of record kind, level, ray kind and bounce that occurred.
+/// The counts of one combination of record kind, level, ray kind, bounce and work that occurred.
 struct AttributionRow {
   memory::RecordKind record = memory::RecordKind::node;
   std::uint32_t level = 0;
   RayKind ray = RayKind::camera;
   std::uint32_t bounce = 0;
+  bool splitting = false;
   AttributionCounts counts;
 };
 
@@ -75,13 +78,13 @@ class Attribution {
   AttributionCounts& at(memory::RecordKind record, Origin origin);
   void wait(memory::RecordKind record, Origin origin, const memory::Service& service);
 
-  /// Ascending by bounce, ray kind, level, record kind.
+  /// Ascending by bounce, ray kind, work (splitting last), level, record kind.
   [[nodiscard]] std::vector<AttributionRow> rows() const;
 
  private:
   static constexpr std::uint32_t levels = 64;  ///< the deepest tree, a BSP tree, has 61
 
-  std::vector<AttributionCounts> cells_;  // by origin's ray, level and record
+  std::vector<AttributionCounts> cells_;  // by origin's ray, work, level and record
 };
 
 }  // namespace marti::processors

@@ -34,6 +34,11 @@ class BehindCache {
     return second_level_.access(node, line, time, division);
   }
 
+  /// See PrivateSecondLevel::hit.
+  std::optional<sim::Ticks> second_level_hit(std::uint32_t node, std::uint32_t line) {
+    return second_level_.hit(node, line);
+  }
+
   /// A read without the interconnect, from `time` on, which is set to its end.
   memory::Service read(std::uint32_t bytes, sim::Ticks& time, TimeDivision& division) {
     const memory::Service service =

@@ -55,7 +55,7 @@ CacheCounting::CacheCounting(const MachineConfig& config, std::uint64_t lines) {
 }
 
 void CacheCounting::refer(std::uint32_t node, std::size_t cache, memory::RecordKind record,
-                          std::uint32_t line, Origin origin, bool hit) {
+                          std::uint32_t line, Origin origin, bool hit, bool own) {
   if (!classifiers_.empty()) {
     if (hit) {
       classifiers_[cache].hit(node, line);
@@ -65,12 +65,31 @@ void CacheCounting::refer(std::uint32_t node, std::size_t cache, memory::RecordK
     }
   }
   if (sharing_ && !hit) {
-    sharing_->fetch(node, line);
+    if (own) {
+      ++own_misses_;
+    } else {
+      sharing_->fetch(node, line);
+    }
   }
   if (attribution_) {
     AttributionCounts& counts = attribution_->at(record, origin);
     ++counts.references;
     counts.misses += hit ? 0 : 1;
+  }
+}
+
+void CacheCounting::bring_in(std::uint32_t node, std::size_t cache, std::uint32_t line) {
+  if (!classifiers_.empty()) {
+    (void)classifiers_[cache].miss(node, line);
+  }
+  if (sharing_) {
+    sharing_->fetch(node, line);
+  }
+}
+
+void CacheCounting::written(std::uint32_t node, std::size_t cache, std::uint32_t line, bool held) {
+  if (!classifiers_.empty()) {
+    classifiers_[cache].written(node, line, held);
   }
 }
 
@@ -93,6 +112,7 @@ CacheCountResult CacheCounting::result() const {
   }
   if (sharing_) {
     result.sharing = sharing_->result();
+    result.own_misses = own_misses_;
   }
   if (attribution_) {
     result.attribution = attribution_->rows();
@@ -100,7 +120,7 @@ CacheCountResult CacheCounting::result() const {
   return result;
 }
 
-void check_counts(const CacheCountResult& counts, const ReferenceCounts& references,
+void check_counts(const CacheCountResult& counts, const ReferenceCounts& references, std::int64_t prefetches,
                   const TimeDivision& time) {
   if (counts.miss_classes) {
     for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
@@ -112,7 +132,9 @@ void check_counts(const CacheCountResult& counts, const ReferenceCounts& referen
     }
   }
   if (counts.sharing) {
-    require(counts.sharing->fetches == references.all_misses(), "every miss fetches a line");
+    require(
+        counts.sharing->fetches + counts.own_misses == references.all_misses() + prefetches,
+        "every miss and every prefetch fetches a line, one of the node's own or one that others may have");
   }
   if (counts.attribution) {
     ReferenceCounts sum;

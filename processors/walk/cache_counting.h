@@ -19,6 +19,8 @@ struct CacheCountResult {
   using ByClass = std::array<std::int64_t, memory::miss_classes>;
   std::optional<std::array<ByClass, memory::record_kinds>> miss_classes{};
   std::optional<memory::SharingResult> sharing{};
+  std::int64_t own_misses =
+      0;  ///< with `sharing`: misses of lines that no other node can have, no case of it
   std::optional<std::vector<AttributionRow>> attribution{};
 };
 
@@ -29,8 +31,14 @@ class CacheCounting {
   CacheCounting(const MachineConfig& config, std::uint64_t lines);
 
   /// Counts a reference of a node to a line of its cache number `cache` (0 unless the caches are split).
+  /// `own`: no other node has this line, not even a copy, so it is no case of sharing.
   void refer(std::uint32_t node, std::size_t cache, memory::RecordKind record, std::uint32_t line,
-             Origin origin, bool hit);
+             Origin origin, bool hit, bool own = false);
+  /// Counts a prefetch of a line that the cache did not hold. It is a fetch; later misses are classed as if
+  /// the line had been in the cache since.
+  void bring_in(std::uint32_t node, std::size_t cache, std::uint32_t line);
+  /// Another node has written the line. `held`: the cache had it, and the write has removed it.
+  void written(std::uint32_t node, std::size_t cache, std::uint32_t line, bool held);
   void second_level_hit(memory::RecordKind record, Origin origin);
   /// Counts the time that a node waited for a miss.
   void wait(memory::RecordKind record, Origin origin, const memory::Service& service);
@@ -43,11 +51,13 @@ class CacheCounting {
   std::vector<memory::MissClassifier> classifiers_;  // one for each cache of a node
   std::array<CacheCountResult::ByClass, memory::record_kinds> classes_{};
   std::optional<memory::LineSharing> sharing_;
+  std::int64_t own_misses_ = 0;  // where sharing is counted
   std::optional<Attribution> attribution_;
 };
 
-/// Throws InternalError unless the counts add up to those of the nodes.
-void check_counts(const CacheCountResult& counts, const ReferenceCounts& references,
+/// Throws InternalError unless the counts add up to those of the nodes, which have asked for `prefetches`
+/// lines beside their misses.
+void check_counts(const CacheCountResult& counts, const ReferenceCounts& references, std::int64_t prefetches,
                   const TimeDivision& time);
 
 }  // namespace marti::processors

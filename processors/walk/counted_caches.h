@@ -25,11 +25,38 @@ class CountedCaches {
   class View {
    public:
     View(CountedCaches& caches, std::uint32_t node) : state_(*caches.state_), node_(node) {}
-    bool access(memory::RecordKind kind, std::uint32_t line, Origin origin = {}) const {
+    /// `own`: see CacheCounting::refer.
+    bool access(memory::RecordKind kind, std::uint32_t line, Origin origin = {}, bool own = false) const {
       const AnyCaches::View caches = state_.caches.view(node_);
       const bool hit = Present && caches.access(kind, line);
-      state_.counting.refer(node_, caches.cache_of(kind), kind, line, origin, hit);
+      state_.counting.refer(node_, caches.cache_of(kind), kind, line, origin, hit, own);
       return hit;
+    }
+    /// As access(), but a line that is missing is not brought in, and counted only when it is.
+    bool touch(memory::RecordKind kind, std::uint32_t line, Origin origin) const {
+      const AnyCaches::View caches = state_.caches.view(node_);
+      const bool hit = Present && caches.touch(kind, line);
+      if (hit) {
+        state_.counting.refer(node_, caches.cache_of(kind), kind, line, origin, true);
+      }
+      return hit;
+    }
+    /// Removes a line that another node has written; returns how many copies there were.
+    std::int64_t remove(std::uint32_t line) const {
+      return state_.caches.view(node_).remove_each(
+          line, [&](std::size_t cache, bool held) { state_.counting.written(node_, cache, line, held); });
+    }
+    /// Brings in a line that is missing and that nobody has referred to: a prefetch.
+    void bring_in(memory::RecordKind kind, std::uint32_t line) const {
+      const AnyCaches::View caches = state_.caches.view(node_);
+      (void)caches.access(kind, line);
+      state_.counting.bring_in(node_, caches.cache_of(kind), line);
+    }
+    [[nodiscard]] bool holds(memory::RecordKind kind, std::uint32_t line) const {
+      return Present && state_.caches.view(node_).holds(kind, line);
+    }
+    [[nodiscard]] std::size_t cache_of(memory::RecordKind kind) const {
+      return state_.caches.view(node_).cache_of(kind);
     }
 
    private:
@@ -44,12 +71,21 @@ class CountedCaches {
   struct State {
     explicit State(const ReplayInput& input)
         : caches(input.config),
-          counting(input.config, input.layout.end() / input.config.reference_bytes() + 1) {}
+          counting(input.config, (input.tree != nullptr ? input.tree->end() : input.layout.end()) /
+                                         input.config.reference_bytes() +
+                                     1) {}
     AnyCaches caches;
     CacheCounting counting;
   };
 
   std::unique_ptr<State> state_;
 };
+
+/// Returns make(caches) with the caches of a machine that counts.
+template <class Make>
+auto with_counted_caches(const ReplayInput& input, const Make& make) {
+  return input.config.cache.organisation == CacheOrganisation::none ? make(CountedCaches<false>(input))
+                                                                    : make(CountedCaches<true>(input));
+}
 
 }  // namespace marti::processors

@@ -1,9 +1,17 @@
 // The private caches of nodes with contexts or prefetches: tags as without them, and in addition the lines
 // that are still on their way from memory.
+//
+// A line on its way is known by the transaction that brings it. Without a second level, one that the first
+// level has pushed out meanwhile is fetched again. A private second level has one place for the lines of all
+// first-level caches of its node and gets the same data. So with one, a reference that its own first-level
+// cache cannot serve waits for the line that is on its way, whichever cache asked for it. A cache that has
+// had the line for longer serves it at once.
 #pragma once
 
+#include <type_traits>
 #include <utility>
 
+#include "processors/walk/cache_counting.h"
 #include "processors/walk/context_result.h"
 #include "processors/walk/lines_under_way.h"
 #include "processors/walk/node_caches.h"
@@ -11,9 +19,15 @@
 
 namespace marti::processors {
 
-/// `Caches` is one of node_caches.h.
+/// Base classes that mark caches which count, and others: only the former have the member `counted`.
+struct CountedMark {
+  static constexpr bool counted = true;
+};
+struct UncountedMark {};
+
+/// `Caches` is one of node_caches.h, or CountedCaches.
 template <class Caches>
-class GuardedCaches {
+class GuardedCaches : public std::conditional_t<are_counted<Caches>, CountedMark, UncountedMark> {
  public:
   static constexpr bool present = Caches::present;
   static constexpr bool by_kind = Caches::by_kind;
@@ -22,6 +36,7 @@ class GuardedCaches {
   GuardedCaches(const ReplayInput& input, Caches caches)
       : caches_(std::move(caches)),
         prefetch_(input.config.prefetch),
+        second_level_(input.config.l2.sharing == SecondLevel::private_caches),
         targets_(input, input.config.cache.cache.line),
         lines_(present ? input.config.all_nodes() : 0),
         counts_(input.config.all_nodes()) {}
@@ -30,9 +45,10 @@ class GuardedCaches {
    public:
     View(GuardedCaches& all, std::uint32_t node) : all_(all), node_(node), tags_(all.caches_.view(node)) {}
 
-    /// Returns what UnifiedCaches::View::access does.
-    bool access(memory::RecordKind kind, std::uint32_t line) const {
-      const bool hit = tags_.access(kind, line);
+    /// Returns what UnifiedCaches::View::access does; `origin` is given where references are counted.
+    template <class... Origins>
+    bool access(memory::RecordKind kind, std::uint32_t line, Origins... origin) const {
+      const bool hit = tags_.access(kind, line, origin...);
       if constexpr (present) {
         if (all_.lines_[node_].unmark(key(kind, line))) {
           ++(hit ? counts().useful : counts().useless);
@@ -40,13 +56,31 @@ class GuardedCaches {
       }
       return hit;
     }
-    /// The node's transaction that brings the line, when the line's tag is in the cache but its data have not
-    /// arrived by `time`; else LinesUnderWay::none.
+    /// As access(), but a line that is missing is not brought in.
+    template <class... Origins>
+    bool touch(memory::RecordKind kind, std::uint32_t line, Origins... origin) const {
+      const bool hit = tags_.touch(kind, line, origin...);
+      if constexpr (present) {
+        counts().useful += hit && all_.lines_[node_].unmark(key(kind, line)) ? 1 : 0;
+      }
+      return hit;
+    }
+    /// Removes a line, whatever kinds of record it holds; returns how many copies there were.
+    [[nodiscard]] std::int64_t remove(std::uint32_t line) const { return tags_.remove(line); }
+    [[nodiscard]] bool holds(memory::RecordKind kind, std::uint32_t line) const {
+      return tags_.holds(kind, line);
+    }
+    /// The node's transaction that brings a line, for which a reference at `time` has to wait; else
+    /// LinesUnderWay::none.
     [[nodiscard]] std::uint32_t awaits(memory::RecordKind kind, std::uint32_t line, sim::Ticks time) const {
       if constexpr (present) {
-        const std::uint32_t slot = all_.lines_[node_].find(key(kind, line), time);
-        if (slot != LinesUnderWay::none && tags_.holds(kind, line)) {
-          return slot;
+        LinesUnderWay& lines = all_.lines_[node_];
+        const std::uint32_t own = lines.find(key(kind, line), time);
+        if (tags_.holds(kind, line) || (own != LinesUnderWay::none && all_.second_level_)) {
+          return own;
+        }
+        if (all_.second_level_) {
+          return lines.find_in_any(line, time);
         }
       }
       return LinesUnderWay::none;
@@ -57,13 +91,18 @@ class GuardedCaches {
              !all_.targets_.each_child_line(
                  branch, [&](std::uint32_t line) { return tags_.holds(memory::RecordKind::node, line); });
     }
-    [[nodiscard]] bool holds(memory::RecordKind kind, std::uint32_t line) const {
-      return tags_.holds(kind, line);
+    /// Whether the line is there or on its way, so that it is not prefetched.
+    [[nodiscard]] bool has(memory::RecordKind kind, std::uint32_t line, sim::Ticks time) const {
+      return tags_.holds(kind, line) || awaits(kind, line, time) != LinesUnderWay::none;
     }
     /// Starts to fetch a line by transaction `slot`. prefetch() is for a line that the cache does not hold
     /// and brings its tag in; begin() is for a line whose tag is in already, as after a miss.
     void prefetch(memory::RecordKind kind, std::uint32_t line, std::uint32_t slot, sim::Ticks time) const {
-      (void)tags_.access(kind, line);
+      if constexpr (are_counted<Caches>) {
+        tags_.bring_in(kind, line);
+      } else {
+        (void)tags_.access(kind, line);
+      }
       ++counts().issued;
       counts().useless += all_.lines_[node_].mark(key(kind, line)) ? 1 : 0;
       begin(kind, line, slot, time);
@@ -86,6 +125,8 @@ class GuardedCaches {
   [[nodiscard]] View view(std::uint32_t node) { return {*this, node}; }
 
   [[nodiscard]] const PrefetchLines& targets() const { return targets_; }
+  /// Of caches that count.
+  [[nodiscard]] decltype(auto) counting() const { return caches_.counting(); }
   /// What each node counted, after the run. Prefetched lines that were never referenced count as useless.
   [[nodiscard]] std::vector<ContextCounts> counts() const {
     std::vector<ContextCounts> counts = counts_;
@@ -98,6 +139,7 @@ class GuardedCaches {
  private:
   Caches caches_;
   PrefetchConfig prefetch_;
+  bool second_level_;  // each node has one of its own
   PrefetchLines targets_;
   std::vector<LinesUnderWay> lines_;
   std::vector<ContextCounts> counts_;

@@ -18,24 +18,17 @@ inline constexpr sim::Ticks never = INT64_MAX;
 /// The lines of one node. Times passed to it must not decrease.
 class LinesUnderWay {
  public:
-  /// A line of one of the node's caches.
+  /// A line of one of the node's caches: the number of the cache, then in the lower 32 bits that of the line.
   using Key = std::uint64_t;
   static constexpr std::uint32_t none = 0xffffffffU;
 
   /// The transaction that brings the line, when its data have not arrived by `time`; else `none`.
   [[nodiscard]] std::uint32_t find(Key key, sim::Ticks time) {
-    std::size_t at = 0;
-    while (at < flights_.size()) {
-      if (flights_[at].done <= time) {
-        flights_[at] = flights_.back();
-        flights_.pop_back();
-      } else if (flights_[at].key == key) {
-        return flights_[at].slot;
-      } else {
-        ++at;
-      }
-    }
-    return none;
+    return find_if(time, [key](Key other) { return other == key; });
+  }
+  /// As find(), for whichever of the node's caches the line is fetched.
+  [[nodiscard]] std::uint32_t find_in_any(std::uint32_t line, sim::Ticks time) {
+    return find_if(time, [line](Key other) { return static_cast<std::uint32_t>(other) == line; });
   }
   /// Transaction `slot`, which has no other line under way, asks for the line at `time`. It replaces an
   /// earlier transaction for the line, if one is under way whose line has been pushed out since.
@@ -65,6 +58,23 @@ class LinesUnderWay {
     sim::Ticks done = never;
     std::uint32_t slot = 0;
   };
+
+  template <class Matches>
+  std::uint32_t find_if(sim::Ticks time, const Matches& matches) {
+    std::size_t at = 0;
+    while (at < flights_.size()) {
+      if (flights_[at].done <= time) {
+        flights_[at] = flights_.back();
+        flights_.pop_back();
+      } else if (matches(flights_[at].key)) {
+        return flights_[at].slot;
+      } else {
+        ++at;
+      }
+    }
+    return none;
+  }
+
   std::vector<Flight> flights_;  // few; arrived ones are removed at the next look-up
   std::unordered_set<Key> unasked_;
 };

@@ -13,18 +13,10 @@ class LocalMemory {
         access_(config.clock.cycles(config.access_cycles)),
         beat_(config.clock.cycles(config.cycles_per_beat)) {}
 
-  /// A read of `bytes` at `now`.
+  /// A read or write of `bytes` at `now`.
   [[nodiscard]] memory::Service read(std::uint32_t bytes, sim::Ticks now) const {
     const sim::Ticks transfer = sim::multiply_ticks(beat_, (std::int64_t{bytes} + width_ - 1) / width_);
     return {sim::add_ticks(now, sim::add_ticks(transfer, access_)), 0, transfer, 0, access_};
-  }
-
-  /// The time of reading or writing `bytes` without contention; also adds it to the activities of `time`.
-  [[nodiscard]] sim::Ticks use(std::uint32_t bytes, TimeDivision& time) const {
-    const sim::Ticks transfer = sim::multiply_ticks(beat_, (std::int64_t{bytes} + width_ - 1) / width_);
-    time[static_cast<std::size_t>(Activity::transfer)] += transfer;
-    time[static_cast<std::size_t>(Activity::bank_access)] += access_;
-    return sim::add_ticks(transfer, access_);
   }
 
  private:

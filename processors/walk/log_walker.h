@@ -11,6 +11,7 @@
 #include "processors/cost/accounting.h"
 #include "processors/cost/step_time.h"
 #include "processors/machine/packets.h"
+#include "processors/program/ray_tree.h"
 #include "processors/program/work_log.h"
 #include "processors/walk/behind_cache.h"
 #include "processors/walk/cache_counting.h"
@@ -23,8 +24,8 @@
 namespace marti::processors {
 
 /// `Caches` is a class of node_caches.h, one of these guarded (guarded_caches.h), one that counts
-/// (counted_caches.h), or one that records its misses (stripped_log.cpp): its member record(time, kind, line)
-/// is called at each miss, which serves it and returns when.
+/// (counted_caches.h; they may be guarded, too), or one that records its misses (stripped_log.cpp): its
+/// member record(time, kind, line) is called at each miss, which serves it and returns when.
 template <class Caches>
 class LogWalker {
  public:
@@ -60,6 +61,10 @@ class LogWalker {
 
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
   [[nodiscard]] const BehindCache& behind() const { return behind_; }
+  /// See PrivateSecondLevel::hit.
+  std::optional<sim::Ticks> second_level_hit(std::uint32_t node, std::uint32_t line) {
+    return behind_.second_level_hit(node, line);
+  }
   [[nodiscard]] Caches& caches() { return caches_; }
   [[nodiscard]] const Caches& caches() const { return caches_; }
 
@@ -123,10 +128,24 @@ class LogWalker {
     const memory::Address next = ((cursor.at >> unit_shift_) + 1) << unit_shift_;
     return static_cast<std::uint32_t>(std::min(cursor.end, next) - cursor.at);
   }
+  /// What was counted beyond hits and misses; empty where nothing is.
+  [[nodiscard]] CacheCountResult counts() const {
+    if constexpr (counted) {
+      return caches_.counting().result();
+    } else {
+      return {};
+    }
+  }
   /// Counts what the wait for the reference that missed was for, where that is counted.
   void note_wait(const Cursor& cursor, const memory::Service& service) const {
     if constexpr (counted) {
       caches_.counting().wait(cursor.kind, cursor.origin, service);
+    }
+  }
+  /// Notes which ray the steps that follow are of, where that is counted: for schemes in which rays move.
+  static void note_ray(Cursor& cursor, const LoggedRay& ray) {
+    if constexpr (counted) {
+      cursor.origin.begin_ray(ray.operand());
     }
   }
   /// Moves the cursor past the reference that missed, which has been served.
@@ -141,7 +160,7 @@ class LogWalker {
  protected:
   using View = typename Caches::View;
   static constexpr bool guarded = requires { Caches::guarded; };
-  static constexpr bool counted = requires { Caches::counted; };
+  static constexpr bool counted = are_counted<Caches>;
   static constexpr bool records = requires { Caches::records; };
 
   static bool in_visit(const Cursor& cursor) { return cursor.line != cursor.line_end; }
@@ -300,6 +319,13 @@ class LogWalker {
     return touch<RunAhead>(cache, cursor, statistics, kind, stop);
   }
 
+  // What follows is read for this node of the tree.
+  void note_node(Cursor& cursor, std::uint32_t tree_node) const {
+    if constexpr (counted) {
+      cursor.origin.level = topology_[tree_node].level;
+    }
+  }
+
   static bool access(View cache, const Cursor& cursor, std::uint32_t line) {
     if constexpr (counted) {
       return cache.access(cursor.kind, line, cursor.origin);
@@ -390,9 +416,7 @@ class LogWalker {
   template <bool RunAhead>
   bool refer_node(View cache, Cursor& cursor, NodeStatistics& statistics, std::uint32_t tree_node,
                   Stop& stop) {
-    if (counted) {
-      cursor.origin.level = topology_[tree_node].level;
-    }
+    note_node(cursor, tree_node);
     const std::uint32_t record = rank_ == nullptr ? tree_node : rank_[tree_node];
     return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::node, record, node_bytes_, stop);
   }

@@ -1,7 +1,6 @@
 // The private caches of all nodes, as the node's inner loop uses them: one call that returns hit or miss.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -15,6 +14,12 @@ namespace marti::processors {
 
 /// Which of the split caches a record kind uses.
 inline constexpr std::array<std::uint8_t, memory::record_kinds> split_cache_of = {0, 1, 2, 3, 3, 3};
+
+/// Whether the caches count more than hits and misses: CountedCaches, and these guarded.
+template <class Caches>
+inline constexpr bool are_counted = requires {
+  Caches::counted;
+};
 
 /// Unified caches, with a tag store whose class is known at compile time.
 template <class Tags>
@@ -70,8 +75,18 @@ class AnyCaches {
       return tags_[cache_of(kind)].holds(node_, line);
     }
     [[nodiscard]] std::int64_t remove(std::uint32_t line) const {
-      return std::count_if(tags_.begin(), tags_.end(),
-                           [&](memory::TagArray& tags) { return tags.remove(node_, line); });
+      return remove_each(line, [](std::size_t /*cache*/, bool /*held*/) {});
+    }
+    /// As remove(); calls told(cache, held) for the number of each cache and whether it held the line.
+    template <class Told>
+    std::int64_t remove_each(std::uint32_t line, const Told& told) const {
+      std::int64_t copies = 0;
+      for (std::size_t cache = 0; cache < tags_.size(); ++cache) {
+        const bool held = tags_[cache].remove(node_, line);
+        copies += held ? 1 : 0;
+        told(cache, held);
+      }
+      return copies;
     }
     /// The number of the cache that a record kind uses: 0 with one cache, split_cache_of[kind] with four.
     [[nodiscard]] std::size_t cache_of(memory::RecordKind kind) const {

@@ -8,6 +8,30 @@
 
 namespace marti::processors {
 
+/// Calls visit(line) for the lines of `count` records of `bytes` each, in ascending order, until one call
+/// returns false; returns the last call's result, or true without records. address_of(i) is the address of
+/// record i, which ascends, or none for a record that is left out. `shift`: a line has 2^shift bytes.
+template <class AddressOf, class Visit>
+bool each_line_of(std::uint32_t count, std::uint32_t bytes, unsigned shift, const AddressOf& address_of,
+                  const Visit& visit) {
+  std::uint32_t from = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::optional<memory::Address> address = address_of(i);
+    if (!address) {
+      continue;
+    }
+    const auto first = static_cast<std::uint32_t>(*address >> shift);
+    const auto last = static_cast<std::uint32_t>((*address + bytes - 1) >> shift);
+    for (std::uint32_t line = first < from ? from : first; line <= last; ++line) {
+      if (!visit(line)) {
+        return false;
+      }
+    }
+    from = last + 1;
+  }
+  return true;
+}
+
 /// Keeps the references that the input holds.
 class PrefetchLines {
  public:
@@ -20,22 +44,16 @@ class PrefetchLines {
   /// Calls visit(line) for the lines of the records of a branch's children, in ascending order, until one
   /// call returns false; returns the last call's result, or true when there are no children.
   template <class Visit>
-  bool each_child_line(std::uint32_t branch, Visit&& visit) const {
+  bool each_child_line(std::uint32_t branch, const Visit& visit) const {
     const accel::TopologyNode& node = input_.log.topology.nodes[branch];
-    std::uint32_t from = 0;
-    for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
-      const std::uint32_t record = input_.node_rank.empty() ? child : input_.node_rank[child];
-      const memory::Address address = input_.layout.address(memory::RecordKind::node, record);
-      const auto first = static_cast<std::uint32_t>(address >> shift_);
-      const auto last = static_cast<std::uint32_t>((address + node_bytes_ - 1) >> shift_);
-      for (std::uint32_t line = first < from ? from : first; line <= last; ++line) {
-        if (!visit(line)) {
-          return false;
-        }
-      }
-      from = last + 1;
-    }
-    return true;
+    return each_line_of(
+        node.count, node_bytes_, shift_,
+        [&](std::uint32_t number) -> std::optional<memory::Address> {
+          const std::uint32_t child = node.first + number;
+          return input_.layout.address(memory::RecordKind::node,
+                                       input_.node_rank.empty() ? child : input_.node_rank[child]);
+        },
+        visit);
   }
 
  private:

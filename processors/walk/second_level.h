@@ -40,17 +40,17 @@ class PrivateSecondLevel {
   /// time of a hit is then added to `time` and to the division. False also where there is no second
   /// level.
   bool access(std::uint32_t node, std::uint32_t line, sim::Ticks& time, TimeDivision& division) {
-    if (!tags_) {
+    if (!look_up(node, line)) {
       return false;
     }
-    if (!tags_->access(node, line)) {
-      ++counters_[node].misses;
-      return false;
-    }
-    ++counters_[node].hits;
     division[static_cast<std::size_t>(Activity::cache_access)] += hit_ticks_;
     time = sim::add_ticks(time, hit_ticks_);
     return true;
+  }
+  /// As access(), but the node does not wait: for a prefetch. The time of a hit; nothing where access() is
+  /// false.
+  std::optional<sim::Ticks> hit(std::uint32_t node, std::uint32_t line) {
+    return look_up(node, line) ? std::optional(hit_ticks_) : std::nullopt;
   }
   /// Removes a line; returns how many copies there were.
   std::int64_t remove(std::uint32_t node, std::uint32_t line) {
@@ -60,6 +60,15 @@ class PrivateSecondLevel {
   [[nodiscard]] SecondLevelResult result() const { return {counters_, {}}; }
 
  private:
+  bool look_up(std::uint32_t node, std::uint32_t line) {
+    if (!tags_) {
+      return false;
+    }
+    const bool hit = tags_->access(node, line);
+    ++(hit ? counters_[node].hits : counters_[node].misses);
+    return hit;
+  }
+
   sim::Ticks hit_ticks_ = 0;
   std::optional<memory::TagArray> tags_;
   std::vector<memory::CacheCounters> counters_;

@@ -21,7 +21,15 @@ namespace marti::processors {
 // Writes a row of packets of the stripped log for caches of so many ways.
 class StrippedLog::BandWriter {
  public:
-  BandWriter(std::uint32_t ways, Band& band) : ways_(ways), band_(&band) {}
+  explicit BandWriter(std::uint32_t ways) : ways_(ways) {}
+
+  void begin_band(Band& band) {
+    band_ = &band;
+    words_.clear();
+    at_end_.clear();
+    excess_ = 0;
+    bytes_ = 0;
+  }
 
   [[nodiscard]] std::uint32_t ways() const { return ways_; }
 
@@ -39,33 +47,37 @@ class StrippedLog::BandWriter {
   }
   void end_pixel(sim::Ticks time) { put(time - since_, end_of_pixel); }
 
-  void ask_at_end(std::uint32_t what) { band_->at_end.push_back(what); }
+  void ask_at_end(std::uint32_t what) { at_end_.push_back(what); }
   void end_packet() {
-    excess_ |= (std::uint64_t{band_->words.size()} | band_->at_end.size()) >> 32U;
+    excess_ |= (std::uint64_t{words_.size()} | at_end_.size()) >> 32U;
     band_->places.push_back(
-        {static_cast<std::uint32_t>(band_->words.size()), static_cast<std::uint32_t>(band_->at_end.size())});
+        {static_cast<std::uint32_t>(words_.size()), static_cast<std::uint32_t>(at_end_.size())});
   }
 
   /// Bytes written since the last call.
   [[nodiscard]] std::int64_t take_bytes() {
-    const std::size_t bytes =
-        band_->words.size() * sizeof(band_->words[0]) + band_->at_end.size() * sizeof(band_->at_end[0]);
+    const std::size_t bytes = words_.size() * sizeof(words_[0]) + at_end_.size() * sizeof(at_end_[0]);
     return static_cast<std::int64_t>(bytes - std::exchange(bytes_, bytes));
   }
+  // The words are written into tables that are kept from band to band, and copied at their exact size.
   void end_band(bool fits) {
     band_->fits = fits && excess_ == 0;
-    band_->words.shrink_to_fit();
-    band_->at_end.shrink_to_fit();
+    if (band_->fits) {
+      band_->words.assign(words_.begin(), words_.end());
+      band_->at_end.assign(at_end_.begin(), at_end_.end());
+    }
   }
 
  private:
   [[gnu::always_inline]] void put(sim::Ticks cycles, std::uint32_t what) {
     excess_ |= static_cast<std::uint64_t>(cycles) >> 32U;
-    band_->words.push_back(std::uint64_t{what} << 32U | static_cast<std::uint32_t>(cycles));
+    words_.push_back(std::uint64_t{what} << 32U | static_cast<std::uint32_t>(cycles));
   }
 
   std::uint32_t ways_;
-  Band* band_;
+  Band* band_ = nullptr;
+  std::vector<std::uint64_t> words_;
+  std::vector<std::uint32_t> at_end_;
   sim::Ticks since_ = 0;      // the end of the last reference that was kept
   std::uint64_t excess_ = 0;  // not 0 once something has not fitted into 32 bits
   std::size_t bytes_ = 0;
@@ -136,7 +148,7 @@ class StrippedLog::PacketCaches {
     }
   }
 
-  std::vector<BandWriter> writers;  ///< of the band that is being stripped, one for each stripped log
+  std::vector<BandWriter> writers;  ///< one for each stripped log
 
  private:
   static constexpr std::size_t caches = Split ? split_caches : 1;
@@ -199,17 +211,24 @@ template <class Caches>
 class StrippedLog::Stripper {
  public:
   /// `left`: bytes that all threads together may still write.
-  Stripper(const ReplayInput& input, std::uint32_t taken_out, std::shared_ptr<const VisitPlan> plan,
-           std::atomic<std::int64_t>& left)
+  Stripper(const ReplayInput& input, std::span<const std::uint32_t> ways,
+           std::shared_ptr<const VisitPlan> plan, std::atomic<std::int64_t>& left)
       : log_(input.log),
         packets_(input.config.packets),
-        walker_(input, Caches(input.config, taken_out), std::move(plan)),
-        left_(left) {}
+        walker_(input, Caches(input.config, std::max(1U, std::ranges::min(ways))), std::move(plan)),
+        left_(left) {
+    for (const std::uint32_t each : ways) {
+      walker_.caches().writers.emplace_back(each);
+    }
+  }
 
-  /// Strips row `number` of packets.
-  void strip(std::uint32_t number, std::vector<BandWriter>&& writers, std::vector<PacketTotals>& totals) {
+  /// Strips row `number` of packets of each of `logs`.
+  void strip(std::uint32_t number, std::span<const std::shared_ptr<StrippedLog>> logs,
+             std::vector<PacketTotals>& totals) {
     Caches& caches = walker_.caches();
-    caches.writers = std::move(writers);
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+      caches.writers[i].begin_band(logs[i]->bands_[number]);
+    }
     totals.reserve((log_.width - 1) / packets_.width + 1);
     const std::uint32_t y0 = number * packets_.height;
     const std::uint32_t y1 = y0 + std::min(packets_.height, log_.height - y0);
@@ -299,19 +318,17 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const WorkLog&
     const auto totals = std::make_shared<Totals>(bands);
     std::atomic<std::int64_t> left = static_cast<std::int64_t>(
         std::min<std::uint64_t>(most_bytes, std::numeric_limits<std::int64_t>::max()));
-    const std::uint32_t taken_out = std::max(1U, *std::min_element(ways.begin(), ways.end()));
     const auto strip_with = [&]<class Caches>() {
       const std::shared_ptr<const VisitPlan> plan = LogWalker<Caches>::visits_of(input);
       tbb::enumerable_thread_specific<Stripper<Caches>> strippers(
-          [&] { return Stripper<Caches>(input, taken_out, plan, left); });
+          [&] { return Stripper<Caches>(input, ways, plan, left); });
       tbb::parallel_for(std::size_t{0}, bands, [&](std::size_t number) {
-        std::vector<BandWriter> writers;
+        const bool fits = left >= 0;
         for (const std::shared_ptr<StrippedLog>& each : logs) {
-          each->bands_[number].fits = left >= 0;
-          writers.emplace_back(each->ways_, each->bands_[number]);
+          each->bands_[number].fits = fits;
         }
-        if (left >= 0) {
-          strippers.local().strip(static_cast<std::uint32_t>(number), std::move(writers), (*totals)[number]);
+        if (fits) {
+          strippers.local().strip(static_cast<std::uint32_t>(number), logs, (*totals)[number]);
         }
       });
     };

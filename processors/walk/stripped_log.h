@@ -101,6 +101,10 @@ class StrippedLog {
 
   [[nodiscard]] const std::string& key() const { return key_; }
   [[nodiscard]] std::uint32_t ways() const { return ways_; }
+  /// Whether `config` describes a machine that this log was stripped for.
+  [[nodiscard]] bool suits(const MachineConfig& config) const {
+    return key_ == key_of(config) && ways_ == ways_of(config);
+  }
   /// Whether this may be the stripped form of `log`: image and tree have the same size.
   [[nodiscard]] bool fits(const WorkLog& log) const {
     return width_ == log.width && height_ == log.height && nodes_ == log.topology.nodes.size();

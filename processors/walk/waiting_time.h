@@ -22,4 +22,16 @@ namespace marti::processors {
   return part;
 }
 
+/// A line that the node's own second level has at `done`: it uses no part of the memory, so a wait for it is
+/// cache access.
+[[nodiscard]] inline memory::Service cache_access_until(sim::Ticks done) {
+  memory::Service service;
+  service.done = done;
+  return service;
+}
+/// Whether a read for which a node has waited was such an access: the parts of any other add up to its time.
+[[nodiscard]] inline bool is_cache_access(const memory::Service& service) {
+  return service.wait_interconnect + service.transfer + service.wait_bank + service.bank == 0;
+}
+
 }  // namespace marti::processors

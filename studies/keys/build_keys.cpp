@@ -79,18 +79,6 @@ BuildConfig read_build(sim::Config& config) {
     config.fail("build.sharing", "must be \"given\" with structure.kind = \"" + structure +
                                      "\": only an octree or a bsp tree is built by splitting nodes");
   }
-  if (build.sharing == Sharing::shared && config.choice_name("database.placement") == "replicated") {
-    config.fail("build.sharing",
-                "nodes with a database each (database.placement = \"replicated\") have no tree to share; use "
-                "\"private\" or \"none\"");
-  }
-  if (build.sharing == Sharing::shared && config.choice_name("database.placement") == "distributed") {
-    config.fail(
-        "build.sharing",
-        "a read may overtake another node's write in the network, so nodes cannot share a tree that is "
-        "built in a distributed memory (database.placement = \"distributed\"); use \"private\" or "
-        "\"none\"");
-  }
   if (build.sharing == Sharing::none) {
     config.mark_unused_reason("build", chosen, "build.sharing");
     return build;

@@ -9,15 +9,12 @@ namespace marti::studies {
 namespace {
 
 void read_prefetch(sim::Config& config, processors::MachineConfig& machine) {
-  const bool given = machine.build.sharing == processors::Sharing::given;
   if (machine.cache.organisation == processors::CacheOrganisation::none) {
     config.mark_unused_reason("prefetch", "without a cache there is nowhere to put a line",
                               "cache.organisation");
-  } else if (machine.placement != processors::Placement::shared) {
-    config.mark_unused_reason("prefetch", "only lines of a shared database are prefetched",
+  } else if (machine.placement == processors::Placement::replicated) {
+    config.mark_unused_reason("prefetch", "a node whose own memory has the whole database does not prefetch",
                               "database.placement");
-  } else if (!given) {
-    config.mark_unused_reason("prefetch", "nodes that build the tree do not prefetch", "build.sharing");
   } else {
     processors::PrefetchConfig& prefetch = machine.prefetch;
     prefetch.next_line = config.boolean("prefetch.next_line");
@@ -45,9 +42,12 @@ void declare_context_keys(sim::Schema& schema) {
 }
 
 void declare_prefetch_keys(sim::Schema& schema) {
-  schema.section("prefetch", "lines that a node's cache fetches from a shared database before they are used");
-  schema.boolean("prefetch.next_line", false,
-                 "a miss also fetches the next line of the same kind of record, if it is not there");
+  schema.section("prefetch",
+                 "lines that a node's cache fetches before they are used; not with a replicated database");
+  schema.boolean(
+      "prefetch.next_line", false,
+      "a miss that is read from memory, not served by a private second level, also fetches the next line "
+      "of the same kind of record, if it is not there");
   schema.boolean("prefetch.children", false,
                  "a visit to a branch also fetches the records of its children that are not there");
   schema.integer("prefetch.outstanding", 4, {1, processors::most_contexts}, "",
@@ -55,19 +55,8 @@ void declare_prefetch_keys(sim::Schema& schema) {
 }
 
 void read_contexts(sim::Config& config, processors::MachineConfig& machine) {
-  if (machine.scheme != processors::Scheme::image) {
-    const std::string reason = "only the image scheme's nodes have contexts and prefetch";
-    for (const char* const key : {"node.contexts", "node.switch_cycles", "prefetch"}) {
-      config.mark_unused_reason(key, reason, "machine.scheme");
-    }
-    return;
-  }
   machine.contexts = static_cast<std::uint32_t>(config.integer("node.contexts"));
   if (machine.contexts > 1) {
-    if (machine.build.sharing != processors::Sharing::given) {
-      config.fail("node.contexts", "must be 1 with build.sharing = \"" + config.choice_name("build.sharing") +
-                                       "\": a node that builds the tree works on one packet at a time");
-    }
     machine.switch_cycles = config.integer("node.switch_cycles");
   }
   config.mark_unused_reason("node.switch_cycles", "a node with one context has no other to take up",

@@ -100,11 +100,6 @@ void read_flow(sim::Config& config, processors::MachineConfig& machine) {
                               "machine.scheme");
   } else {
     read_messages(config, machine.messages);
-    if (config.choice_name("build.sharing") != "given") {
-      config.fail("build.sharing",
-                  "with machine.scheme = \"" + config.choice_name("machine.scheme") +
-                      "\" the tree must be given (\"given\"): only nodes that take packets build it");
-    }
     config.mark_unused_reason("node.write_buffer", "nodes write no pixels unless machine.scheme = \"image\"",
                               "machine.scheme");
     config.mark_unused_reason("host.assignment", "nodes take no packets unless machine.scheme = \"image\"",

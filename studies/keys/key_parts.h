@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/config.h"
 #include "sim/schema.h"
 
 namespace marti::studies {
@@ -26,6 +27,11 @@ inline void cycles(sim::Schema& schema, std::string_view name, std::int64_t fall
 /// Declares a clock.
 inline void clock(sim::Schema& schema, std::string_view name, std::string_view meaning) {
   schema.frequency(name, "33 MHz", {"1 Hz", "1 THz"}, meaning);
+}
+
+/// The value of a key that counts something.
+[[nodiscard]] inline std::uint32_t count(const sim::Config& config, std::string_view key) {
+  return static_cast<std::uint32_t>(config.integer(key));
 }
 
 /// Says which command reads the sections that this schema does not declare: a file is often given to the

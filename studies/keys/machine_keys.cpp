@@ -13,6 +13,7 @@
 #include "sim/error.h"
 #include "studies/keys/build_keys.h"
 #include "studies/keys/cache_detail_keys.h"
+#include "studies/keys/combination_keys.h"
 #include "studies/keys/context_keys.h"
 #include "studies/keys/flow_keys.h"
 #include "studies/keys/key_parts.h"
@@ -189,10 +190,6 @@ std::uint32_t power_of_two(const sim::Config& config, std::string_view key) {
   return static_cast<std::uint32_t>(bytes);
 }
 
-std::uint32_t count(const sim::Config& config, std::string_view key) {
-  return static_cast<std::uint32_t>(config.integer(key));
-}
-
 sim::Clock clock(const sim::Config& config, std::string_view key) {
   return sim::Clock::from_hertz(config.frequency(key));
 }
@@ -346,7 +343,7 @@ void read_network_if_used(sim::Config& config, processors::MachineConfig& machin
   config.mark_unused_reason(
       "network",
       "no messages are sent with machine.scheme = \"image\" and a database that is not distributed",
-      "database.placement");
+      config.assigned("machine.scheme") ? "machine.scheme" : "database.placement");
 }
 
 }  // namespace
@@ -364,6 +361,7 @@ void declare_machine_keys(sim::Schema& schema) {
 }
 
 processors::MachineConfig read_machine(sim::Config& config) {
+  settle_combinations(config);
   processors::MachineConfig machine;
   machine.scheme = config.choice_as<processors::Scheme>("machine.scheme");
   machine.clusters = count(config, "machine.clusters");

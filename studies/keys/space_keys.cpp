@@ -7,15 +7,7 @@
 
 namespace marti::studies {
 
-namespace {
-
 using processors::RegionPolicy;
-
-std::uint32_t count(const sim::Config& config, std::string_view key) {
-  return static_cast<std::uint32_t>(config.integer(key));
-}
-
-}  // namespace
 
 void declare_space_keys(sim::Schema& schema) {
   schema.section("space", "parts of the scene that nodes hold (machine.scheme = \"space\")");

@@ -45,6 +45,14 @@ inline TimedCase building_case(Random& random) {
   return made;
 }
 
+/// Nodes that build the tree and have several contexts, prefetch, or both.
+inline TimedCase building_contexts_case(Random& random) {
+  TimedCase made = building_case(random);
+  add_random_contexts(random, made.log.traversal < accel::Traversal::grid, made.machine);
+  made.options.with_contexts = true;
+  return made;
+}
+
 inline TimedCase pipeline_case(Random& random) {
   TimedCase made{any_log(random), random_machine(random), {}};
   make_random_pipeline(random, made.machine);

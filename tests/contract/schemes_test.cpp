@@ -274,6 +274,7 @@ INSTANTIATE_TEST_SUITE_P(All, Schemes,
                          ::testing::Values(SchemeCase{"image", test::image_case},
                                            SchemeCase{"contexts", test::contexts_case},
                                            SchemeCase{"building", test::building_case},
+                                           SchemeCase{"building_contexts", test::building_contexts_case},
                                            SchemeCase{"pipeline", test::pipeline_case},
                                            SchemeCase{"space", test::space_case}),
                          [](const auto& a_case) { return std::string(a_case.param.name); });

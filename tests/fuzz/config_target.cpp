@@ -7,6 +7,7 @@
 #include "studies/error/error_keys.h"
 #include "studies/keys/frame_keys.h"
 #include "studies/keys/machine_keys.h"
+#include "studies/keys/price_keys.h"
 #include "studies/keys/record_keys.h"
 #include "studies/run/run_result.h"
 #include "studies/sweep/plan/sweep_keys.h"

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "processors/replay/replay.h"
@@ -69,6 +70,29 @@ inline void expect_equal(const processors::MachineResult& a, const processors::M
   ASSERT_EQ(a.flow.most_in_flight, b.flow.most_in_flight);
   expect_equal_counters(a.contexts.nodes, b.contexts.nodes);
   expect_equal_counters(a.host, b.host);
+}
+
+/// Equal counts beyond hits and misses, as far as they were asked for.
+inline void expect_equal_counts(const processors::CacheCountResult& a,
+                                const processors::CacheCountResult& b) {
+  ASSERT_EQ(a.miss_classes, b.miss_classes);
+  ASSERT_EQ(a.sharing.has_value(), b.sharing.has_value());
+  if (a.sharing) {
+    ASSERT_EQ(a.sharing->fetches, b.sharing->fetches);
+    ASSERT_EQ(a.sharing->distinct, b.sharing->distinct);
+    ASSERT_EQ(a.sharing->fetched, b.sharing->fetched);
+  }
+  ASSERT_EQ(a.attribution.has_value(), b.attribution.has_value());
+  if (a.attribution) {
+    const auto place = [](const processors::AttributionRow& row) {
+      return std::tuple(row.bounce, row.ray, row.splitting, row.level, row.record);
+    };
+    ASSERT_EQ(a.attribution->size(), b.attribution->size());
+    for (std::size_t row = 0; row < a.attribution->size(); ++row) {
+      ASSERT_EQ(place((*a.attribution)[row]), place((*b.attribution)[row]));
+      expect_equal_counters((*a.attribution)[row].counts, (*b.attribution)[row].counts);
+    }
+  }
 }
 
 }  // namespace marti::test

@@ -1,5 +1,6 @@
 // A second pipeline, written from docs/pipeline.md with plain structures: one cluster, a copy of the database
-// in each node's own memory, no cache. It goes through a ray's steps one by one and keeps events in a set.
+// in each node's own memory, one level of caches or none. It goes through a ray's steps one by one and keeps
+// events in a set.
 #pragma once
 
 #include <deque>
@@ -16,6 +17,8 @@
 #include "processors/machine/packets.h"
 #include "processors/program/ray_tree.h"
 #include "tests/support/logged_samples.h"
+#include "tests/support/naive_caches.h"
+#include "tests/support/naive_counts.h"
 #include "tests/support/naive_program.h"
 
 namespace marti::test {
@@ -31,10 +34,13 @@ class NaivePipeline {
     sim::Ticks finish = 0;
   };
 
-  NaivePipeline(const processors::WorkLog& log, const processors::MachineConfig& machine)
+  /// `counts`, where given, is told of every reference.
+  NaivePipeline(const processors::WorkLog& log, const processors::MachineConfig& machine,
+                NaiveCounts* counts = nullptr)
       : log_(log),
         machine_(machine),
         program_(log, machine),
+        counted_(counts),
         network_(memory::make_network(machine.network, machine.nodes)),
         send_(machine.clock.cycles(machine.messages.send_cycles)),
         receive_(machine.clock.cycles(machine.messages.receive_cycles)),
@@ -45,7 +51,7 @@ class NaivePipeline {
                                        std::pair{processors::Stage::nearest, machine.pipeline.nearest},
                                        std::pair{processors::Stage::shade, machine.pipeline.shade}}) {
       for (std::uint32_t i = 0; i < count; ++i) {
-        states_.emplace_back().stage = stage;
+        states_.emplace_back(machine).stage = stage;
         nodes.emplace_back();
       }
     }
@@ -86,6 +92,8 @@ class NaivePipeline {
     [[nodiscard]] const processors::LoggedRay& logged() const { return (*tree)[number]; }
   };
   struct State {
+    explicit State(const processors::MachineConfig& machine) : caches(machine) {}
+    NaiveCaches caches;
     Stage stage = Stage::search;
     std::list<Ray> queue;
     std::uint32_t slots = 0;
@@ -109,32 +117,49 @@ class NaivePipeline {
   // ---- Times of steps.
 
   // What a step takes for the objects that a leaf lists, or for all else.
-  sim::Ticks step(const std::uint32_t* word, bool objects) const {
+  sim::Ticks step(std::uint32_t who, const Ray& ray, bool objects) {
     sim::Ticks time = 0;
-    for (const NaiveAction& action : program_.actions_of(word)) {
-      if (is_of_objects(action) == objects) {
-        const std::int64_t beats = (action.bytes + machine_.local.width - 1) / machine_.local.width;
-        time += action.what != NaiveAction::What::refer
-                    ? action.time
-                    : machine_.local.clock.cycles(machine_.local.access_cycles) +
-                          beats * machine_.local.clock.cycles(machine_.local.cycles_per_beat);
+    for (const NaiveAction& action : program_.actions_of(ray.word, ray.logged().operand())) {
+      if (is_of_objects(action) != objects) {
+        continue;
+      }
+      if (action.what != NaiveAction::What::refer) {
+        time += action.time;
+        continue;
+      }
+      NaiveCaches& caches = states_[who].caches;
+      const bool hit = caches.refer(action.kind, action.address);
+      if (counted_ != nullptr) {
+        counted_->refer(who, caches.number_of(action.kind), action, action.address / program_.unit(), hit);
+      }
+      if (hit) {
+        time += program_.ticks().hit;
+        continue;
+      }
+      const std::int64_t bytes = caches.present() ? program_.unit() : action.bytes;
+      const std::int64_t beats = (bytes + machine_.local.width - 1) / machine_.local.width;
+      const sim::Ticks read = machine_.local.clock.cycles(machine_.local.access_cycles) +
+                              beats * machine_.local.clock.cycles(machine_.local.cycles_per_beat);
+      time += read;
+      if (counted_ != nullptr) {
+        counted_->wait(action, read);
       }
     }
     return time;
   }
 
   // Takes a ray through its steps of a stage.
-  sim::Ticks serve(Stage stage, Ray& ray) const {
+  sim::Ticks serve(std::uint32_t who, Stage stage, Ray& ray) {
     const std::uint32_t* const last = ray.logged().end;
     if (stage == Stage::nearest) {
-      const sim::Ticks time = step(ray.word, true);
+      const sim::Ticks time = step(who, ray, true);
       ray.word += processors::step_words(ray.word);
       ray.record_read = false;
       return time;
     }
     sim::Ticks time = 0;
     while (ray.word != last && processors::stage_of(ray.word) == stage) {
-      time += step(ray.word, false);
+      time += step(who, ray, false);
       if (processors::visits_leaf(ray.word) && processors::entries_read(ray.word, log_.topology) > 0) {
         ray.record_read = true;
         break;
@@ -285,7 +310,7 @@ class NaivePipeline {
       }
     }
     Ray& ray = *state.ray;
-    const sim::Ticks served = serve(state.stage, ray);
+    const sim::Ticks served = serve(who, state.stage, ray);
     node.served += served;
     node.messaging += receive_;
     sim::Ticks at = now_ + receive_ + served;
@@ -382,6 +407,7 @@ class NaivePipeline {
   const processors::WorkLog& log_;
   const processors::MachineConfig& machine_;
   NaiveProgram program_;
+  NaiveCounts* counted_;
   std::unique_ptr<memory::Network> network_;
   sim::Ticks send_;
   sim::Ticks receive_;

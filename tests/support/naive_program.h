@@ -24,6 +24,9 @@ struct NaiveAction {
   memory::Address address = 0;
   std::uint32_t bytes = 0;
   std::uint32_t branch = 0;
+  std::uint32_t ray = 0;    ///< operand of the `ray` step that it belongs to
+  std::uint32_t level = 0;  ///< of the tree node that is visited; 0 for materials and texels
+  bool splitting = false;   ///< to split a branch
 };
 
 /// Whether the action is for the objects that a leaf lists, not for its record.
@@ -101,19 +104,26 @@ class NaiveProgram {
   memory::Address node_address(std::uint32_t node) const {
     return layout_.address(memory::RecordKind::node, rank_.empty() ? node : rank_[node]);
   }
-  /// The actions of one step.
-  std::vector<Action> actions_of(const std::uint32_t* word) const {
+  /// The actions of one step of a ray, which is named by the operand of its `ray` step.
+  std::vector<Action> actions_of(const std::uint32_t* word, std::uint32_t ray) const {
     std::vector<Action> actions;
     step(actions, word);
+    for (Action& action : actions) {
+      action.ray = ray;
+      action.level = visits_node(step_of(*word)) ? log_.topology.nodes[operand_of(*word)].level : 0;
+    }
     return actions;
   }
-  std::vector<Action> actions_of(const Packet& packet) const {
+  /// The actions of a packet. `ray`, the ray that the context was at work on, becomes the packet's last.
+  std::vector<Action> actions_of(const Packet& packet, std::uint32_t& ray) const {
     std::vector<Action> actions;
     for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
       for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
         const auto words = log_.pixel(x, y);
         for (std::size_t i = 0; i < words.size(); i += step_words(&words[i])) {
-          step(actions, &words[i]);
+          ray = step_of(words[i]) == Step::ray ? operand_of(words[i]) : ray;
+          const std::vector<Action> of_step = actions_of(&words[i], ray);
+          actions.insert(actions.end(), of_step.begin(), of_step.end());
         }
         compute(actions, Activity::shading, ticks_.pixel);
         actions.push_back({Action::What::write});

@@ -12,14 +12,14 @@
 #include <tuple>
 #include <vector>
 
-#include "memory/cache.h"
 #include "memory/network.h"
 #include "processors/flow/space/space_plan.h"
 #include "processors/program/ray_tree.h"
 #include "processors/replay/replay.h"
 #include "processors/replay/space.h"
-#include "processors/walk/node_caches.h"
 #include "tests/support/logged_samples.h"
+#include "tests/support/naive_caches.h"
+#include "tests/support/naive_counts.h"
 #include "tests/support/naive_program.h"
 
 namespace marti::test {
@@ -27,16 +27,19 @@ namespace marti::test {
 class NaiveSpace {
  public:
   /// Caches of random replacement draw from a stream for each node and are not for this model.
-  NaiveSpace(const processors::WorkLog& log, const processors::MachineConfig& machine)
+  /// `counts`, where given, is told of every reference.
+  NaiveSpace(const processors::WorkLog& log, const processors::MachineConfig& machine,
+             NaiveCounts* counts = nullptr)
       : log_(log),
         machine_(machine),
         program_(log, machine),
         plan_(processors::plan_space(log, machine, program_.layout())),
         packets_(log.width, log.height, machine.packets),
+        counted_(counts),
         nodes_(machine.all_nodes()),
         clusters_(machine.clusters) {
     for (Node& node : nodes_) {
-      make_caches(node);
+      node.caches.emplace(machine);
     }
     for (Cluster& cluster : clusters_) {
       cluster.network = memory::make_network(machine.network, machine.nodes);
@@ -108,7 +111,7 @@ class NaiveSpace {
     std::int64_t slots = 0;
     std::int64_t set_aside = 0;
     sim::Ticks free_at = 0;
-    std::vector<memory::Cache> caches;
+    std::optional<NaiveCaches> caches;
     processors::NodeStatistics statistics;
     processors::FlowCounts counts;
   };
@@ -254,7 +257,7 @@ class NaiveSpace {
     Ray& ray = *node.current;
     const std::uint32_t port = number - base(number);
     while (!ray.over() && owner(ray.word).value_or(port) == port) {
-      time += take_step(node, ray.word);
+      time += take_step(node, ray, ray.word);
       ray.word += processors::step_words(ray.word);
     }
     if (!ray.over() || ray.contributes()) {
@@ -303,19 +306,6 @@ class NaiveSpace {
 
   // --- steps ---
 
-  void make_caches(Node& node) const {
-    using processors::CacheOrganisation;
-    if (machine_.cache.organisation == CacheOrganisation::unified) {
-      node.caches.emplace_back(machine_.cache.cache);
-    } else if (machine_.cache.organisation == CacheOrganisation::split) {
-      for (const std::uint64_t size : machine_.cache.split_sizes) {
-        memory::CacheConfig part = machine_.cache.cache;
-        part.size = size;
-        node.caches.emplace_back(part);
-      }
-    }
-  }
-
   sim::Ticks local(Node& node, std::uint64_t bytes) const {
     const sim::Ticks access = machine_.local.clock.cycles(machine_.local.access_cycles);
     const std::uint64_t beats = (bytes + machine_.local.width - 1) / machine_.local.width;
@@ -328,21 +318,31 @@ class NaiveSpace {
 
   sim::Ticks refer(Node& node, const NaiveAction& action) const {
     const auto k = static_cast<std::size_t>(action.kind);
-    const bool cached = !node.caches.empty();
-    if (cached && node.caches[node.caches.size() == 1 ? 0 : processors::split_cache_of[k]].read(
-                      action.address, 1) == 0) {
+    if (node.caches->refer(action.kind, action.address)) {
       ++node.statistics.references.hits[k];
+      count(node, action, true);
       time_of(node, processors::Activity::cache_access) += program_.ticks().hit;
       return program_.ticks().hit;
     }
     ++node.statistics.references.misses[k];
-    return local(node, cached ? machine_.cache.cache.line : action.bytes);
+    count(node, action, false);
+    const sim::Ticks time = local(node, node.caches->present() ? machine_.cache.cache.line : action.bytes);
+    if (counted_ != nullptr) {
+      counted_->wait(action, time);
+    }
+    return time;
+  }
+  void count(const Node& node, const NaiveAction& action, bool hit) const {
+    if (counted_ != nullptr) {
+      counted_->refer(static_cast<std::uint32_t>(&node - nodes_.data()), node.caches->number_of(action.kind),
+                      action, action.address / program_.unit(), hit);
+    }
   }
 
-  sim::Ticks take_step(Node& node, const std::uint32_t* word) const {
+  sim::Ticks take_step(Node& node, const Ray& ray, const std::uint32_t* word) const {
     count_step(log_, word, node.statistics.steps);
     sim::Ticks time = 0;
-    for (const NaiveAction& action : program_.actions_of(word)) {
+    for (const NaiveAction& action : program_.actions_of(word, ray.logged().operand())) {
       if (action.what == NaiveAction::What::refer) {
         time += refer(node, action);
       } else {
@@ -381,6 +381,7 @@ class NaiveSpace {
   NaiveProgram program_;
   processors::SpacePlan plan_;
   processors::PacketList packets_;
+  NaiveCounts* counted_;
   std::vector<Node> nodes_;
   std::vector<Cluster> clusters_;
   std::set<std::tuple<sim::Ticks, int, std::uint32_t, std::uint64_t, RayPointer>> events_;

@@ -165,7 +165,7 @@ inline void add_random_work(Random& random, accel::Topology& topology) {
 /// Appends a ray's walk from a node down: random children, each after its parent; with mailboxes some leaves
 /// of which not all entries are tested.
 inline void append_walk(Random& random, const accel::Topology& topology, bool mailboxes, std::uint32_t number,
-                        std::vector<std::uint32_t>& words) {
+                        sim::ChunkVector<std::uint32_t>& words) {
   using processors::make_word;
   using processors::Step;
   const accel::TopologyNode& node = topology.nodes[number];
@@ -360,16 +360,10 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
 
 /// Any contexts and prefetching that the machine can have; `tree`: the log's walk is that of a tree.
 inline void add_random_contexts(Random& random, bool tree, processors::MachineConfig& machine) {
-  if (machine.placement == processors::Placement::distributed) {
-    machine.placement = processors::Placement::shared;
-  }
   add_random_second_level(random, machine);
-  if (machine.l2.sharing == processors::SecondLevel::private_caches) {
-    machine.l2.sharing = processors::SecondLevel::none;
-  }
   machine.contexts = static_cast<std::uint32_t>(pick(random, 1, 5));
   machine.switch_cycles = pick(random, 0, 6);
-  if (machine.placement == processors::Placement::shared &&
+  if (machine.placement != processors::Placement::replicated &&
       machine.cache.organisation != processors::CacheOrganisation::none) {
     machine.prefetch.next_line = random() % 2 == 0;
     machine.prefetch.children = tree && random() % 2 == 0;

@@ -28,14 +28,11 @@ inline std::vector<TracedLine> trace_node(const WorkLog& log, const MachineConfi
         const auto words = log.pixel(x, y);
         std::uint32_t ray = 0;
         for (std::size_t at = 0; at < words.size(); at += step_words(&words[at])) {
-          const std::uint32_t operand = operand_of(words[at]);
-          const Step step = step_of(words[at]);
-          ray = step == Step::ray ? operand : ray;
-          const std::uint32_t level = visits_node(step) ? log.topology.nodes[operand].level : 0;
-          for (const NaiveAction& action : program.actions_of(&words[at])) {
+          ray = step_of(words[at]) == Step::ray ? operand_of(words[at]) : ray;
+          for (const NaiveAction& action : program.actions_of(&words[at], ray)) {
             if (action.what == NaiveAction::What::refer) {
               const auto line = static_cast<std::uint32_t>(action.address / machine.cache.cache.line);
-              trace.push_back({action.kind, line, ray, level});
+              trace.push_back({action.kind, line, action.ray, action.level});
             }
           }
         }

@@ -55,6 +55,7 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
   void worked(std::uint32_t node, FlowRay& ray, sim::Ticks time);
 
   [[nodiscard]] FlowRay& ray_of(std::uint32_t node) { return rays_[nodes_[node].ray]; }
+  [[nodiscard]] const LoggedRay& logged(const FlowRay& ray) const { return trees_.ray(ray.tree, ray.number); }
   /// The pixel that the ray in service is for.
   [[nodiscard]] PixelPlace place_of(std::uint32_t node) { return trees_.place(ray_of(node).tree); }
 

@@ -9,7 +9,7 @@
 
 namespace marti::processors {
 
-/// `Caches` is one of node_caches.h.
+/// `Caches` is one of node_caches.h, or CountedCaches.
 template <class Caches>
 class PipelineNodes final : public PipelineCore {
  public:
@@ -24,6 +24,7 @@ class PipelineNodes final : public PipelineCore {
     watch_read(node, service, place_of(node));
     Cursor& cursor = cursors_[node];
     cursor.time = service.done;
+    walker_.note_wait(cursor, service);
     walker_.pass(cursor);
     work(node);
   }
@@ -46,6 +47,8 @@ class PipelineNodes final : public PipelineCore {
 
   SecondLevelResult second_level() const override { return walker_.behind().second_level().result(); }
 
+  CacheCountResult cache_counts() const override { return walker_.counts(); }
+
   std::size_t bytes_per_node() const override {
     return sizeof(Cursor) + sizeof(Node) + sizeof(NodeStatistics) + sizeof(FlowCounts) +
            2 * sizeof(sim::Event);
@@ -56,6 +59,7 @@ class PipelineNodes final : public PipelineCore {
     Cursor& cursor = cursors_[node];
     cursor.time = sim::add_ticks(engine_.now(), receive_);
     cursor.word = ray.word;
+    walker_.note_ray(cursor, logged(ray));
     switch (nodes_[node].stage) {
       case Stage::search:
         cursor.word_end = end_of_search(ray);

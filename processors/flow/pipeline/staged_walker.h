@@ -27,6 +27,7 @@ class StagedWalker : public LogWalker<Caches> {
   /// equal to word_end) then reads it. cursor.word stays at the leaf, for begin_objects.
   void begin_record(Cursor& cursor, NodeStatistics& statistics) const {
     const std::uint32_t leaf = operand_of(*cursor.word);
+    Base::note_node(cursor, leaf);
     ++statistics.steps.leaves;
     spend(cursor, ticks_.leaf, 1);
     if (const Visit* const visit = planned(*cursor.word)) {
@@ -44,6 +45,7 @@ class StagedWalker : public LogWalker<Caches> {
   /// moves past the leaf; `advance` over no words then reads and tests.
   void begin_objects(Cursor& cursor, NodeStatistics& statistics) const {
     const std::uint32_t* const word = cursor.word;
+    Base::note_node(cursor, operand_of(*word));
     cursor.word += step_words(word);
     if (const Visit* const visit = planned(*word)) {
       // All of the visit except what begin_record counted.

@@ -20,7 +20,7 @@
 
 namespace marti::processors {
 
-/// `Caches` is one of node_caches.h. The members are described in node_array.h.
+/// `Caches` is one of node_caches.h, or CountedCaches. The members are described in node_array.h.
 template <class Caches>
 class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   using Base = FlowNodesBase<SpaceNodes<Caches>>;
@@ -103,6 +103,8 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   }
 
   SecondLevelResult second_level() const override { return walker_.behind().second_level().result(); }
+
+  CacheCountResult cache_counts() const override { return walker_.counts(); }
 
   std::size_t bytes_per_node() const override {
     return sizeof(Node) + sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(FlowCounts) + sizeof(sim::Event) +
@@ -282,6 +284,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     FlowRay& ray = rays_[index];
     Cursor& cursor = cursors_[number];
     cursor.word = ray.word;
+    walker_.note_ray(cursor, trees_.ray(ray.tree, ray.number));
     cursor.word_end = last_word_here(port_of(number), ray);
     run(number);
   }

@@ -9,6 +9,7 @@
 
 #include "sim/config_errors.h"
 #include "sim/shown.h"
+#include "studies/keys/price_keys.h"
 #include "studies/sweep/plan/machine_list.h"
 #include "studies/sweep/plan/read_point.h"
 #include "studies/sweep/plan/sweep_filter.h"

@@ -234,19 +234,27 @@ void add_counts(RowParts& parts, const MachineConfig& machine, const MachineResu
             sharing ? std::optional(sharing->by(1)) : std::nullopt);
   parts.add("sharing_lines_of_all", "1", "of these, fetched by every node of the cluster",
             sharing ? std::optional(sharing->by(machine.nodes)) : std::nullopt);
-  for (std::size_t ray = 0; ray < processors::ray_kinds; ++ray) {
+  const auto attributed = [&](const auto& of) {
     std::optional<processors::AttributionCounts> sum;
     if (r.counts.attribution) {
       sum.emplace();
       for (const processors::AttributionRow& row : *r.counts.attribution) {
-        if (static_cast<std::size_t>(row.ray) == ray) {
+        if (of(row)) {
           merge_into(sum, row.counts);
         }
       }
     }
+    return sum;
+  };
+  for (std::size_t ray = 0; ray < processors::ray_kinds; ++ray) {
     const std::string name(processors::ray_kind_names[ray]);
-    parts.add_all(name + "_ray_", "for " + name + " rays", sum);
+    parts.add_all(name + "_ray_", "for " + name + " rays",
+                  attributed([ray](const processors::AttributionRow& row) {
+                    return static_cast<std::size_t>(row.ray) == ray && !row.splitting;
+                  }));
   }
+  parts.add_all("split_", "for splitting branches of the tree",
+                attributed([](const processors::AttributionRow& row) { return row.splitting; }));
 }
 
 void add_row(RowParts& parts, const MachineConfig& machine, const MachineResult& result, const Sums& sums) {

@@ -10,8 +10,8 @@ namespace marti::studies {
 
 namespace {
 
-template <class Item>
-std::uint64_t reserved(const std::vector<Item>& items) {
+template <class Item, class Allocator>
+std::uint64_t reserved(const std::vector<Item, Allocator>& items) {
   return items.capacity() * sizeof(Item);
 }
 

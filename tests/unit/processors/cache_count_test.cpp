@@ -6,89 +6,46 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <set>
-#include <tuple>
 #include <vector>
 
 #include "memory/cache.h"
 #include "processors/replay/replay.h"
-#include "processors/walk/node_caches.h"
 #include "sim/error.h"
+#include "tests/support/naive_caches.h"
+#include "tests/support/naive_counts.h"
 #include "tests/support/random_machine.h"
+#include "tests/support/told_caches.h"
 #include "tests/support/traced_lines.h"
 
 namespace marti::processors {
 namespace {
 
-using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::size_t>;
-
-struct Expected {
-  std::array<std::array<std::int64_t, memory::miss_classes>, memory::record_kinds> classes{};
-  std::map<Key, std::array<std::int64_t, 3>> cells;  // references, misses, second-level hits
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::set<std::uint32_t>> users;  // of (cluster, line)
-  std::int64_t fetches = 0;
+// Tells `counts` of the references of nodes that always get the same packets; returns the misses of each
+// node's second level.
+std::vector<std::int64_t> refer_one_by_one(const WorkLog& log, const MachineConfig& machine,
+                                           test::NaiveCounts& counts) {
   std::vector<std::int64_t> second_misses;
-};
-
-// `cache` holds at most `lines` lines, the newest first.
-bool find_in_full(std::vector<std::uint32_t>& cache, std::uint64_t lines, std::uint32_t line) {
-  const auto at = std::find(cache.begin(), cache.end(), line);
-  const bool hit = at != cache.end();
-  if (hit) {
-    cache.erase(at);
-  }
-  cache.insert(cache.begin(), line);
-  if (cache.size() > lines) {
-    cache.pop_back();
-  }
-  return hit;
-}
-
-Expected expect(const WorkLog& log, const MachineConfig& machine) {
-  Expected expected;
-  const bool split = machine.cache.organisation == CacheOrganisation::split;
   const memory::Address line_bytes = machine.cache.cache.line;
   for (std::uint32_t node = 0; node < machine.all_nodes(); ++node) {
-    std::vector<memory::Cache> caches;
-    std::vector<std::uint64_t> sizes = {machine.cache.cache.size};
-    if (split) {
-      sizes.assign(machine.cache.split_sizes.begin(), machine.cache.split_sizes.end());
-    }
-    for (const std::uint64_t size : sizes) {
-      memory::CacheConfig part = machine.cache.cache;
-      part.size = size;
-      caches.emplace_back(part);
-    }
+    test::NaiveCaches caches(machine);
     memory::CacheConfig second = machine.l2.cache;
     second.line = machine.cache.cache.line;
     memory::Cache behind(second);
-    std::array<std::vector<std::uint32_t>, split_caches> full;
-    std::array<std::set<std::uint32_t>, split_caches> had;
     for (const test::TracedLine& reference : test::trace_node(log, machine, node)) {
-      const auto kind = static_cast<std::size_t>(reference.kind);
-      const std::size_t at = split ? split_cache_of[kind] : 0;
-      const bool hit = caches[at].read(reference.line * line_bytes, 1) == 0;
-      const bool in_full = find_in_full(full[at], sizes[at] / line_bytes, reference.line);
-      auto& cell = expected.cells[Key{reference.ray / 4, reference.ray % 4, reference.level, kind}];
-      ++cell[0];
-      if (hit) {
-        continue;
+      const bool hit = caches.refer(reference.kind, reference.line * line_bytes);
+      test::NaiveAction action;
+      action.kind = reference.kind;
+      action.ray = reference.ray;
+      action.level = reference.level;
+      counts.refer(node, caches.number_of(reference.kind), action, reference.line, hit);
+      if (!hit && machine.l2.sharing == SecondLevel::private_caches &&
+          behind.read(reference.line * line_bytes, 1) == 0) {
+        counts.second_level_hit(action);
       }
-      ++cell[1];
-      if (machine.l2.sharing == SecondLevel::private_caches) {
-        cell[2] += behind.read(reference.line * line_bytes, 1) == 0 ? 1 : 0;
-      }
-      const bool first = had[at].insert(reference.line).second;
-      const memory::MissClass why = first     ? memory::MissClass::compulsory
-                                    : in_full ? memory::MissClass::conflict
-                                              : memory::MissClass::capacity;
-      ++expected.classes[kind][static_cast<std::size_t>(why)];
-      expected.users[{node / machine.nodes, reference.line}].insert(node);
-      ++expected.fetches;
     }
-    expected.second_misses.push_back(behind.counters().misses);
+    second_misses.push_back(behind.counters().misses);
   }
-  return expected;
+  return second_misses;
 }
 
 constexpr CountConfig everything{true, true, true};
@@ -117,29 +74,13 @@ RC_GTEST_PROP(CacheCount, EveryCountIsThatOfTheReferencesOneByOne, (std::uint64_
   const WorkLog log = test::random_log(random, 9, 9);
   const MachineConfig machine = random_counting_machine(random);
   const MachineResult result = replay(log, machine);
-  const Expected expected = expect(log, machine);
-  RC_ASSERT(result.counts.miss_classes == expected.classes);
-  RC_ASSERT(result.counts.sharing->fetches == expected.fetches);
-  RC_ASSERT(result.counts.sharing->distinct == static_cast<std::int64_t>(expected.users.size()));
-  std::map<std::uint32_t, std::int64_t> fetched;
-  for (const auto& [line, nodes] : expected.users) {
-    ++fetched[static_cast<std::uint32_t>(nodes.size())];
-  }
-  RC_ASSERT(result.counts.sharing->fetched == fetched);
-  RC_ASSERT(result.counts.attribution->size() == expected.cells.size());
-  auto cell = expected.cells.begin();
-  for (const AttributionRow& row : *result.counts.attribution) {
-    const Key key{row.bounce, static_cast<std::uint32_t>(row.ray), row.level,
-                  static_cast<std::size_t>(row.record)};
-    RC_ASSERT(key == cell->first);
-    RC_ASSERT(row.counts.references == cell->second[0]);
-    RC_ASSERT(row.counts.misses == cell->second[1]);
-    RC_ASSERT(row.counts.second_level_hits == cell->second[2]);
-    ++cell;
-  }
+  test::NaiveCounts counts(machine);
+  const std::vector<std::int64_t> second_misses = refer_one_by_one(log, machine, counts);
+  counts.expect(result.counts, false);
+  RC_ASSERT(!::testing::Test::HasFailure());
   if (machine.l2.sharing == SecondLevel::private_caches) {
-    for (std::size_t node = 0; node < expected.second_misses.size(); ++node) {
-      RC_ASSERT(result.l2.caches[node].misses == expected.second_misses[node]);
+    for (std::size_t node = 0; node < second_misses.size(); ++node) {
+      RC_ASSERT(result.l2.caches[node].misses == second_misses[node]);
     }
   }
 }
@@ -261,16 +202,103 @@ TEST(SecondLevel, RefusesWhatHasNoPlaceForIt) {
   EXPECT_THROW((void)replay(log, machine), sim::UserError);
 }
 
+// The references of each row for which `of` is true, without its times.
+template <class Of>
+std::map<std::array<std::uint32_t, 4>, std::int64_t> references_of(const MachineResult& result,
+                                                                   const Of& of) {
+  std::map<std::array<std::uint32_t, 4>, std::int64_t> references;
+  for (const AttributionRow& row : *result.counts.attribution) {
+    if (of(row) && row.counts.references != 0) {
+      references[{static_cast<std::uint32_t>(row.record), row.level, static_cast<std::uint32_t>(row.ray),
+                  row.bounce}] = row.counts.references;
+    }
+  }
+  return references;
+}
+
+// A tree that is built before the frame is read by rays as a given one is, and what builders read is apart.
+RC_GTEST_PROP(CacheCount, ReadingForATreeIsApartFromReadingForRays, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = test::random_tree_log(random, 6, 6);
+  MachineConfig machine = random_counting_machine(random);
+  const auto given =
+      references_of(replay(log, machine), [](const AttributionRow& row) { return !row.splitting; });
+  machine.build.sharing = Sharing::none;
+  const MachineResult built = replay(log, machine);
+  RC_ASSERT(references_of(built, [](const AttributionRow& row) { return !row.splitting; }) == given);
+  std::int64_t splitting = 0;
+  for (const auto& [key, count] :
+       references_of(built, [](const AttributionRow& row) { return row.splitting; })) {
+    splitting += count;
+  }
+  std::int64_t all = splitting;
+  for (const auto& [key, count] : given) {
+    all += count;
+  }
+  RC_ASSERT(all == built.references().references());
+  RC_ASSERT((splitting > 0) == (built.build.counts().start_up_splits > 0));
+}
+
+// A tree that nodes share while they build it: of the classes that a given tree has none of, there are some.
+TEST(CacheCount, WritesOfATreeCauseMisses) {
+  test::Random random(3);
+  std::int64_t invalidation = 0;
+  for (int round = 0; round < 40; ++round) {
+    const WorkLog log = test::random_tree_log(random, 8, 8);
+    MachineConfig machine = random_counting_machine(random);
+    machine.clusters = 1;
+    machine.nodes = 4;
+    machine.build.sharing = Sharing::shared;
+    machine.build.initial = InitialTree::level;
+    test::share_in_order(machine);
+    const MachineResult result = replay(log, machine);
+    invalidation += misses_of_class(result, memory::MissClass::invalidation);
+    EXPECT_LE(misses_of_class(result, memory::MissClass::invalidation), result.build.counts().invalidations);
+  }
+  EXPECT_GT(invalidation, 100);
+}
+
+RC_GTEST_PROP(CacheCount, BuildersCountWhatTheirReferencesOneByOneDo, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = test::random_tree_log(random, 6, 6);
+  MachineConfig machine = random_counting_machine(random);
+  test::add_random_build(random, machine);
+  if (random() % 2 == 0) {
+    test::add_random_contexts(random, log.traversal < accel::Traversal::grid, machine);
+  }
+  const MachineResult result = replay(log, machine);
+  test::NaiveCounts counts(machine);
+  test::tell_of_building(log, machine, counts);
+  counts.expect(result.counts, true);
+  RC_ASSERT(!::testing::Test::HasFailure());
+}
+
+// Running ahead would change a class in about one of a hundred such machines, so these are many and alike.
+TEST(CacheCount, ClassesOfBuildersDoNotDependOnRunningAhead) {
+  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+    test::Random random(seed);
+    const WorkLog log = test::random_tree_log(random, 12, 12);
+    MachineConfig machine;
+    machine.nodes = 4;
+    machine.build.sharing = Sharing::shared;
+    machine.build.initial = InitialTree::level;
+    machine.build.level = 1;
+    machine.cache.cache = {.size = 512, .line = 16, .ways = 4, .replacement = memory::Replacement::fifo};
+    machine.layout.node_bytes = 8;
+    machine.packets = {2, 2, PacketOrder::scanline};
+    machine.count.miss_classes = true;
+    EXPECT_EQ(replay(log, machine).counts.miss_classes,
+              replay(log, machine, {.step_by_step = true}).counts.miss_classes)
+        << seed;
+  }
+}
+
 TEST(CacheCount, RefusesWhatItCannotCount) {
   test::Random random(9);
   const WorkLog log = test::random_tree_log(random, 4, 4);
   MachineConfig machine;
   machine.count.miss_classes = true;
   machine.cache.organisation = CacheOrganisation::none;
-  EXPECT_THROW((void)replay(log, machine), sim::UserError);
-  machine = {};
-  machine.count.sharing = true;
-  machine.build.sharing = Sharing::shared;
   EXPECT_THROW((void)replay(log, machine), sim::UserError);
   machine = {};
   machine.count.miss_classes = true;

@@ -4,11 +4,12 @@
 #include <rapidcheck/gtest.h>
 
 #include <utility>
+#include <vector>
 
 #include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "tests/support/equal_results.h"
-#include "tests/support/random_machine.h"
+#include "tests/support/random_flow.h"
 #include "tests/unit/processors/naive_contexts.h"
 
 namespace marti::processors {
@@ -31,21 +32,88 @@ RC_GTEST_PROP(Contexts, OneContextGivesWhatNodesWithoutContextsGive, (std::uint6
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 
+RC_GTEST_PROP(Contexts, OneContextBuildsATreeAsNodesWithoutContextsDo, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = test::random_log_with_tree(random);
+  MachineConfig machine = test::random_machine(random);
+  test::add_random_build(random, machine);
+  MachineResult one = replay(log, machine, {.with_contexts = true});
+  RC_ASSERT(one.contexts.counts().switches == 0);
+  one.contexts.nodes.clear();
+  test::expect_equal(replay(log, machine), one);
+  RC_ASSERT(!::testing::Test::HasFatalFailure());
+}
+
 RC_GTEST_PROP(Contexts, ThePlainImplementationGivesTheSame, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::small_log(random);
   MachineConfig machine = random_contexts(random, log);
-  if (machine.cache.cache.replacement != memory::Replacement::fifo) {
-    machine.cache.cache.replacement = memory::Replacement::lru;
+  for (memory::CacheConfig* const cache : {&machine.cache.cache, &machine.l2.cache}) {
+    if (cache->replacement != memory::Replacement::fifo) {
+      cache->replacement = memory::Replacement::lru;
+    }
+  }
+  if (random() % 3 == 0) {
+    machine.layout.section_alignment = 1U << test::pick(random, 0, 4);  // kinds of record share lines
+  }
+  if (random() % 2 == 0) {
+    machine.count = {machine.cache.organisation != CacheOrganisation::none, true, true};
   }
   const MachineResult result = replay(log, machine, {.with_contexts = true});
-  MachineResult plain = test::NaiveContexts(log, machine).run();
-  plain.l2 = result.l2;  // it does not count what a second level does, nor steps
+  test::NaiveCounts counts(machine);
+  MachineResult plain = test::NaiveContexts(log, machine, &counts).run();
+  counts.expect(result.counts, true);
+  if (machine.l2.sharing != SecondLevel::private_caches) {
+    plain.l2 = result.l2;  // it does not count what a shared second level does, nor steps
+  }
   for (std::size_t node = 0; node < plain.nodes.size(); ++node) {
     plain.nodes[node].steps = result.nodes[node].steps;
   }
   test::expect_equal(result, plain);
+  RC_ASSERT(!::testing::Test::HasFailure());
+}
+
+// A random machine whose nodes build the tree and have several contexts or prefetch.
+MachineConfig random_builders(test::Random& random, const WorkLog& log) {
+  MachineConfig machine = test::random_machine(random, 8);
+  test::add_random_build(random, machine);
+  test::add_random_contexts(random, log.traversal < accel::Traversal::grid, machine);
+  return machine;
+}
+
+// Ties nodes that build to those of which there is a plain implementation.
+RC_GTEST_PROP(Contexts, NodesWithNothingToBuildAreThoseWithAGivenTree, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = test::random_log_with_tree(random);
+  MachineConfig machine = random_builders(random, log);
+  const std::vector<BranchStart> kept(log.topology.nodes.size(), BranchStart::kept);
+  MachineResult built = replay(log, machine, {.starts = kept, .with_contexts = true});
+  machine.build = {};
+  const MachineResult given = replay(log, machine, {.with_contexts = true});
+  built.build = given.build;
+  test::expect_equal(built, given);
   RC_ASSERT(!::testing::Test::HasFatalFailure());
+}
+
+TEST(Contexts, RandomBuildersDoAllThereIsToDo) {
+  ContextCounts contexts;
+  BuildCounts built;
+  sim::Ticks lock_wait = 0;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    test::Random random(seed);
+    const WorkLog log = test::random_tree_log(random, 8, 8);
+    const MachineResult result = replay(log, random_builders(random, log));
+    sim::merge(contexts, result.contexts.counts());
+    sim::merge(built, result.build.counts());
+    lock_wait += result.time()[static_cast<std::size_t>(Activity::lock_wait)];
+  }
+  sim::for_each_counter(contexts, [](const sim::Counter<ContextCounts>& counter, std::int64_t value) {
+    EXPECT_GT(value, 100) << counter.name;
+  });
+  sim::for_each_counter(built, [](const sim::Counter<BuildCounts>& counter, std::int64_t value) {
+    EXPECT_GT(value, 100) << counter.name;
+  });
+  EXPECT_GT(lock_wait, 100);
 }
 
 // Checks that the properties above meet every kind of event that is counted.
@@ -138,15 +206,44 @@ TEST(Contexts, PeriodicMissesTakeTheTimeOfTheClosedForm) {
   EXPECT_GT(linear, 100);
 }
 
+// Two nodes visit the root of a tree that is there, which prefetches the records of its children, and one of
+// them splits the first child. Its write takes that record out of the other's cache, which never referred to
+// it.
+TEST(Contexts, AStaleCopyThatWasPrefetchedIsTakenOut) {
+  WorkLog log;
+  log.traversal = accel::Traversal::octree;
+  log.width = 2;
+  log.height = 1;
+  log.texture_begin = {0};
+  log.topology.nodes.push_back({1, 8, 1, false});
+  log.topology.nodes.push_back({9, 8, 2, false});
+  log.topology.nodes.insert(log.topology.nodes.end(), 7, accel::TopologyNode{0, 0, 2, true});
+  log.topology.nodes.insert(log.topology.nodes.end(), 8, accel::TopologyNode{0, 0, 3, true});
+  log.topology.work.resize(log.topology.nodes.size());
+  log.rows.resize(1);
+  log.rows[0].words = {make_word(Step::branch, 0), make_word(Step::branch, 0), make_word(Step::branch, 1)};
+  log.rows[0].begin = {0, 1, 3};
+  MachineConfig machine;
+  machine.nodes = 2;
+  machine.layout.node_bytes = machine.cache.cache.line;  // each record has a line of its own
+  machine.host.assignment = Assignment::interleaved;
+  machine.packets = {1, 1, PacketOrder::scanline};
+  machine.prefetch.children = true;
+  machine.prefetch.outstanding = 8;
+  machine.build.sharing = Sharing::shared;
+  std::vector<BranchStart> starts(log.topology.nodes.size(), BranchStart::kept);
+  starts[1] = BranchStart::lazy;
+  const MachineResult result = replay(log, machine, {.starts = starts});
+  EXPECT_EQ(result.build.counts().splits, 1);
+  EXPECT_EQ(result.build.counts().invalidations, 1);
+}
+
 TEST(Contexts, RefusesWhatCannotBe) {
   test::Random random(5);
   const WorkLog log = test::random_log(random, 4, 4);
   for (const auto& spoil :
        {+[](MachineConfig& m) { m.contexts = 0; }, +[](MachineConfig& m) { m.contexts = most_contexts + 1; },
-        +[](MachineConfig& m) { m.build.sharing = Sharing::shared; },
         +[](MachineConfig& m) { m.scheme = Scheme::pipeline; },
-        +[](MachineConfig& m) { m.placement = Placement::distributed; },
-        +[](MachineConfig& m) { m.l2.sharing = SecondLevel::private_caches; },
         +[](MachineConfig& m) {
           m.prefetch.next_line = true;
           m.cache.organisation = CacheOrganisation::none;

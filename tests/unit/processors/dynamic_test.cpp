@@ -335,7 +335,7 @@ TEST(Dynamic, RefusesWhatHasNoTreeToBuild) {
   machine.placement = Placement::replicated;
   refused({}, "build.sharing: nodes with a database each");
   machine.placement = Placement::distributed;
-  refused({}, "build.sharing: a read may overtake another node's write in the network");
+  refused({}, "build.sharing: \"shared\" does not combine with database.placement = \"distributed\"");
   machine.placement = Placement::shared;
   machine.interconnect.arbitration = memory::Arbitration::round_robin;
   refused({}, "build.sharing: a read may overtake another node's write on a bus");

@@ -1,6 +1,7 @@
 // A second implementation of nodes with contexts and prefetching, written for plainness: each packet is
-// flattened into single actions, each action is an event of its own, caches are lists. Only the interconnect,
-// the packets and the host are the real ones. LRU and FIFO replacement.
+// flattened into single actions, each action is an event of its own, caches of both levels are lists. Only
+// the interconnect, or the distributed memory, the packets and the host are the real ones. LRU and FIFO
+// replacement.
 #pragma once
 
 #include <algorithm>
@@ -16,13 +17,15 @@
 
 #include "processors/node/memory_system.h"
 #include "processors/replay/replay.h"
+#include "tests/support/naive_counts.h"
 #include "tests/support/naive_program.h"
 
 namespace marti::test {
 
 class NaiveContexts final : public sim::EventHandler {
  public:
-  NaiveContexts(const WorkLog& log, const MachineConfig& machine)
+  /// `counts`, where given, is told of every reference and prefetch.
+  NaiveContexts(const WorkLog& log, const MachineConfig& machine, NaiveCounts* counts = nullptr)
       : log_(log),
         machine_(machine),
         program_(log, machine),
@@ -31,6 +34,7 @@ class NaiveContexts final : public sim::EventHandler {
         cached_(machine.cache.organisation != CacheOrganisation::none),
         unit_(program_.unit()),
         ports_(machine.ports_of_node()),
+        counted_(counts),
         nodes_(machine.all_nodes()) {
     for (Node& node : nodes_) {
       node.contexts.resize(machine.contexts);
@@ -65,6 +69,9 @@ class NaiveContexts final : public sim::EventHandler {
       node.counts.useless += static_cast<std::int64_t>(node.unasked.size());
       result.nodes.push_back(node.statistics);
       result.contexts.nodes.push_back(node.counts);
+      if (has_second_level()) {
+        result.l2.caches.push_back(node.second_level);
+      }
     }
     for (const auto& interconnect : interconnects_) {
       result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
@@ -108,13 +115,17 @@ class NaiveContexts final : public sim::EventHandler {
   struct Flight {
     memory::Service service;
     sim::Ticks done = 0;
+    std::uint64_t line = 0;
     bool prefetch = false;
+    bool second_level = false;  // it brings the line from there
   };
   struct Context {
     std::vector<Action> actions;
     std::size_t next = 0;
     sim::Ticks ready = never;
     std::shared_ptr<Flight> flight;  // what it waits for; null: the host
+    Action waits_for;                // the reference that it waits to make
+    std::uint32_t ray = 0;           // of its packet's last step
   };
   using Key = std::pair<int, std::uint64_t>;  // which cache, which line
   struct Node {
@@ -130,8 +141,10 @@ class NaiveContexts final : public sim::EventHandler {
     std::map<Key, std::shared_ptr<Flight>> brought;  // the transaction that brought a line last
     std::map<std::pair<int, std::uint64_t>, std::list<std::uint64_t>> sets;  // newest first
     std::set<Key> unasked;
+    std::map<std::uint64_t, std::list<std::uint64_t>> second_sets;  // of the second level
     NodeStatistics statistics;
     ContextCounts counts;
+    memory::CacheCounters second_level;
   };
   struct Client final : memory::InterconnectClient {
     NaiveContexts* all = nullptr;
@@ -174,7 +187,7 @@ class NaiveContexts final : public sim::EventHandler {
       return;
     }
     ++node.statistics.packets;
-    context.actions = program_.actions_of(packets_[grant->packet]);
+    context.actions = program_.actions_of(packets_[grant->packet], context.ray);
     context.next = 0;
     context.flight = nullptr;
     set_ready(number, which, grant->start);
@@ -229,17 +242,22 @@ class NaiveContexts final : public sim::EventHandler {
       return;
     }
     const Key key = key_of(action.kind, action.address / unit_);
-    if (cached_ && in_cache(node, key)) {
-      if (const auto flight = node.brought[key]; flight && flight->done > engine_.now()) {
-        ++(flight->prefetch ? node.counts.late : node.counts.joined);
-        context.flight = flight;
-        context.ready = never;
-        if (flight->done != never) {
-          set_ready(number, *node.last, flight->done);
-        }
-        pause(number);
-        return;
+    if (const auto flight = cached_ ? under_way(node, key) : nullptr) {
+      ++(flight->prefetch ? node.counts.late : node.counts.joined);
+      context.flight = flight;
+      context.waits_for = action;
+      context.ready = never;
+      if (flight->done != never) {
+        set_ready(number, *node.last, flight->done);
       }
+      pause(number);
+      return;
+    }
+    const bool hit = cached_ && in_cache(node, key);
+    if (counted_ != nullptr) {
+      counted_->refer(number, static_cast<std::size_t>(key.first), action, key.second, hit);
+    }
+    if (hit) {
       look_up(node, key);
       ++node.statistics.references.hits[static_cast<std::size_t>(action.kind)];
       go_on(number, Activity::cache_access, program_.ticks().hit);
@@ -248,6 +266,13 @@ class NaiveContexts final : public sim::EventHandler {
     ++node.statistics.references.misses[static_cast<std::size_t>(action.kind)];
     if (cached_) {
       look_up(node, key);
+      if (second_level_has(node, key.second)) {
+        if (counted_ != nullptr) {
+          counted_->second_level_hit(action);
+        }
+        go_on(number, Activity::cache_access, machine_.clock.cycles(machine_.l2.hit_cycles));
+        return;
+      }
     }
     const std::uint32_t bytes = cached_ ? unit_ : action.bytes;
     if (machine_.placement == Placement::replicated) {
@@ -256,12 +281,17 @@ class NaiveContexts final : public sim::EventHandler {
           local.clock.cycles(local.cycles_per_beat) * ((bytes + local.width - 1) / local.width);
       spend(node, Activity::transfer, transfer);
       node.time += transfer;
+      if (counted_ != nullptr) {
+        counted_->wait(action, transfer + local.clock.cycles(local.access_cycles));
+      }
       go_on(number, Activity::bank_access, local.clock.cycles(local.access_cycles));
       return;
     }
     ++context.next;
+    context.waits_for = action;
     context.ready = never;
     context.flight = std::make_shared<Flight>();
+    context.flight->line = key.second;
     if (cached_) {
       node.brought[key] = context.flight;
     }
@@ -329,6 +359,8 @@ class NaiveContexts final : public sim::EventHandler {
     const auto flight = node.contexts[*next].flight;
     if (!flight) {
       spend(node, Activity::dispatch_wait, engine_.now() - node.since);
+    } else if (flight->second_level) {
+      spend(node, Activity::cache_access, engine_.now() - node.since);
     } else {
       // Where each phase would be in this order; the node waited from `since` on.
       sim::Ticks at = flight->done - flight->service.wait_interconnect - flight->service.transfer -
@@ -342,6 +374,9 @@ class NaiveContexts final : public sim::EventHandler {
       phase(Activity::transfer, flight->service.transfer);
       phase(Activity::bank_wait, flight->service.wait_bank);
       phase(Activity::bank_access, flight->service.bank);
+      if (counted_ != nullptr) {
+        counted_->wait(node.contexts[*next].waits_for, engine_.now() - node.since);
+      }
     }
     node.waiting = false;
     take_up(number, *next);
@@ -417,6 +452,43 @@ class NaiveContexts final : public sim::EventHandler {
       set.splice(set.begin(), set, at);
     }
   }
+  // The transaction for which a reference to the line has to wait.
+  std::shared_ptr<Flight> under_way(Node& node, const Key& key) {
+    const auto is_coming = [&](const auto& flight) { return flight && flight->done > engine_.now(); };
+    const auto own = node.brought.find(key);
+    const bool own_is_coming = own != node.brought.end() && is_coming(own->second);
+    if (in_cache(node, key)) {
+      return own_is_coming ? own->second : nullptr;
+    }
+    if (has_second_level()) {
+      const auto at = std::find_if(node.flights.begin(), node.flights.end(), [&](const auto& flight) {
+        return is_coming(flight) && flight->line == key.second;
+      });
+      return at == node.flights.end() ? nullptr : *at;
+    }
+    return nullptr;
+  }
+  [[nodiscard]] bool has_second_level() const { return machine_.l2.sharing == SecondLevel::private_caches; }
+  // Looks the second level up; brings the line in when it is not there.
+  bool second_level_has(Node& node, std::uint64_t line) {
+    if (!has_second_level()) {
+      return false;
+    }
+    const memory::CacheShape shape = memory::shape_of(second_level_cache(machine_));
+    auto& set = node.second_sets[line % shape.sets];
+    const auto at = std::find(set.begin(), set.end(), line);
+    const bool hit = at != set.end();
+    ++(hit ? node.second_level.hits : node.second_level.misses);
+    if (!hit) {
+      if (set.size() == shape.ways) {
+        set.pop_back();
+      }
+      set.push_front(line);
+    } else if (machine_.l2.cache.replacement == memory::Replacement::lru) {
+      set.splice(set.begin(), set, at);
+    }
+    return hit;
+  }
   void bring_in(Node& node, const Key& key) {
     auto& set = set_of(node, key);
     if (set.size() == shape_of(key.first).ways) {
@@ -431,7 +503,7 @@ class NaiveContexts final : public sim::EventHandler {
   void prefetch(std::uint32_t number, memory::RecordKind kind, std::uint64_t line) {
     Node& node = nodes_[number];
     const Key key = key_of(kind, line);
-    if (in_cache(node, key)) {
+    if (in_cache(node, key) || under_way(node, key)) {
       return;
     }
     for (std::uint32_t slot = machine_.contexts; slot < ports_; ++slot) {
@@ -440,9 +512,20 @@ class NaiveContexts final : public sim::EventHandler {
         bring_in(node, key);
         node.unasked.insert(key);
         auto flight = std::make_shared<Flight>();
+        flight->line = line;
         flight->prefetch = true;
         node.brought[key] = flight;
-        issue(number, slot, flight, line * unit_, unit_);
+        if (counted_ != nullptr) {
+          counted_->bring_in(number, static_cast<std::size_t>(key.first), line);
+        }
+        if (second_level_has(node, line)) {
+          const sim::Ticks hit = machine_.clock.cycles(machine_.l2.hit_cycles);
+          node.flights[slot] = flight;
+          flight->second_level = true;
+          read_done(number, slot, {engine_.now() + hit, 0, 0, 0, 0});
+        } else {
+          issue(number, slot, flight, line * unit_, unit_);
+        }
         return;
       }
     }
@@ -472,6 +555,7 @@ class NaiveContexts final : public sim::EventHandler {
   bool cached_;
   std::uint32_t unit_;
   std::uint32_t ports_;
+  NaiveCounts* counted_;
   sim::Engine engine_;
   std::vector<Node> nodes_;
   std::vector<Client> clients_;

@@ -6,6 +6,7 @@
 #include "processors/flow/pipeline/stages.h"
 #include "processors/replay/replay.h"
 #include "sim/error.h"
+#include "tests/support/equal_results.h"
 #include "tests/support/naive_pipeline.h"
 #include "tests/support/random_flow.h"
 #include "tests/support/user_error.h"
@@ -20,13 +21,15 @@ sim::Ticks part(const NodeStatistics& node, Activity activity) {
   return node.time[static_cast<std::size_t>(activity)];
 }
 
-// One cluster with the database in each node and no cache: nothing is shared but queues and network.
+// One cluster with the database in each node: nothing is shared but queues and network.
 MachineConfig machine_without_shared_memory(Random& random) {
   MachineConfig machine = test::random_machine(random);
   test::make_random_pipeline(random, machine);
   machine.clusters = 1;
   machine.placement = Placement::replicated;
-  machine.cache.organisation = CacheOrganisation::none;
+  if (machine.cache.cache.replacement == memory::Replacement::random) {
+    machine.cache.cache.replacement = memory::Replacement::fifo;  // victims are drawn for each node anew
+  }
   machine.local.width = static_cast<std::uint32_t>(pick(random, 1, 16));
   machine.local.cycles_per_beat = pick(random, 0, 2);
   return machine;
@@ -43,8 +46,8 @@ void expect_equal(const test::NaivePipeline& naive, const MachineResult& result)
     EXPECT_EQ(expected.queue_full_wait, part(node, Activity::queue_full_wait));
     EXPECT_EQ(expected.messaging, part(node, Activity::messaging));
     EXPECT_EQ(expected.served, part(node, Activity::traversal) + part(node, Activity::intersection) +
-                                   part(node, Activity::shading) + part(node, Activity::transfer) +
-                                   part(node, Activity::bank_access));
+                                   part(node, Activity::shading) + part(node, Activity::cache_access) +
+                                   part(node, Activity::transfer) + part(node, Activity::bank_access));
     const FlowCounts& counts = result.flow.nodes[n];
     EXPECT_EQ(expected.counts.taken, counts.taken);
     EXPECT_EQ(expected.counts.made, counts.made);
@@ -67,8 +70,13 @@ RC_GTEST_PROP(Pipeline, EqualsASecondImplementation, (std::uint64_t seed)) {
       pick(random, 0, 1) == 0
           ? test::random_log(random, side, side)
           : test::random_ray_trees(random, side, side, 15, 4, static_cast<std::uint32_t>(pick(random, 1, 4)));
-  const MachineConfig machine = machine_without_shared_memory(random);
-  expect_equal(test::NaivePipeline(log, machine), replay(log, machine));
+  MachineConfig machine = machine_without_shared_memory(random);
+  machine.count = {machine.cache.organisation != CacheOrganisation::none, true, true};
+  const MachineResult result = replay(log, machine);
+  test::NaiveCounts counts(machine);
+  expect_equal(test::NaivePipeline(log, machine, &counts), result);
+  counts.expect(result.counts, true);
+  test::expect_equal(replay(log, test::without_counting(machine)), result);
   RC_ASSERT(!::testing::Test::HasFailure());
 }
 
@@ -125,6 +133,7 @@ RC_GTEST_PROP(Pipeline, OneRayAtATimeTakesTheSumOfItsParts, (std::uint64_t seed)
   Random random(seed);
   const WorkLog log = test::random_ray_trees(random, 3, 3, 10, 3);
   MachineConfig machine = machine_without_shared_memory(random);
+  machine.cache.organisation = CacheOrganisation::none;
   machine.pipeline.in_flight = 1;
   machine.network.kind = memory::NetworkKind::ideal;
   machine.host.occupancy_cycles = 0;

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
+
 #include "processors/program/recorder.h"
 #include "processors/program/work_log.h"
 #include "sim/error.h"
@@ -12,7 +14,7 @@ namespace marti::processors {
 namespace {
 
 /// A root branch with a leaf of three entries and an empty leaf; one pixel.
-WorkLog small_log(std::vector<std::uint32_t> words) {
+WorkLog small_log(const std::vector<std::uint32_t>& words) {
   WorkLog log;
   log.width = 1;
   log.height = 1;
@@ -23,7 +25,7 @@ WorkLog small_log(std::vector<std::uint32_t> words) {
   log.lights = 1;
   log.texture_begin = {0, 4};
   const auto end = static_cast<std::uint32_t>(words.size());
-  log.rows.push_back({std::move(words), {0, end}});
+  log.rows.push_back({{words.begin(), words.end()}, {0, end}});
   return log;
 }
 
@@ -33,7 +35,9 @@ TEST(WorkLog, CountsEveryKindOfStep) {
        make_word(Step::leaf, 2), make_word(Step::shade, 1), make_word(Step::texel, 0), 3,
        make_word(Step::ray, 1U | 1U << 2U), make_word(Step::partial_leaf, 1), 2, make_word(Step::light, 0)});
   EXPECT_EQ(test::fault_of(log), "");
-  const LogTotals totals = totals_of(log);
+  std::vector<std::uint64_t> shades;
+  const LogTotals totals = totals_of(log, &shades);
+  EXPECT_EQ(shades, (std::vector<std::uint64_t>{0, 1}));
   EXPECT_EQ(totals.rays[0], 1U);
   EXPECT_EQ(totals.rays[1], 1U);
   EXPECT_EQ(totals.branches, 1U);
@@ -178,8 +182,8 @@ RC_GTEST_PROP(RowRecorder, WritesWhatItIsTold, ()) {
     begin.push_back(static_cast<std::uint32_t>(words.size()));
     LogRow result;
     recorder.end_row(result);
-    RC_ASSERT(result.words == words);
-    RC_ASSERT(result.begin == begin);
+    RC_ASSERT(std::ranges::equal(result.words, words));
+    RC_ASSERT(std::ranges::equal(result.begin, begin));
   }
 }
 

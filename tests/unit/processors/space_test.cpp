@@ -38,11 +38,15 @@ RC_GTEST_PROP(Space, EqualsASecondModelInEveryCounter, (std::uint64_t seed)) {
     if (machine.cache.cache.replacement == memory::Replacement::random) {
       machine.cache.cache.replacement = memory::Replacement::fifo;
     }
+    machine.count = {machine.cache.organisation != CacheOrganisation::none, true, true};
     const MachineResult result = replay(log, machine);
-    MachineResult plain = test::NaiveSpace(log, machine).run();
+    test::NaiveCounts counts(machine);
+    MachineResult plain = test::NaiveSpace(log, machine, &counts).run();
+    counts.expect(result.counts, true);
+    test::expect_equal(replay(log, test::without_counting(machine)), result);
     plain.clusters = result.clusters;  // no node uses a memory that is shared
     test::expect_equal(result, plain);
-    RC_ASSERT(!::testing::Test::HasFatalFailure());
+    RC_ASSERT(!::testing::Test::HasFailure());
   }
 }
 

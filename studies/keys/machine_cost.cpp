@@ -1,4 +1,4 @@
-#include "studies/sweep/plan/sweep_cost.h"
+#include "studies/keys/machine_cost.h"
 
 #include <cstdint>
 
