@@ -37,6 +37,7 @@
 #include "studies/host/image_file.h"
 #include "studies/host/signals_held.h"
 #include "studies/keys/config_file.h"
+#include "studies/keys/price_keys.h"
 #include "studies/operations/operations.h"
 #include "studies/paper/paper.h"
 #include "studies/paper/paper_keys.h"
@@ -74,9 +75,11 @@ struct RunArguments {
   std::string within;
   std::vector<std::string> keep;
   bool verify_plan = false;
+  bool what_helps = false;
+  bool no_what_helps = false;
 };
 
-void run_within_command(const RunArguments& arguments, sim::Config& config) {
+void run_within_command(const RunArguments& arguments, sim::Config& config, studies::RunOptions exact) {
   if (!arguments.keep.empty() || arguments.verify_plan) {
     throw sim::UserError("--keep and --verify-plan are for exact runs; leave --within out");
   }
@@ -91,22 +94,30 @@ void run_within_command(const RunArguments& arguments, sim::Config& config) {
   } catch (const sim::UserError& error) {
     throw sim::UserError("--within: " + std::string(error.what()));
   }
-  print(studies::run_within(config, tolerance, arguments.json));
+  print(studies::run_within(config, tolerance, arguments.json, std::move(exact)));
 }
 
 void run_command(const RunArguments& arguments) {
-  const studies::KeptItems keep(arguments.keep);
   studies::require_config_file(arguments.config);
-  sim::Config config = sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
+  sim::Schema schema = studies::run_schema();
+  studies::declare_price_keys(schema);
+  sim::Config config = sim::Config::from_file(schema, arguments.config, arguments.assignments);
+  studies::RunOptions options;
+  options.directory = arguments.directory;
+  options.keep = studies::KeptItems(arguments.keep);
+  options.what_helps = arguments.no_what_helps ? studies::Measuring::none
+                       : arguments.what_helps  ? studies::Measuring::all
+                                               : studies::Measuring::within_budget;
+  options.prices = studies::read_given_prices(config);
   if (!arguments.within.empty()) {
-    run_within_command(arguments, config);
+    run_within_command(arguments, config, std::move(options));
     return;
   }
   if (!arguments.directory.empty()) {
     studies::prepare_output(arguments.directory);
     studies::load_image_library();
   }
-  const studies::RunResult result = studies::run(config, arguments.directory, keep);
+  const studies::RunResult result = studies::run(config, std::move(options));
   const studies::PlanVerdict verdict =
       arguments.verify_plan ? studies::verify_plan(result) : studies::PlanVerdict();
   if (!verdict.holds) {
@@ -424,6 +435,13 @@ int parse_and_run(int argc, char** argv) {
       ->allow_extra_args(false);
   run->add_flag("--verify-plan", run_arguments.verify_plan,
                 "runs once more for each item that is left out, and proves that nothing else differs");
+  CLI::Option* const what_helps =
+      run->add_flag("--what-helps", run_arguments.what_helps,
+                    "measures what would make the frame shorter, however long that takes; by default only as "
+                    "far as it takes no longer than the run itself");
+  run->add_flag("--no-what-helps", run_arguments.no_what_helps,
+                "does not measure what would make the frame shorter")
+      ->excludes(what_helps);
   run->callback([&] { run_command(run_arguments); });
 
   StudyArguments study_arguments;

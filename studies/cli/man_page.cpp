@@ -95,7 +95,7 @@ constexpr std::string_view description = R"(.SH DESCRIPTION
 renders a scene once with a real ray tracer, records every step of it, and says from that record how long the
 frame takes on a machine that a configuration describes: processor nodes with caches, an interconnect, memory
 banks, a parallel scheme.
-It says where the nodes' time goes, what limits the machine, and what another cache, bus or octree would change.
+It says where the nodes' time goes, what would make the frame shorter, and what another cache, bus or octree would change.
 .PP
 A configuration is a TOML file; any of its keys can be given as
 .BR \-\-set " " \fIkey=value\fR .

@@ -6,6 +6,7 @@
 #include "studies/cli/shell_completion.h"
 #include "studies/error/error_keys.h"
 #include "studies/error/rendering_keys.h"
+#include "studies/keys/combination_table.h"
 #include "studies/paper/paper_keys.h"
 #include "studies/run/run_result.h"
 #include "studies/schemes/schemes_keys.h"
@@ -29,7 +30,8 @@ void add_reference_commands(CLI::App& app, bool& markdown, void (*print)(const s
   CLI::App* config = app.add_subcommand("config", "Prints every configuration key");
   config->add_flag("--markdown", markdown, "as Markdown, as in docs/configuration.md");
   config->callback([&markdown, print] {
-    print(markdown ? sim::list_keys_as_markdown(all_keys()) : sim::list_keys_as_text(all_keys()));
+    print(markdown ? sim::list_keys_as_markdown(all_keys()) + combinations_as_markdown()
+                   : sim::list_keys_as_text(all_keys()));
   });
   CLI::App* completion =
       app.add_subcommand("completion", "Prints the script that completes commands in a shell");

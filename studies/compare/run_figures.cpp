@@ -14,13 +14,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Fields that repeat the sums beside them, and sentences made of other figures.
+// Fields that repeat the sums beside them, those that are of other machines, and the old rule of thumb of
+// results of schema 1.
 bool is_left_out(const std::string& path) {
   for (const std::string_view prefix :
        {"machine.per_node[].steps", "machine.per_node[].time_ps", "machine.per_node[].hits",
         "machine.per_node[].misses", "machine.build.per_node", "machine.flow.per_node",
         "machine.contexts.per_node", "machine.l2.per_cache[].hits", "machine.l2.per_cache[].misses",
-        "machine.limit.sentence"}) {
+        "machine.limit", "machine.what_helps"}) {
     if (path.starts_with(prefix)) {
       return true;
     }

@@ -160,7 +160,7 @@ std::optional<EstimatedRun> estimate_within(const processors::WorkLog& log,
   return std::nullopt;
 }
 
-std::string run_within(sim::Config& config, double tolerance, bool json) {
+std::string run_within(sim::Config& config, double tolerance, bool json, RunOptions exact) {
   FrameConfig frame = read_frame(config);
   refuse_several_frames(config, frame.frames);
   const processors::MachineConfig machine = read_machine(config);
@@ -181,7 +181,7 @@ std::string run_within(sim::Config& config, double tolerance, bool json) {
     reason = "nothing else is within 0 %";
   }
   if (reason) {
-    return exact_output(run(config), *reason, json);
+    return exact_output(run(config, std::move(exact)), *reason, json);
   }
   RunResult result;
   result.config_name = config.name();
@@ -192,8 +192,9 @@ std::string run_within(sim::Config& config, double tolerance, bool json) {
   const std::optional<EstimatedRun> estimated =
       estimate_within(*result.functional.frame.log, machine, tolerance);
   if (!estimated) {
+    exact.functional = std::move(result.functional);
     return exact_output(
-        run(config, {}, {}, std::move(result.functional)),
+        run(config, std::move(exact)),
         fmt::format("no cheaper method has been measured to be within {:g} % here", 100.0 * tolerance), json);
   }
   return json ? estimate_json(result, *estimated, tolerance) : estimate_text(result, *estimated, tolerance);

@@ -10,6 +10,7 @@
 #include "sim/config.h"
 #include "studies/estimate/simulator_figures.h"
 #include "studies/keys/frame_keys.h"
+#include "studies/run/run_result.h"
 
 namespace marti::studies {
 
@@ -42,8 +43,8 @@ struct EstimatedRun {
                                                           double tolerance);
 
 /// Runs a configuration and gives what to print: an estimate with error bars, or the summary of an exact run
-/// and the reason for it; as JSON, an object with `estimate`, or the exact run's result. Throws UserError as
-/// run() does.
-[[nodiscard]] std::string run_within(sim::Config& config, double tolerance, bool json);
+/// and the reason for it; as JSON, an object with `estimate`, or the exact run's result. `exact`: how an
+/// exact run is made. Throws UserError as run() does.
+[[nodiscard]] std::string run_within(sim::Config& config, double tolerance, bool json, RunOptions exact);
 
 }  // namespace marti::studies

@@ -16,126 +16,56 @@ using processors::Activity;
 namespace {
 
 // Waits for a part that is always busy are named if they take at least this share of the nodes' time.
-constexpr double worth_naming = 0.1;
+constexpr double notable_share = 0.1;
 
 double share(sim::Ticks part, double whole) { return whole > 0.0 ? static_cast<double>(part) / whole : 0.0; }
 
-// Whether space is cut into fewer regions than a cluster has nodes.
-bool few_regions(const processors::MachineConfig& machine, const processors::MachineResult& result) {
-  return machine.scheme == processors::Scheme::space && result.flow.regions < machine.nodes;
-}
-
-std::string more_regions(const processors::MachineConfig& machine, const processors::MachineResult& result) {
-  return fmt::format("a higher space.level ({} region(s) for {} nodes)", result.flow.regions, machine.nodes);
+// What the nodes do in this part of their time.
+std::string_view activity_of(Limit limit) {
+  switch (limit) {
+    case Limit::memory_latency:
+      return "on transfers and bank accesses that meet no queue";
+    case Limit::dispatch:
+      return "waiting for the host";
+    case Limit::start_up:
+      return "waiting for the initial tree";
+    case Limit::lock:
+      return "waiting for branches that others split";
+    case Limit::imbalance:
+      return "idle";
+    case Limit::write_buffer:
+      return "waiting for room in their write buffers";
+    case Limit::slowest_part:
+    case Limit::queues:
+    case Limit::messages:
+      return "waiting for rays and for room in queues";
+    case Limit::nothing:
+    case Limit::interconnect:
+    case Limit::bank:
+    case Limit::compute:
+      break;
+  }
+  return "computing";
 }
 
 std::string describe(Limit limit, double part, const Utilisation& used,
                      const processors::MachineConfig& machine, const processors::MachineResult& result) {
   const double percent = 100.0 * part;
-  const bool distributed = machine.placement == processors::Placement::distributed;
-  const bool bus = !distributed && machine.interconnect.kind == memory::InterconnectKind::bus;
-  switch (limit) {
-    case Limit::nothing:
-      return "nothing to do";
-    case Limit::interconnect:
-      return fmt::format(
-          "the {} is {:.1f} % busy and nodes spend {:.1f} % of their time waiting for it; fewer misses "
-          "(larger cache), a wider {} or more clusters would help",
-          interconnect_name(machine), 100.0 * used.interconnect.value_or(0.0), percent, bus ? "bus" : "link");
-    case Limit::bank:
-      if (distributed) {
-        return fmt::format(
-            "the busiest node's memory is {:.1f} % busy and nodes spend {:.1f} % of their time waiting for "
-            "each other's memories; fewer misses (larger cache), faster memories or another "
-            "database.interleave would help",
-            100.0 * used.bank, percent);
-      }
-      return fmt::format(
-          "the busiest bank is {:.1f} % busy and nodes spend {:.1f} % of their time waiting for banks; more "
-          "or "
-          "faster banks would help",
-          100.0 * used.bank, percent);
-    case Limit::memory_latency:
-      return fmt::format(
-          "memory latency: nodes spend {:.1f} % of their time on transfers and bank accesses that meet no "
-          "queue; fewer misses or {} would help",
-          percent, distributed ? "a faster network" : "faster memory");
-    case Limit::dispatch:
-      if (machine.scheme != processors::Scheme::image) {
-        return fmt::format(
-            "the host: camera rays keep it {:.1f} % of the time, and nodes spend {:.1f} % of theirs waiting; "
-            "fewer "
-            "host.occupancy_cycles would help",
-            100.0 * flow_figures(machine, result).host, percent);
-      }
-      return fmt::format(
-          "the host: nodes spend {:.1f} % of their time waiting for packets; larger packets would help",
-          percent);
-    case Limit::start_up:
-      return fmt::format(
-          "building before the frame: nodes wait {:.1f} % of their time for the initial tree; {} would help",
-          percent,
-          machine.build.sharing == processors::Sharing::none
-              ? "building on demand (build.sharing = \"shared\" or \"private\")"
-              : "a lower build.initial_level");
-    case Limit::lock:
-      return fmt::format(
-          "locks: nodes spend {:.1f} % of their time waiting for branches that others split; a higher "
-          "build.initial_level would help",
-          percent);
-    case Limit::imbalance:
-      if (machine.scheme != processors::Scheme::image) {
-        return fmt::format("imbalance: nodes are idle {:.1f} % of the time; {} would help", percent,
-                           few_regions(machine, result) ? more_regions(machine, result)
-                                                        : "more rays in flight, or fewer nodes,");
-      }
-      return fmt::format(
-          "imbalance: nodes are idle {:.1f} % of the time, {} packet(s) for {} nodes; smaller packets would "
-          "help",
-          percent, result.packets, result.nodes.size());
-    case Limit::slowest_part: {
-      const FlowFigures figures = flow_figures(machine, result);
-      const StageLoad& slowest = figures.slowest();
-      if (figures.stages.empty()) {
-        return fmt::format(
-            "imbalance: the busiest node is {:.1f} % busy, a node on average {:.1f} %, and nodes spend "
-            "{:.1f} % of their time waiting for rays and queues; {} would help",
-            100.0 * slowest.busiest, 100.0 * slowest.busy, percent,
-            few_regions(machine, result) ? more_regions(machine, result)
-                                         : "a division that is better balanced");
-      }
-      return fmt::format(
-          "the slowest stage: {} is {:.1f} % busy, and nodes spend {:.1f} % of their time waiting for rays "
-          "and queues; more of the nodes in pipeline.{} would help",
-          slowest.name, 100.0 * slowest.busy, percent, slowest.name);
-    }
-    case Limit::queues:
-      return fmt::format(
-          "full queues: nodes spend {:.1f} % of their time waiting for room in another's queue; longer "
-          "queues would help",
-          percent);
-    case Limit::messages: {
-      const FlowFigures figures = flow_figures(machine, result);
-      if (bottleneck_of(machine, result) == Bottleneck::network) {
-        const bool host = figures.host_link > figures.network.value_or(0.0);
-        return fmt::format(
-            "messages: {} {:.1f} % busy, and nodes spend {:.1f} % of their time waiting for rays; a wider or "
-            "faster network or smaller messages would help",
-            host ? "the link to the host is" : "the network's links are",
-            100.0 * (host ? figures.host_link : figures.network.value_or(0.0)), percent);
-      }
-      return fmt::format(
-          "messages: nodes spend {:.1f} % of their time waiting for rays; links are {:.1f} % busy and {} "
-          "rays were in flight at most; a faster network or more rays in flight would help",
-          percent, 100.0 * figures.network.value_or(0.0), result.flow.most_in_flight);
-    }
-    case Limit::write_buffer:
-      return fmt::format("full write buffers: nodes spend {:.1f} % of their time on them", percent);
-    case Limit::compute:
-      break;
+  if (limit == Limit::interconnect) {
+    return fmt::format("nodes spend {:.1f} % of their time waiting for the {}, which is {:.1f} % busy",
+                       percent, interconnect_name(machine), 100.0 * used.interconnect.value_or(0.0));
   }
-  return fmt::format("computing: nodes spend {:.1f} % of their time on it; more or faster nodes would help",
-                     percent);
+  if (limit == Limit::bank) {
+    const bool distributed = machine.placement == processors::Placement::distributed;
+    return fmt::format(
+        "nodes spend {:.1f} % of their time waiting for {}, of which the busiest is {:.1f} % busy", percent,
+        distributed ? "each other's memories" : "banks", 100.0 * used.bank);
+  }
+  std::string text = fmt::format("nodes spend {:.1f} % of their time {}", percent, activity_of(limit));
+  if (limit == Limit::imbalance && machine.scheme == processors::Scheme::image) {
+    text += fmt::format(", with {} packet(s) for {} nodes", result.packets, result.nodes.size());
+  }
+  return text;
 }
 
 }  // namespace
@@ -231,7 +161,7 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
   finding.limit = largest->first;
   finding.share = largest->second / all;
   const double flow = waits.slowest + waits.queues + waits.messages;
-  if (machine.scheme != processors::Scheme::image && flow >= worth_naming * all) {
+  if (machine.scheme != processors::Scheme::image && flow >= notable_share * all) {
     // A resource that is always busy bounds the frame even if the nodes spend more time on something else.
     // First come shared resources, then the slowest part, whose nodes may be busy waiting for a shared
     // resource.
@@ -240,7 +170,7 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
       finding = {Limit::interconnect, part({Activity::interconnect_wait}) / all, ""};
     } else if (bottleneck != Bottleneck::none) {
       finding = {bottleneck == Bottleneck::host ? Limit::dispatch : Limit::messages, flow / all, ""};
-    } else if (waits.slowest >= worth_naming * all) {
+    } else if (waits.slowest >= notable_share * all) {
       finding = {Limit::slowest_part, waits.slowest / all, ""};
     }
   }

@@ -1,4 +1,4 @@
-// Figures derived from timed machines: speed-up, efficiency, and what limits a machine.
+// Figures derived from timed machines: speed-up, efficiency, and where most of the nodes' time goes.
 #pragma once
 
 #include <optional>
@@ -53,11 +53,11 @@ enum class Limit {
   compute
 };
 
-/// What limits a machine: the part of the nodes' time that would have to shrink first.
+/// Where most of the nodes' time goes. It does not say what would help: studies/helps measures that.
 struct Finding {
   Limit limit = Limit::nothing;
   double share = 0.0;    ///< of all nodes' time
-  std::string sentence;  ///< for people; names the figure it rests on and what to try
+  std::string sentence;  ///< for people; names the figure it rests on
 };
 
 [[nodiscard]] Finding find_limit(const processors::MachineConfig& machine,

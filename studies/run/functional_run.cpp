@@ -141,13 +141,14 @@ FunctionalRun render_and_record(const FrameConfig& config, scenes::SceneFacts sc
   processors::RenderOptions options = planned.render;
   options.record = true;
   run.frame = processors::render(scene, *triangles, *structure, options);
-  run.totals = processors::totals_of(*run.frame.log);
+  std::vector<std::uint64_t> shades;
+  run.totals = processors::totals_of(*run.frame.log, &shades);
   run.image_hash = image_hash(run.frame.image);
   if (std::string note = note_of_infinities(run.frame.image); !note.empty()) {
     run.notes.push_back(std::move(note));
   }
   if (facts != nullptr) {
-    count_saved(run.plan, facts->needs, scene, run.frame);
+    count_saved(run.plan, facts->needs, scene, run.frame, run.totals, shades);
   }
   if (options.voxel_cut > 0.0) {
     VoxelReport& report = run.voxel_cut.emplace();

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -31,13 +32,15 @@ void refuse_several_frames(const sim::Config& config, const FrameRange& frames) 
 
 namespace {
 
-// Declares the sections of a sweep as free: commands for a single machine ignore what they hold.
+// Declares the sections of a sweep as free: most commands for a single machine ignore what they hold.
 void declare_sweep_sections(sim::Schema& schema) {
   schema.free_section(
       "sweep",
       "only for `marti sweep`, which times many machines: [sweep.axes], [[sweep.zip]], [sweep.points.NAME], "
       "[sweep.base] and [sweep.compare] say which (docs/sweep.md)");
-  schema.free_section("prices", "only for `marti sweep`: what a machine costs, in units of your own");
+  schema.free_section("prices",
+                      "what a machine costs, in units of your own: for `marti sweep`, and for what `marti "
+                      "run` says would help");
 }
 
 void refuse_maps_beyond_memory(const sim::Config& config, const RecordConfig& record,
@@ -100,8 +103,12 @@ std::shared_ptr<const processors::StrippedLog> strip_for_both(const FrameConfig&
   return pays && taken < left ? StrippedLog::make(log, machine, (left - taken) / 2) : nullptr;
 }
 
-// Times the frame on the machine and on one node, and derives all other figures.
-void time_frame(const RecordConfig& record, const std::filesystem::path& directory, RunResult& result) {
+// Times the frame on the machine and on one node, and derives all other figures. Returns the stripped log of
+// both machines, if they had one.
+std::shared_ptr<const processors::StrippedLog> time_frame(const RecordConfig& record,
+                                                          const std::filesystem::path& directory,
+                                                          RunResult& result) {
+  std::shared_ptr<const processors::StrippedLog> stripped;
   result.plan = result.functional.plan;
   const processors::WorkLog& log = *result.functional.frame.log;
   if (result.machine.all_nodes() == 1 && result.machine.scheme == processors::Scheme::image) {
@@ -109,7 +116,7 @@ void time_frame(const RecordConfig& record, const std::filesystem::path& directo
     result.one_node = result.timed;
   } else {
     const processors::MachineConfig one_node = processors::one_node_of(result.machine);
-    const std::shared_ptr<const processors::StrippedLog> stripped =
+    stripped =
         strip_for_both(result.frame_config, log, result.functional.totals.bytes, result.machine, one_node);
     result.timed = watched_replay(record, directory, stripped.get(), result);
     processors::ReplayOptions options;
@@ -119,9 +126,23 @@ void time_frame(const RecordConfig& record, const std::filesystem::path& directo
   }
   result.scaling = scaling_of(result.one_node.end, result.timed.end, result.machine.all_nodes());
   result.loss = loss_of(result.one_node, result.timed);
-  result.finding = find_limit(result.machine, result.timed);
   result.bounds = processors::frame_bounds(result.machine, result.timed);
   result.prediction = processors::predict(result.machine, result.timed);
+  return stripped;
+}
+
+// The work log is in memory already, the stripped one too.
+WhatHelps measure_help(const sim::Config& config, const RunOptions& run,
+                       std::shared_ptr<const processors::StrippedLog> stripped, const RunResult& result) {
+  constexpr Work of_the_scene = 100'000'000;  // to read it and build its tree; enough for a small frame
+  const Work of_the_run = run_work(result.functional.totals, result.timed, result.one_node, stripped.get());
+  const Work budget = run.what_helps == Measuring::all ? unlimited_work : of_the_scene + of_the_run;
+  SharedLog shared{*result.functional.frame.log, std::move(stripped), {}, result.frame_config.memory};
+  keep(result.frame_config.keep, shared.options);
+  const std::uint64_t taken =
+      result.functional.totals.bytes + (shared.stripped != nullptr ? shared.stripped->bytes_of_words() : 0);
+  shared.memory = sim::MemoryBudget(shared.memory.left() - std::min(taken, shared.memory.left()));
+  return what_helps(config, run.prices, result.machine, result.timed, shared, budget);
 }
 
 // A result with the configuration of `first`, for which nothing has been run yet.
@@ -147,22 +168,25 @@ sim::Schema run_schema() {
   return schema;
 }
 
-RunResult run(sim::Config& config, const std::filesystem::path& directory, const KeptItems& keep,
-              std::optional<FunctionalRun> functional) {
+RunResult run(sim::Config& config, RunOptions options) {
   RunResult result;
   result.config_name = config.name();
   result.frame_config = read_frame(config);
-  result.frame_config.keep = keep;
+  result.frame_config.keep = options.keep;
   refuse_several_frames(config, result.frame_config.frames);
   result.machine = read_machine(config);
-  const RecordConfig record = read_record(config, !directory.empty());
+  const RecordConfig record = read_record(config, !options.directory.empty());
   config.refuse_unused();
   refuse_beyond_memory(config, result.frame_config, result.machine);
   refuse_maps_beyond_memory(config, record, result.frame_config);
   result.values = config.effective_values();
   sim::with_places(config, [&] {
-    result.functional = functional ? std::move(*functional) : run_functional(result.frame_config);
-    time_frame(record, directory, result);
+    result.functional =
+        options.functional ? std::move(*options.functional) : run_functional(result.frame_config);
+    std::shared_ptr<const processors::StrippedLog> stripped = time_frame(record, options.directory, result);
+    if (options.what_helps != Measuring::none) {
+      result.helps = measure_help(config, options, std::move(stripped), result);
+    }
   });
   return result;
 }
@@ -170,14 +194,14 @@ RunResult run(sim::Config& config, const std::filesystem::path& directory, const
 RunResult run_again(const RunResult& first, const KeptItems& keep) {
   RunResult result = described_by(first, keep);
   result.functional = run_functional(result.frame_config);
-  time_frame({}, {}, result);
+  (void)time_frame({}, {}, result);
   return result;
 }
 
 RunResult time_again(const RunResult& first, const KeptItems& keep) {
   RunResult result = described_by(first, keep);
   result.functional = first.functional;
-  time_frame({}, {}, result);
+  (void)time_frame({}, {}, result);
   return result;
 }
 

@@ -15,6 +15,7 @@
 #include "sim/config.h"
 #include "studies/figures/loss.h"
 #include "studies/figures/scaling.h"
+#include "studies/helps/what_helps.h"
 #include "studies/run/functional_run.h"
 #include "studies/run/record/heat_map.h"
 #include "studies/run/record/timeline.h"
@@ -32,7 +33,7 @@ struct RunResult {
   processors::MachineResult one_node;  ///< the same machine with one cluster of one node
   Scaling scaling;
   SpeedUpLoss loss;
-  Finding finding;
+  std::optional<WhatHelps> helps;  ///< empty: not asked for
   processors::FrameBounds bounds;
   std::optional<processors::Prediction> prediction;
   std::optional<processors::WorkingSet> working_set;  ///< of the timed machine; empty: not asked for
@@ -40,12 +41,19 @@ struct RunResult {
   std::unique_ptr<HeatMap> heat_map;   ///< null: not asked for
 };
 
+struct RunOptions {
+  /// Where what is recorded while the machine runs goes; it must exist. Empty: nothing may be recorded.
+  std::filesystem::path directory{};
+  KeptItems keep{};
+  /// The functional run of the frame that the configuration describes; empty: it is to be made.
+  std::optional<FunctionalRun> functional{};
+  Measuring what_helps = Measuring::none;  ///< of what would make the frame shorter
+  std::optional<Prices> prices{};          ///< by which that is chosen
+};
+
 /// Runs a configuration: one functional run, the machine and the same machine with one node. Throws UserError
-/// for anything wrong with the input, before it has written anything. What is recorded while the machine runs
-/// goes to `directory`, which must exist; without a directory nothing may be recorded. `functional`, if
-/// given, is the functional run of the frame that `config` describes.
-[[nodiscard]] RunResult run(sim::Config& config, const std::filesystem::path& directory = {},
-                            const KeptItems& keep = {}, std::optional<FunctionalRun> functional = {});
+/// for anything wrong with the input, before it has written anything.
+[[nodiscard]] RunResult run(sim::Config& config, RunOptions options = {});
 
 /// Runs the frame and the machine of `first` again, with these items of the plan kept. Nothing is recorded.
 [[nodiscard]] RunResult run_again(const RunResult& first, const KeptItems& keep);

@@ -20,14 +20,15 @@ namespace {
 // One row without the shadow rays and lights at points of these materials, and where each pixel begins in it.
 processors::LogRow strip_row(const std::vector<bool>& materials, const processors::LogRow& row) {
   using processors::Step;
-  processors::LogRow kept;
+  std::vector<std::uint32_t> words;
+  std::vector<std::uint32_t> begin;
   bool unlit = false;    // the current point has one of these materials
   bool leaving = false;  // inside a ray that is left out
   std::size_t pixel = 0;
   std::size_t at = 0;
   for (; at < row.words.size(); at += processors::step_words(&row.words[at])) {
     for (; row.begin[pixel] <= at && pixel + 1 < row.begin.size(); ++pixel) {
-      kept.begin.push_back(static_cast<std::uint32_t>(kept.words.size()));
+      begin.push_back(static_cast<std::uint32_t>(words.size()));
     }
     const Step step = processors::step_of(row.words[at]);
     const std::uint32_t operand = processors::operand_of(row.words[at]);
@@ -41,11 +42,11 @@ processors::LogRow strip_row(const std::vector<bool>& materials, const processor
       continue;
     }
     for (std::size_t word = 0; word < processors::step_words(&row.words[at]); ++word) {
-      kept.words.push_back(row.words[at + word]);
+      words.push_back(row.words[at + word]);
     }
   }
-  kept.begin.resize(row.begin.size(), static_cast<std::uint32_t>(kept.words.size()));
-  return kept;
+  begin.resize(row.begin.size(), static_cast<std::uint32_t>(words.size()));
+  return {{words.begin(), words.end()}, {begin.begin(), begin.end()}};
 }
 
 std::string difference_of_images(const processors::Image& a, const processors::Image& b) {
@@ -77,7 +78,9 @@ std::string difference_of_frames(const FunctionalRun& planned, const FunctionalR
 }
 
 std::string machine_of(const RunResult& result) {
-  return nlohmann::ordered_json::parse(json_of(result))["machine"].dump();
+  nlohmann::ordered_json machine = nlohmann::ordered_json::parse(json_of(result))["machine"];
+  machine.erase("what_helps");  // it is measured once, and on other machines
+  return machine.dump();
 }
 
 class Verifier {

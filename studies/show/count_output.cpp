@@ -25,6 +25,8 @@ std::string_view name_of(memory::RecordKind kind) {
   return memory::record_kind_names[static_cast<std::size_t>(kind)];
 }
 
+std::string_view work_of(const AttributionRow& row) { return row.splitting ? "split" : "trace"; }
+
 CacheCountResult::ByClass all_classes(const CacheCountResult& counts) {
   CacheCountResult::ByClass sum{};
   for (const CacheCountResult::ByClass& kind : *counts.miss_classes) {
@@ -86,11 +88,23 @@ void attribution_lines(std::string& text, const std::vector<AttributionRow>& row
   for (const auto& [level, counts] : sums_by(rows, [](const AttributionRow& row) { return row.level; })) {
     line(level == 0 ? "materials, texels" : "level " + std::to_string(level), counts);
   }
-  for (const auto& [ray, counts] : sums_by(rows, [](const AttributionRow& row) { return row.ray; })) {
+  std::vector<AttributionRow> traced;
+  AttributionCounts splitting;
+  for (const AttributionRow& row : rows) {
+    if (row.splitting) {
+      sim::merge(splitting, row.counts);
+    } else {
+      traced.push_back(row);
+    }
+  }
+  for (const auto& [ray, counts] : sums_by(traced, [](const AttributionRow& row) { return row.ray; })) {
     line(std::string(processors::ray_kind_names[static_cast<std::size_t>(ray)]) + " rays", counts);
   }
-  for (const auto& [bounce, counts] : sums_by(rows, [](const AttributionRow& row) { return row.bounce; })) {
+  for (const auto& [bounce, counts] : sums_by(traced, [](const AttributionRow& row) { return row.bounce; })) {
     line("bounce " + std::to_string(bounce), counts);
+  }
+  if (traced.size() != rows.size()) {
+    line("splitting branches", splitting);
   }
 }
 
@@ -115,7 +129,8 @@ nlohmann::ordered_json counts_json(const processors::MachineConfig& machine, con
           rows.emplace_back(Json{{"record", name_of(row.record)},
                                  {"level", row.level},
                                  {"ray", processors::ray_kind_names[static_cast<std::size_t>(row.ray)]},
-                                 {"bounce", row.bounce}});
+                                 {"bounce", row.bounce},
+                                 {"work", work_of(row)}});
       add_counters(cell, row.counts);
     }
     object["attribution"] = rows;
@@ -161,7 +176,8 @@ Table attribution_table(const std::vector<AttributionRow>& rows) {
       {"level", ColumnType::integer, "1",
        "level of the tree node it was read for; 0 for materials and texels"},
       {"ray", ColumnType::text, "", "kind of ray"},
-      {"bounce", ColumnType::integer, "1", "surface points between the eye and the ray's origin"}};
+      {"bounce", ColumnType::integer, "1", "surface points between the eye and the ray's origin"},
+      {"work", ColumnType::text, "", "trace: the ray's steps; split: splitting a branch for it"}};
   for (const auto& counter : AttributionCounts::counters()) {
     columns.push_back({json_name(counter), ColumnType::integer, std::string(counter.unit),
                        std::string(counter.description)});
@@ -170,7 +186,7 @@ Table attribution_table(const std::vector<AttributionRow>& rows) {
   for (const AttributionRow& row : rows) {
     std::vector<Cell> cells = {std::string(name_of(row.record)), std::int64_t{row.level},
                                std::string(processors::ray_kind_names[static_cast<std::size_t>(row.ray)]),
-                               std::int64_t{row.bounce}};
+                               std::int64_t{row.bounce}, std::string(work_of(row))};
     sim::for_each_counter(row.counts,
                           [&](const auto& /*counter*/, std::int64_t value) { cells.emplace_back(value); });
     table.add_row(std::move(cells));

@@ -10,6 +10,7 @@
 #include "studies/show/context_output.h"
 #include "studies/show/count_output.h"
 #include "studies/show/flow_output.h"
+#include "studies/show/helps_output.h"
 #include "studies/show/json_parts.h"
 #include "studies/show/scaling_output.h"
 #include "studies/show/working_set_output.h"
@@ -22,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int schema_version = 1;
+constexpr int schema_version = 2;
 // Beyond this many nodes or clusters their own figures are left out: sums remain.
 constexpr std::size_t most_listed = 4096;
 
@@ -205,33 +206,31 @@ Json files_json(const std::map<std::string, std::string>& files) {
 std::string json_of(const RunResult& r, const std::map<std::string, std::string>& files) {
   const processors::MachineResult& timed = r.timed;
   const Utilisation used = utilisation_of(r.machine, timed);
-  Json machine = {
-      {"scheme", processors::scheme_names[static_cast<std::size_t>(r.machine.scheme)]},
-      {"clusters", r.machine.clusters},
-      {"nodes", r.machine.nodes},
-      {"frame_time_ps", timed.end},
-      {"node_clock_period_ps", r.machine.clock.period()},
-      {"one_node_time_ps", r.scaling.one_node_end},
-      {"speed_up", optional_json(r.scaling.speed_up)},
-      {"efficiency", optional_json(r.scaling.efficiency)},
-      {"karp_flatt_serial_fraction", optional_json(r.scaling.serial_fraction)},
-      {"speed_up_loss", loss_json(r)},
-      {"bounds", bounds_json(r)},
-      {"limit",
-       {{"what", name_of(r.finding.limit)}, {"share", r.finding.share}, {"sentence", r.finding.sentence}}},
-      {"interconnect_utilisation", optional_json(used.interconnect)},
-      {"busiest_bank_utilisation", used.bank},
-      {"mean_bank_utilisation", used.mean_bank},
-      {"packets", timed.packets},
-      {"host", counters_json(timed.host)},
-      {"database_bytes", timed.database_bytes},
-      {"database_copies", timed.copies},
-      {"unloaded_miss_ps", timed.unloaded_miss},
-      {"time_ps", named(processors::activity_names, timed.time())},
-      {"steps", counters_json(timed.steps())},
-      {"references", reference_json(timed)},
-      {"per_cluster", clusters_json(timed)},
-      {"per_node", nodes_json(timed)}};
+  Json machine = {{"scheme", processors::scheme_names[static_cast<std::size_t>(r.machine.scheme)]},
+                  {"clusters", r.machine.clusters},
+                  {"nodes", r.machine.nodes},
+                  {"frame_time_ps", timed.end},
+                  {"node_clock_period_ps", r.machine.clock.period()},
+                  {"one_node_time_ps", r.scaling.one_node_end},
+                  {"speed_up", optional_json(r.scaling.speed_up)},
+                  {"efficiency", optional_json(r.scaling.efficiency)},
+                  {"karp_flatt_serial_fraction", optional_json(r.scaling.serial_fraction)},
+                  {"speed_up_loss", loss_json(r)},
+                  {"bounds", bounds_json(r)},
+                  {"what_helps", r.helps ? helps_json(*r.helps) : Json(nullptr)},
+                  {"interconnect_utilisation", optional_json(used.interconnect)},
+                  {"busiest_bank_utilisation", used.bank},
+                  {"mean_bank_utilisation", used.mean_bank},
+                  {"packets", timed.packets},
+                  {"host", counters_json(timed.host)},
+                  {"database_bytes", timed.database_bytes},
+                  {"database_copies", timed.copies},
+                  {"unloaded_miss_ps", timed.unloaded_miss},
+                  {"time_ps", named(processors::activity_names, timed.time())},
+                  {"steps", counters_json(timed.steps())},
+                  {"references", reference_json(timed)},
+                  {"per_cluster", clusters_json(timed)},
+                  {"per_node", nodes_json(timed)}};
   if (timed.build.sharing != processors::Sharing::given) {
     machine["build"] = build_json(timed.build, timed.nodes.size() <= most_listed);
   }

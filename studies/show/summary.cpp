@@ -13,6 +13,7 @@
 #include "studies/show/context_output.h"
 #include "studies/show/count_output.h"
 #include "studies/show/flow_output.h"
+#include "studies/show/helps_output.h"
 #include "studies/show/scaling_output.h"
 #include "studies/show/working_set_output.h"
 #include "studies/tables/text_units.h"
@@ -259,7 +260,9 @@ std::string summary_of(const RunResult& r) {
   text += flow_lines(r.machine, r.timed);
   text += bound_lines(r);
   text += record_lines(r);
-  fmt::format_to(out, "\nlimited by    {}\n", r.finding.sentence);
+  if (r.helps) {
+    text += helps_lines(*r.helps);
+  }
   return text;
 }
 

@@ -11,7 +11,7 @@
 
 namespace marti::studies {
 
-/// A part of a result. Fields are named by their path: "machine.limit.sentence".
+/// A part of a result. Fields are named by their path: "machine.what_helps.sentence".
 class RunJson {
  public:
   RunJson(nlohmann::ordered_json json, std::string file) : json_(std::move(json)), file_(std::move(file)) {}

@@ -103,7 +103,7 @@ TEST(CacheCommand, RefusesWhatCannotBeBuiltOrCounted) {
   refused(" --set cache.ways=3", "cache.size");
   refused(" --set interconnect.kind=ideal", "l2.sharing");
   refused(" --set database.placement=replicated", "l2.sharing");
-  refused(" --set build.sharing=shared", "count.miss_classes");
+  refused(" --set count.working_set=true --set build.sharing=shared", "count.working_set");
   refused(" --set l2.sharing=none --set l2.ways=2", "l2.ways");
   refused(" --set count.working_set=true --set node.contexts=2", "count.working_set");
 }

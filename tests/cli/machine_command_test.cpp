@@ -38,7 +38,7 @@ TEST(MachineCommand, ThePipelineTakesTheStepsOfTheImageSchemeAndSaysHowBusyItsSt
                                                       flow["contributions"].get<std::int64_t>());
 }
 
-TEST(MachineCommand, APipelineIsLimitedByItsSlowestStage) {
+TEST(MachineCommand, MoreNodesOfItsSlowestStageHelpAPipeline) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "pipeline.toml";
   const auto machine_with = [&](const std::string& stages) {
     const Outcome outcome = marti("run --json " + quoted(config) + small_teapot + stages);
@@ -47,8 +47,12 @@ TEST(MachineCommand, APipelineIsLimitedByItsSlowestStage) {
   };
   const nlohmann::json few =
       machine_with(" --set pipeline.search=12 --set pipeline.nearest=3 --set pipeline.shade=1");
-  EXPECT_EQ(few["limit"]["what"], "slowest_part");
-  EXPECT_NE(few["limit"]["sentence"].get<std::string>().find("nearest"), std::string::npos);
+  const nlohmann::json& helps = few["what_helps"];
+  EXPECT_EQ(helps["resources"][0]["resource"], "pipeline.nearest");
+  EXPECT_EQ(helps["resources"][0]["step"]["keys"]["pipeline.nearest"]["to"], "4");
+  EXPECT_TRUE(
+      helps["sentence"].get<std::string>().starts_with("machine.nodes 16 -> 17, pipeline.nearest 3 -> 4"))
+      << helps["sentence"];
   const nlohmann::json more =
       machine_with(" --set pipeline.search=8 --set pipeline.nearest=6 --set pipeline.shade=2");
   EXPECT_GT(few["frame_time_ps"].get<double>(), 1.5 * more["frame_time_ps"].get<double>());

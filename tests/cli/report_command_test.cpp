@@ -100,10 +100,13 @@ TEST_F(ReportCommand, ReportsARun) {
   const json result = json::parse(read(run / "result.json"));
   const std::string page = read(run / "report.html");
   EXPECT_NE(made.output.find("wrote " + (run / "report.html").string()), std::string::npos) << made.output;
-  EXPECT_NE(page.find(result["machine"]["limit"]["sentence"].get<std::string>()), std::string::npos);
+  std::string helps = "What helps: " + result["machine"]["what_helps"]["sentence"].get<std::string>() + ".";
+  helps.replace(helps.find("->"), 2, "-&gt;");
+  EXPECT_NE(page.find(helps), std::string::npos) << helps;
+  EXPECT_NE(page.find("What would make the frame shorter"), std::string::npos);
+  const json data = data_of(run / "report.html");
   EXPECT_NE(page.find("<img alt=\"The image\" src=\"data:image/png;base64,"), std::string::npos);
   EXPECT_NE(page.find("Heat map: misses"), std::string::npos);
-  const json data = data_of(run / "report.html");
   for (const char* name :
        {"run_cycles", "run_loss", "run_nodes", "run_references", "run_level_accesses", "run_level_hit_ratio",
         "run_waits", "run_tree", "run_level_memory", "run_memory", "working_set"}) {
@@ -274,7 +277,7 @@ TEST_F(ReportCommand, EscapesWhatASceneIsCalled) {
   const fs::path run = made_run();
   json result = json::parse(read(run / "result.json"));
   result["scene"]["name"] = "</script><script>alert(1)</script>";
-  result["machine"]["limit"]["sentence"] = "<img src=x onerror=alert(1)>";
+  result["machine"]["what_helps"]["sentence"] = "<img src=x onerror=alert(1)>";
   write(run / "result.json", result.dump());
   ASSERT_EQ(marti("report " + quoted(run)).status, 0);
   const std::string page = read(run / "report.html");

@@ -23,11 +23,16 @@ TEST(SweepConfig, RunAndTraceTakeTheFilesOwnMachine) {
   write(plain, machine);
   write(sweep, machine +
                    "[sweep]\nfilter = \"cache.ways < 3\"\n[sweep.axes]\nmachine.nodes = [1, 2]\n"
-                   "anything = \"goes\"\n[prices]\nnode = 3\n");
+                   "anything = \"goes\"\n");
   const Outcome expected = marti("run " + quoted(plain) + small_image);
   const Outcome found = marti("run " + quoted(sweep) + small_image);
   EXPECT_EQ(found.status, 0) << found.output;
   EXPECT_EQ(found.output, expected.output);
+  const Outcome priced = marti("run " + quoted(sweep) + small_image + " --set prices.node=3");
+  EXPECT_EQ(priced.status, 0) << priced.output;
+  const std::size_t advice = priced.output.find("what helps");
+  EXPECT_EQ(priced.output.substr(0, advice), expected.output.substr(0, expected.output.find("what helps")));
+  EXPECT_NE(priced.output.find(", without a price", advice), std::string::npos) << priced.output;
   const Outcome trace =
       marti("trace " + quoted(sweep) + small_image + " -o " + quoted(directory.path() / "trace"));
   EXPECT_EQ(trace.status, 0) << trace.output;

@@ -31,7 +31,7 @@ struct ReportAxis {
   [[nodiscard]] double number(std::size_t value) const;  ///< of a numeric axis
 };
 
-/// What is needed, beside figures, to say what limits a machine of the image scheme.
+/// What is needed, beside figures, to say where most of the time of an image machine goes.
 struct ImageMachine {
   processors::Placement placement = processors::Placement::shared;
   memory::InterconnectKind interconnect = memory::InterconnectKind::bus;

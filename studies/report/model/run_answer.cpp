@@ -15,13 +15,6 @@ constexpr double longest = 0x1p62;     // of times, ps
 constexpr double most_nodes = 0x1p24;  // of a machine, and so of its clusters
 constexpr double most_figure = 1e12;   // of ratios: far beyond any
 
-std::string with_capital(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') {
-    text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  }
-  return text;
-}
-
 // Where most of the lost speed-up went.
 std::string largest_loss(const RunJson& run) {
   std::pair<std::string, double> largest = {"", 0.0};
@@ -94,8 +87,8 @@ std::vector<std::string> answer_of(const RunJson& run) {
                          100.0 * run.required_number("machine.efficiency", 0.0, most_figure));
   }
   answer.push_back(first + ".");
-  if (const std::string limit = run.text("machine.limit.sentence"); !limit.empty()) {
-    answer.push_back(with_capital("what limits it, and what to change: " + limit + "."));
+  if (const std::string helps = run.text("machine.what_helps.sentence"); !helps.empty()) {
+    answer.push_back("What helps: " + helps + ".");
   }
   for (const std::string& sentence : {largest_loss(run), bound_sentence(run), saturation_sentence(run)}) {
     if (!sentence.empty()) {

@@ -108,8 +108,8 @@ std::string frame_text(const ReportPoints& sweep, std::size_t frame) {
   return text;
 }
 
-// What limits the point, by a machine with only the parts that find_limit() reads; what it reads only as a
-// sum is given to one node.
+// Where most of the time of the point's nodes goes, by a machine with only the parts that find_limit() reads;
+// what it reads only as a sum is given to one node.
 std::optional<Finding> limit_of(const ReportPoint& point) {
   constexpr double most_nodes = 65'536;  // each takes memory
   const double nodes = point.figure("nodes");
@@ -209,7 +209,7 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
         "the shortest time are compared here{}.",
         sweep.frames, frame_text(sweep, fastest.frame)));
   }
-  add_limit("What limits it", fastest);
+  add_limit("The largest part of its nodes' time", fastest);
   if (chosen.knee != chosen.fastest) {
     const double time = knee.figure("end") / fastest.figure("end");
     const double price = price_of(knee) / price_of(fastest);  // dearer than the knee: above 0
@@ -219,7 +219,7 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
                     "{:.2f} times the time of the fastest for {:.1f} % of its price: {}.",
                     chosen.front.size(), time_text(knee.figure("end")), speed_text(knee), unit,
                     price_of(knee), time, 100.0 * price, place_text(sweep, knee)));
-    add_limit("What limits that one", knee);
+    add_limit("The largest part of the nodes' time of that one", knee);
   }
   if (const Advice steps = advice(sweep, knee); !steps.text.empty()) {
     answer.push_back(fmt::format("What to change there, one step at a time: {}.", steps.text));

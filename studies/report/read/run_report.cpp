@@ -6,6 +6,7 @@
 #include "sim/error.h"
 #include "sim/sha256.h"
 #include "studies/report/model/chart_library.h"
+#include "studies/report/model/helps_table.h"
 #include "studies/report/model/run_answer.h"
 #include "studies/report/model/run_charts.h"
 #include "studies/report/read/read_report.h"
@@ -120,6 +121,9 @@ ReportData read_run_report(const fs::path& directory) {
   report.answer = answer_of(run);
   add_run_charts(run, report);
   add_files(directory, run, report);
+  if (Table helps = helps_table(run); !helps.rows().empty()) {
+    report.tables.push_back({std::move(helps), false});
+  }
   report.tables.push_back({plan_table(run), true});
   report.tables.push_back({figures_table(run), true});
   add_configuration(run, report);

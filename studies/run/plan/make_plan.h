@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,8 +54,9 @@ void drop_parts(const Plan& plan, const SceneNeeds& needs, const scenes::ImageDe
                 scenes::Scene& scene);
 
 /// Fills in what the frame shows to have been saved. Throws InternalError where the frame has used what was
-/// left out.
+/// left out. `totals` and `shades` are what processors::totals_of() says of the frame's log.
 void count_saved(Plan& plan, const SceneNeeds& needs, const scenes::Scene& scene,
-                 const processors::Frame& frame);
+                 const processors::Frame& frame, const processors::LogTotals& totals,
+                 std::span<const std::uint64_t> shades);
 
 }  // namespace marti::studies

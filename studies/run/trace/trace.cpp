@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "processors/machine/combinations.h"
 #include "processors/passes/reference_trace.h"
 #include "processors/replay/replay.h"
 #include "sim/error.h"
@@ -24,16 +25,18 @@ namespace marti::studies {
 
 namespace {
 
+using processors::Feature;
+
 void refuse_other_machines(const sim::Config& config, const processors::MachineConfig& machine) {
   if (machine.scheme != processors::Scheme::image) {
     config.fail("machine.scheme", "only nodes of the image scheme have references that a trace can hold");
   }
-  if (machine.contexts > 1 || machine.prefetch.on()) {
-    config.fail(
-        machine.contexts > 1         ? "node.contexts"
-        : machine.prefetch.next_line ? "prefetch.next_line"
-                                     : "prefetch.children",
-        "a trace is in the order of the program, which is not that in which such a node refers to lines");
+  for (const Feature feature : {Feature::contexts, Feature::prefetch}) {
+    if (has(machine, feature)) {
+      config.fail(
+          key_of(machine, feature),
+          "a trace is in the order of the program, which is not that in which such a node refers to lines");
+    }
   }
   if (machine.build.sharing != processors::Sharing::given) {
     config.fail("build.sharing",

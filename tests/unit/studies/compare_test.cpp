@@ -74,7 +74,7 @@ TEST_P(ComparedMachines, AreEqualInARunAndInASweep) {
   for (const auto& counter : frame_row(run.functional, 0).counters) {
     there += counter ? 1 : 0;
   }
-  constexpr std::size_t not_in_runs = 52;
+  constexpr std::size_t not_in_runs = 59;
   EXPECT_GE(found["equal_figures"].get<std::size_t>() + not_in_runs, there);
   EXPECT_GT(found["equal_figures"].get<std::size_t>(), 90U);
   EXPECT_EQ(json::parse(compare_results(b, a, {true, true}))["equal"].size(), found["equal"].size());
@@ -178,7 +178,7 @@ TEST(Compare, RefusesWhatIsNoResult) {
   refused(good.substr(0, good.size() / 2), "is not JSON");
   refused("[1, 2]", "is no JSON object");
   refused("{}", "marti");
-  refused("{\"marti\": {\"schema\": 2, \"version\": \"9\"}}", "schema 2");
+  refused("{\"marti\": {\"schema\": 3, \"version\": \"9\"}}", "schema 3");
   refused("{\"marti\": {\"schema\": \"1\"}}", "marti.schema");
   refused("{\"marti\": {\"schema\": 1}}", "config");
   refused("{\"marti\": {\"schema\": 1}, \"config\": {\"keys\": {\"a.b\": 3}}}", "config.keys.a.b");

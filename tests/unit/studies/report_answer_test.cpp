@@ -99,7 +99,7 @@ TEST(LimitSentence, SaysNothingOfWhatTheStoreLacks) {
   point.figures["nodes"] = 1e12;
   EXPECT_EQ(limit_sentence(point), "");
   ReportPoints sweep = line_of({{1, 100}, {2, 50}});
-  EXPECT_EQ(all_of(sweep).find("What limits"), std::string::npos);
+  EXPECT_EQ(all_of(sweep).find("The largest part of its nodes' time"), std::string::npos);
 }
 
 TEST(Choose, TakesTheFrontOfOneFrameOnly) {

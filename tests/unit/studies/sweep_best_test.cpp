@@ -6,7 +6,7 @@
 
 #include <map>
 
-#include "studies/sweep/plan/sweep_cost.h"
+#include "studies/keys/machine_cost.h"
 #include "studies/sweep/store/sweep_metrics.h"
 #include "tests/support/user_error.h"
 

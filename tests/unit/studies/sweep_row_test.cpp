@@ -158,15 +158,12 @@ RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheMemory, (std::uint64_t seed)) {
   there("contexts_", !result.contexts.nodes.empty());
   there("sharing_", false);
   there("camera_ray_", false);
+  there("split_", false);
   RC_ASSERT(values.at("flow_taken").has_value() == !result.flow.nodes.empty());
 }
 
-TEST(SweepRows, WhatIsCountedOnlyWhenAskedIsThere) {
-  test::Random random(11);
-  const processors::WorkLog log = test::random_tree_log(random, 9, 9);
-  MachineConfig machine;
-  machine.nodes = 3;
-  machine.count = {true, true, true};
+// The counts of a machine that counts everything add up to its misses.
+void expect_counts_that_add_up(const processors::WorkLog& log, const MachineConfig& machine) {
   const MachineResult result = processors::replay(log, machine);
   auto values = named(sweep_row(machine, result));
   std::int64_t classed = 0;
@@ -179,7 +176,22 @@ TEST(SweepRows, WhatIsCountedOnlyWhenAskedIsThere) {
   for (const std::string_view ray : processors::ray_kind_names) {
     attributed += values.at(std::string(ray) + "_ray_misses").value_or(0);
   }
+  const std::int64_t split = values.at("split_misses").value_or(-1);
+  EXPECT_EQ(split > 0, machine.build.sharing != processors::Sharing::given);
+  attributed += split;
   EXPECT_EQ(attributed, values.at("misses"));
+}
+
+TEST(SweepRows, WhatIsCountedOnlyWhenAskedIsThere) {
+  test::Random random(11);
+  const processors::WorkLog log = test::random_tree_log(random, 9, 9);
+  MachineConfig machine;
+  machine.nodes = 3;
+  machine.count = {true, true, true};
+  for (const processors::Sharing sharing : {processors::Sharing::given, processors::Sharing::shared}) {
+    machine.build.sharing = sharing;
+    expect_counts_that_add_up(log, machine);
+  }
 }
 
 TEST(SweepRows, ColumnsAreDescribedOnce) {

@@ -1,0 +1,82 @@
+#include "studies/helps/change.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "sim/error.h"
+#include "studies/keys/machine_keys.h"
+
+namespace marti::studies {
+
+namespace {
+
+// `"16 KiB"` without its quotation marks.
+std::string_view unquoted(std::string_view text) {
+  const bool quoted = text.size() >= 2 && text.starts_with('"') && text.ends_with('"');
+  return quoted ? text.substr(1, text.size() - 2) : text;
+}
+
+}  // namespace
+
+std::optional<Change> Changer::with(const std::vector<NewValue>& values) const {
+  std::vector<KeyChange> keys;
+  std::vector<sim::Setting> settings;
+  for (const NewValue& value : values) {
+    const std::size_t index = index_of(value.key);
+    const sim::Key& key = config_.schema().keys()[index];
+    if (!sim::in_range(key, value.to)) {
+      return std::nullopt;
+    }
+    const sim::Value& from = value.from ? *value.from : now(value.key);
+    if (from != value.to) {
+      keys.push_back({key.name, sim::print_value(key.type, from), sim::print_value(key.type, value.to)});
+    }
+    settings.push_back({index, {value.to}, 0, key.name});
+  }
+  return made(std::move(keys), std::move(settings));
+}
+
+std::size_t Changer::index_of(std::string_view key) const {
+  const std::optional<std::size_t> index = config_.schema().find(key);
+  sim::ensure(index.has_value(), "a key that is to change is not declared");
+  return *index;
+}
+
+std::optional<Change> Changer::both(const Change& a, const Change& b) const {
+  std::vector<KeyChange> keys = a.keys;
+  keys.insert(keys.end(), b.keys.begin(), b.keys.end());
+  std::vector<sim::Setting> settings = a.settings;
+  for (const sim::Setting& setting : b.settings) {
+    if (std::any_of(a.settings.begin(), a.settings.end(),
+                    [&](const sim::Setting& other) { return other.key == setting.key; })) {
+      return std::nullopt;
+    }
+    settings.push_back(setting);
+  }
+  return made(std::move(keys), std::move(settings));
+}
+
+std::optional<Change> Changer::made(std::vector<KeyChange> keys, std::vector<sim::Setting> settings) const {
+  if (keys.empty()) {
+    return std::nullopt;
+  }
+  sim::Config config = config_.with(settings);
+  try {
+    return Change{std::move(keys), std::move(settings), read_machine(config)};
+  } catch (const sim::UserError&) {
+    return std::nullopt;
+  }
+}
+
+std::string describe(const std::vector<KeyChange>& keys) {
+  std::string text;
+  for (const KeyChange& key : keys) {
+    text +=
+        fmt::format("{}{} {} -> {}", text.empty() ? "" : ", ", key.key, unquoted(key.from), unquoted(key.to));
+  }
+  return text;
+}
+
+}  // namespace marti::studies

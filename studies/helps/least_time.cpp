@@ -1,0 +1,20 @@
+#include "studies/helps/least_time.h"
+
+namespace marti::studies {
+
+using processors::Activity;
+
+sim::Ticks least_time(const processors::MachineConfig& machine, const processors::MachineResult& result,
+                      const processors::MachineConfig& changed) {
+  const processors::TimeDivision time = result.time();
+  sim::Ticks steps = 0;
+  for (const Activity activity : {Activity::traversal, Activity::intersection, Activity::shading}) {
+    steps = sim::add_ticks(steps, time[static_cast<std::size_t>(activity)]);
+  }
+  const std::int64_t cycles = steps / machine.clock.period();
+  const std::int64_t nodes = changed.all_nodes();
+  // Whole cycles of each node, so that the product cannot overflow where the frame itself has not.
+  return changed.clock.cycles(cycles / nodes) + changed.clock.cycles(cycles % nodes) / nodes;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,297 @@
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "studies/helps/least_time.h"
+#include "studies/helps/resources.h"
+#include "studies/helps/verdict.h"
+#include "studies/helps/what_helps.h"
+
+namespace marti::studies {
+
+namespace {
+
+// Pairs are tried among so many parts of the machine, those that would gain most if they cost nothing.
+constexpr std::size_t most_in_pairs = 4;
+
+// So many replays are begun together, on any number of cores. Which steps come next depends on them.
+constexpr std::size_t begun_together = 4;
+
+// A budget for fewer replays than this says too little about a machine.
+constexpr Work least_replays = 3;
+
+// This part of the budget is kept for resources at their best.
+constexpr Work part_for_best = 4;
+
+double saved_of(sim::Ticks before, sim::Ticks after) {
+  return 1.0 - static_cast<double>(after) / static_cast<double>(before);
+}
+
+double saved_by(const std::optional<MeasuredChange>& change) {
+  return change ? change->saved.value_or(0.0) : 0.0;
+}
+
+class Measurement {
+ public:
+  Measurement(const Changer& changer, const std::optional<Prices>& prices,
+              const processors::MachineConfig& machine, const processors::MachineResult& result,
+              const SharedLog& shared, Work budget)
+      : changer_(changer),
+        prices_(prices),
+        machine_(machine),
+        result_(result),
+        shared_(shared),
+        limited_(budget != unlimited_work),
+        budget_(budget) {
+    what_.end = result.end;
+    for (Resource& resource : resources_of(changer, machine, result)) {
+      Case& made = cases_.emplace_back();
+      made.help = {resource.name, resource.part, unmeasured(resource.step, resource),
+                   unmeasured(resource.best, resource)};
+      made.resource = std::move(resource);
+    }
+  }
+
+  WhatHelps made() {
+    if (limited_ && budget_ / least_replays < replay_work(result_, stripped_for(shared_, machine_))) {
+      what_.measured = false;
+      for (const Replay& one : in_order()) {
+        one.into->outcome = Outcome::work;
+      }
+      take_helps();
+      return std::move(what_);
+    }
+    measure_steps();
+    std::stable_sort(cases_.begin(), cases_.end(),
+                     [&](const Case& a, const Case& b) { return worth(a.help) > worth(b.help); });
+    take_helps();
+    const std::size_t named = best_helps(what_).size();
+    measure_best(named);
+    if (named == 0) {
+      find_pair();
+    }
+    take_helps();
+    return std::move(what_);
+  }
+
+ private:
+  struct Case {
+    Resource resource;
+    Help help;
+  };
+  struct Replay {
+    const processors::MachineConfig* machine;
+    MeasuredChange* into;
+    double share = 0.0;  // how busy the part is
+  };
+
+  // What is known of a change without a replay.
+  [[nodiscard]] std::optional<MeasuredChange> unmeasured(const std::optional<Change>& change,
+                                                         const Resource& resource) const {
+    if (!change) {
+      return std::nullopt;
+    }
+    MeasuredChange measured;
+    measured.keys = change->keys;
+    if (resource.same_frame) {
+      measured.outcome = Outcome::measured;
+      measured.end = result_.end;
+      measured.saved = measured.most_saved = 0.0;
+    } else if (resource.same_work) {
+      measured.most_saved = saved_of(result_.end, least_time(machine_, result_, change->machine));
+    }
+    if (prices_) {
+      measured.price = cost_of(*prices_, change->machine) - cost_of(*prices_, machine_);
+    }
+    return measured;
+  }
+
+  // Whether there is room for the replay, and work left beyond `kept` for one that is like the machine's own.
+  bool can_begin(const Replay& replay, Work kept, Work& begun) {
+    if (!has_room(shared_, *replay.machine)) {
+      replay.into->outcome = Outcome::memory;
+      return false;
+    }
+    const Work work = replay_work(result_, stripped_for(shared_, *replay.machine));
+    if (limited_ && work + begun + kept > budget_) {
+      replay.into->outcome = Outcome::work;
+      return false;
+    }
+    begun += work;
+    return true;
+  }
+
+  void replay(const std::vector<Replay>& wanted, Work kept = 0) {
+    Work begun = 0;
+    std::vector<const processors::MachineConfig*> machines;
+    std::vector<MeasuredChange*> changes;
+    for (const Replay& one : wanted) {
+      if (can_begin(one, kept, begun)) {
+        machines.push_back(one.machine);
+        changes.push_back(one.into);
+      }
+    }
+    const std::vector<Replayed> replayed = replay_all(shared_, machines);
+    for (std::size_t i = 0; i < replayed.size(); ++i) {
+      MeasuredChange& change = *changes[i];
+      change.end = replayed[i].end;
+      change.outcome = replayed[i].end         ? Outcome::measured
+                       : replayed[i].no_memory ? Outcome::memory
+                                               : Outcome::uncounted;
+      if (change.end) {
+        change.saved = saved_of(result_.end, *change.end);
+      }
+      if (limited_) {
+        budget_ -= std::min(budget_, replayed[i].work);
+      }
+    }
+  }
+
+  // The steps, and the resources that have none at their best, in the order in which they are replayed: those
+  // first that can save most, by the nodes' own work; of equals those that are busiest.
+  std::vector<Replay> in_order() {
+    std::vector<Replay> wanted;
+    for (Case& one : cases_) {
+      const std::optional<Change>& change = one.resource.step ? one.resource.step : one.resource.best;
+      MeasuredChange& into = one.help.step ? *one.help.step : *one.help.best;
+      if (into.outcome != Outcome::measured) {
+        wanted.push_back({&change->machine, &into, share_of(one.help.part, machine_, result_)});
+      }
+    }
+    std::stable_sort(wanted.begin(), wanted.end(), [](const Replay& a, const Replay& b) {
+      return std::pair(a.into->most_saved, a.share) > std::pair(b.into->most_saved, b.share);
+    });
+    return wanted;
+  }
+
+  // What a step must be able to save to be worth a replay. With prices any that is worth naming may be the
+  // advice, because a smaller gain may be the cheaper one.
+  [[nodiscard]] double least_wanted() const {
+    std::vector<double> saved;
+    for (const Case& one : cases_) {
+      saved.push_back(saved_by(one.help.step));
+    }
+    if (prices_ || saved.size() < most_named) {
+      return worth_naming;
+    }
+    std::sort(saved.begin(), saved.end(), std::greater<>());
+    return std::max(worth_naming, saved[most_named - 1]);
+  }
+
+  void measure_steps() {
+    const std::vector<Replay> wanted = in_order();
+    const Work kept = limited_ ? budget_ / part_for_best : 0;
+    std::size_t next = 0;
+    while (next < wanted.size() && wanted[next].into->most_saved >= least_wanted()) {
+      std::vector<Replay> together;
+      while (next < wanted.size() && together.size() < begun_together &&
+             wanted[next].into->most_saved >= least_wanted()) {
+        together.push_back(wanted[next++]);
+      }
+      replay(together, kept);
+    }
+  }
+
+  // What the named resources give at their best; if none is named, what all do.
+  void measure_best(std::size_t named) {
+    std::vector<Replay> replays;
+    for (std::size_t i = 0; i < (named == 0 ? cases_.size() : named); ++i) {
+      std::optional<MeasuredChange>& best = cases_[i].help.best;
+      if (best && best->outcome == Outcome::needless && best->most_saved >= worth_naming) {
+        replays.push_back({&cases_[i].resource.best->machine, &*best});
+      }
+    }
+    replay(replays);
+  }
+
+  // The resources that would gain most if they cost nothing, one of each part: what binds together with a bus
+  // is not another property of the bus.
+  [[nodiscard]] std::vector<const Case*> best_of_parts() const {
+    std::vector<const Case*> sorted;
+    for (const Case& one : cases_) {
+      if (one.help.step && one.help.step->end && one.help.best && one.help.best->end) {
+        sorted.push_back(&one);
+      }
+    }
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Case* a, const Case* b) {
+      return saved_by(a->help.best) > saved_by(b->help.best);
+    });
+    std::vector<const Case*> best;
+    for (const Case* const one : sorted) {
+      const bool first = std::none_of(best.begin(), best.end(),
+                                      [&](const Case* other) { return other->help.part == one->help.part; });
+      if (first && best.size() < most_in_pairs) {
+        best.push_back(one);
+      }
+    }
+    return best;
+  }
+
+  void find_pair() {
+    const std::vector<const Case*> candidates = best_of_parts();
+    std::vector<HelpPair> pairs;
+    std::vector<Change> changes;
+    std::vector<double> alone;  // what the two steps of a pair save, each for itself
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      for (std::size_t j = i + 1; j < candidates.size(); ++j) {
+        const Resource& a = candidates[i]->resource;
+        const Resource& b = candidates[j]->resource;
+        if (std::optional<Change> both = changer_.both(*a.step, *b.step)) {
+          // The nodes' own work bounds the pair only if both leave the steps' cycles as they are.
+          Resource together;
+          together.same_work = a.same_work && b.same_work;
+          pairs.push_back({a.name, b.name, *unmeasured(both, together)});
+          alone.push_back(std::max(0.0, saved_by(candidates[i]->help.step)) +
+                          std::max(0.0, saved_by(candidates[j]->help.step)));
+          changes.push_back(*std::move(both));
+        }
+      }
+    }
+    std::vector<Replay> replays;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      replays.push_back({&changes[i].machine, &pairs[i].step});
+    }
+    replay(replays);
+    double most = 0.0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const double saved = pairs[i].step.saved.value_or(0.0);
+      if (saved - alone[i] >= worth_naming && saved > most) {
+        most = saved;
+        what_.pair = pairs[i];
+      }
+    }
+  }
+
+  void take_helps() {
+    what_.helps.clear();
+    for (const Case& one : cases_) {
+      what_.helps.push_back(one.help);
+    }
+  }
+
+  const Changer& changer_;
+  const std::optional<Prices>& prices_;
+  const processors::MachineConfig& machine_;
+  const processors::MachineResult& result_;
+  const SharedLog& shared_;
+  bool limited_;
+  Work budget_;  // what is left of it
+  std::vector<Case> cases_;
+  WhatHelps what_;
+};
+
+}  // namespace
+
+WhatHelps what_helps(const sim::Config& config, const std::optional<Prices>& prices,
+                     const processors::MachineConfig& machine, const processors::MachineResult& result,
+                     const SharedLog& shared, Work budget) {
+  WhatHelps what;
+  if (result.end > 0) {
+    const Changer changer(config);
+    what = Measurement(changer, prices, machine, result, shared, budget).made();
+  }
+  what.sentence = verdict(what, machine, result);
+  return what;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,70 @@
+#include "studies/helps/replays.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <new>
+
+#include "processors/replay/host_bytes.h"
+#include "sim/error.h"
+
+namespace marti::studies {
+
+namespace {
+
+using processors::MachineConfig;
+using processors::StrippedLog;
+
+// Counting changes no time.
+MachineConfig without_counting(const MachineConfig& machine) {
+  MachineConfig plain = machine;
+  plain.count = {};
+  return plain;
+}
+
+Replayed replay_one(const SharedLog& shared, const MachineConfig& machine) {
+  processors::ReplayOptions options = shared.options;
+  options.stripped = stripped_for(shared, machine);
+  try {
+    const processors::MachineResult result =
+        processors::replay(shared.log, without_counting(machine), options);
+    return {result.end, false, replay_work(result, options.stripped)};
+  } catch (const sim::UserError&) {
+    return {};
+  } catch (const std::bad_alloc&) {
+    return {std::nullopt, true, 0};
+  }
+}
+
+}  // namespace
+
+const StrippedLog* stripped_for(const SharedLog& shared, const MachineConfig& machine) {
+  const StrippedLog* const stripped = shared.stripped.get();
+  return stripped != nullptr && stripped->suits(without_counting(machine)) ? stripped : nullptr;
+}
+
+bool has_room(const SharedLog& shared, const MachineConfig& machine) {
+  return processors::host_bytes(without_counting(machine)) <= shared.memory.left();
+}
+
+std::vector<Replayed> replay_all(const SharedLog& shared, std::span<const MachineConfig* const> machines) {
+  std::uint64_t largest = 1;
+  for (const MachineConfig* const machine : machines) {
+    largest = std::max(largest, processors::host_bytes(without_counting(*machine)));
+  }
+  const auto cores = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+  const std::uint64_t at_a_time = std::clamp<std::uint64_t>(shared.memory.left() / largest, 1, cores);
+  std::vector<Replayed> replayed(machines.size());
+  tbb::task_arena arena(static_cast<int>(at_a_time));
+  arena.execute([&] {
+    tbb::parallel_for(
+        std::size_t{0}, machines.size(),
+        [&](std::size_t i) { replayed[i] = replay_one(shared, *machines[i]); }, tbb::simple_partitioner());
+  });
+  return replayed;
+}
+
+}  // namespace marti::studies

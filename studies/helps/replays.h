@@ -1,0 +1,43 @@
+// Replays of several machines at a time.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "processors/replay/replay.h"
+#include "processors/walk/stripped_log.h"
+#include "sim/memory_budget.h"
+#include "studies/helps/work.h"
+
+namespace marti::studies {
+
+/// What replays share: the work log, a stripped log for the machines that it suits (null: none), what the
+/// replays are to keep, and the memory that is left for them.
+struct SharedLog {
+  const processors::WorkLog& log;
+  std::shared_ptr<const processors::StrippedLog> stripped;
+  processors::ReplayOptions options;
+  sim::MemoryBudget memory;
+};
+
+/// The stripped log, if it suits the machine; else null.
+[[nodiscard]] const processors::StrippedLog* stripped_for(const SharedLog& shared,
+                                                          const processors::MachineConfig& machine);
+
+/// Whether simulating the machine takes no more memory than is left.
+[[nodiscard]] bool has_room(const SharedLog& shared, const processors::MachineConfig& machine);
+
+struct Replayed {
+  std::optional<sim::Ticks> end;  ///< std::nullopt: the replay was not finished
+  bool no_memory = false;         ///< because the computer ran out of memory; else its time cannot be counted
+  Work work = 0;
+};
+
+/// Replays each machine, all of which have room. As many are replayed at a time as there are cores and memory
+/// for; results do not depend on it.
+[[nodiscard]] std::vector<Replayed> replay_all(const SharedLog& shared,
+                                               std::span<const processors::MachineConfig* const> machines);
+
+}  // namespace marti::studies

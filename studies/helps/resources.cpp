@@ -1,0 +1,162 @@
+#include "studies/helps/resources.h"
+
+#include <algorithm>
+#include <string_view>
+#include <variant>
+
+#include "studies/helps/better.h"
+#include "studies/helps/cache_resources.h"
+#include "studies/helps/flow_resources.h"
+
+namespace marti::studies {
+
+namespace {
+
+using processors::MachineConfig;
+using processors::MachineResult;
+using processors::Placement;
+using processors::Scheme;
+using processors::Sharing;
+
+// Whether no write has waited for room in its node's buffer: a longer one changes nothing then. A node with
+// several contexts may do something else while one of them waits.
+bool never_full(const MachineResult& result) {
+  return result.time()[static_cast<std::size_t>(processors::Activity::queue_full_wait)] == 0;
+}
+
+// Whether no access has waited for its bank: it changes nothing then how long a bank is busy.
+bool banks_always_free(const MachineResult& result) {
+  return std::all_of(
+      result.clusters.begin(), result.clusters.end(), [](const processors::ClusterResult& cluster) {
+        return std::all_of(cluster.banks.begin(), cluster.banks.end(),
+                           [](const memory::BankStatistics& bank) { return bank.waits.sum == 0; });
+      });
+}
+
+void add_nodes(const Changer& changer, const MachineConfig& machine, const MachineResult& result,
+               std::vector<Resource>& resources) {
+  resources.push_back(faster_clock(changer, Part::nodes, "node.clock"));
+  const bool image = machine.scheme == Scheme::image;
+  // More nodes than packets have nothing to do. Nodes beside which rays move are of use without such a limit.
+  const auto packets = static_cast<std::int64_t>(result.packets / machine.clusters + 1);
+  Resource nodes = more(changer, Part::nodes, "machine.nodes",
+                        std::min<std::int64_t>(packets, processors::most_nodes / machine.clusters));
+  if (!image) {
+    nodes.best.reset();
+  }
+  resources.push_back(std::move(nodes));
+  if (image) {
+    resources.push_back(more(changer, Part::queues, "node.write_buffer"));
+    resources.back().same_frame = machine.contexts == 1 && never_full(result);
+  }
+  if (image) {
+    for (const std::string_view side : {"packets.width", "packets.height"}) {
+      const std::int64_t half = std::get<std::int64_t>(changer.now(side)) / 2;
+      resources.push_back({std::string(side), Part::nodes, changer.with({{side, half}}), std::nullopt});
+    }
+  }
+  if (machine.contexts > 1) {
+    resources.push_back(more(changer, Part::nodes, "node.contexts"));
+    resources.push_back(fewer(changer, Part::nodes, "node.switch_cycles"));
+  }
+  if (machine.prefetch.on()) {
+    resources.push_back(more(changer, Part::caches, "prefetch.outstanding"));
+  }
+}
+
+void add_local_memory(const Changer& changer, const MachineConfig& machine,
+                      std::vector<Resource>& resources) {
+  if (machine.scheme == Scheme::space || machine.placement != Placement::shared ||
+      machine.build.sharing == Sharing::private_trees) {
+    resources.push_back(faster_clock(changer, Part::local_memory, "local.clock"));
+    resources.push_back(wider(changer, Part::local_memory, "local.width"));
+    resources.push_back(fewer(changer, Part::local_memory, "local.access_cycles"));
+  }
+}
+
+// More banks than this have nothing to serve: as many as there are interleave units of the database and the
+// frame buffer, but no more than the key may have.
+std::int64_t most_banks(const Changer& changer, const MachineConfig& machine, const MachineResult& result) {
+  const std::uint64_t pixel = machine.layout.pixel_bytes + machine.layout.record_alignment - 1;
+  const std::uint64_t bytes = result.database_bytes + result.pixels * pixel;
+  const auto most = std::get<std::int64_t>(*changer.key("memory.banks").maximum);
+  return std::min(most, static_cast<std::int64_t>(bytes / machine.banks.interleave + 1));
+}
+
+void add_shared_memory(const Changer& changer, const MachineConfig& machine, const MachineResult& result,
+                       std::vector<Resource>& resources) {
+  if (machine.scheme == Scheme::space || machine.placement == Placement::distributed) {
+    return;
+  }
+  if (machine.interconnect.kind != memory::InterconnectKind::ideal) {
+    resources.push_back(wider(changer, Part::interconnect, "interconnect.width"));
+  }
+  resources.push_back(faster_clock(changer, Part::interconnect, "interconnect.clock"));
+  if (machine.interconnect.kind == memory::InterconnectKind::bus) {
+    resources.push_back(fewer(changer, Part::interconnect, "interconnect.address_cycles"));
+  } else {
+    resources.push_back(fewer(changer, Part::interconnect, "interconnect.latency_cycles"));
+  }
+  if (machine.interconnect.kind == memory::InterconnectKind::ideal) {
+    return;
+  }
+  resources.push_back(faster_clock(changer, Part::banks, "memory.clock"));
+  resources.push_back(more(changer, Part::banks, "memory.banks", most_banks(changer, machine, result)));
+  resources.push_back(fewer(changer, Part::banks, "memory.access_cycles"));
+  resources.push_back(fewer(changer, Part::banks, "memory.busy_cycles"));
+  resources.back().same_frame = banks_always_free(result);
+}
+
+void add_host(const Changer& changer, const MachineConfig& machine, std::vector<Resource>& resources) {
+  if (machine.host.assignment == processors::Assignment::dynamic) {
+    resources.push_back(fewer(changer, Part::host, "host.latency_cycles"));
+    resources.push_back(fewer(changer, Part::host, "host.occupancy_cycles"));
+  }
+}
+
+// A tree that is given costs nothing to build.
+void add_building(const Changer& changer, const MachineConfig& machine, std::vector<Resource>& resources) {
+  const processors::BuildConfig& build = machine.build;
+  if (build.sharing == Sharing::given) {
+    return;
+  }
+  const std::optional<Change> given = changer.with({{"build.sharing", std::string("given")}});
+  if (build.sharing == Sharing::none) {
+    const NewValue on_demand = {"build.initial_level", std::string("1")};
+    resources.push_back({"build.sharing", Part::building,
+                         changer.with({{"build.sharing", std::string("shared")}, on_demand}), given});
+    resources.push_back({"build.sharing, private", Part::building,
+                         changer.with({{"build.sharing", std::string("private")}, on_demand}), std::nullopt});
+    return;
+  }
+  const auto at_level = [&](std::uint32_t level) {
+    return changer.with({{"build.initial_level", std::to_string(level)}});
+  };
+  resources.push_back({"build.initial_level", Part::building, at_level(1), given});
+  if (build.initial == processors::InitialTree::level) {
+    resources.push_back(
+        {"build.initial_level, higher", Part::building, at_level(build.level + 1), std::nullopt});
+    if (build.level > 2) {
+      resources.push_back(
+          {"build.initial_level, lower", Part::building, at_level(build.level - 1), std::nullopt});
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Resource> resources_of(const Changer& changer, const MachineConfig& machine,
+                                   const MachineResult& result) {
+  std::vector<Resource> resources;
+  add_nodes(changer, machine, result, resources);
+  add_caches(changer, machine, result.database_bytes, resources);
+  add_local_memory(changer, machine, resources);
+  add_shared_memory(changer, machine, result, resources);
+  add_flow(changer, machine, resources);
+  add_host(changer, machine, resources);
+  add_building(changer, machine, resources);
+  std::erase_if(resources, [](const Resource& resource) { return !resource.step && !resource.best; });
+  return resources;
+}
+
+}  // namespace marti::studies

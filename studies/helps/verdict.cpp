@@ -1,0 +1,143 @@
+#include "studies/helps/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace marti::studies {
+
+namespace {
+
+double saved(const Help& help) { return help.step ? help.step->saved.value_or(0.0) : 0.0; }
+
+bool named(const Help& help) { return saved(help) >= worth_naming; }
+
+// The step's price; 0 for one that has none.
+double price(const Help& help) { return help.step ? help.step->price.value_or(0.0) : 0.0; }
+
+std::string percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
+
+// What the resource gives at its best, where that is more than the step gives.
+std::string at_best(const Help& help) {
+  return help.best && help.best->saved.value_or(0.0) > saved(help)
+             ? fmt::format(" (at its best, {}: {})", describe(help.best->keys), percent(*help.best->saved))
+             : std::string();
+}
+
+// The other named resources that are worth as much as the first.
+std::string ties(const std::vector<const Help*>& helps) {
+  std::string text;
+  for (std::size_t i = 1; i < helps.size(); ++i) {
+    if (ties_with(*helps[0], *helps[i])) {
+      text += fmt::format(", or {}: {}", describe(helps[i]->step->keys), percent(saved(*helps[i])));
+    }
+  }
+  return text;
+}
+
+// Where no step helps: the resource that would help most if it cost nothing.
+std::string nothing(const WhatHelps& what) {
+  const Help* most = nullptr;
+  for (const Help& help : what.helps) {
+    const double now = help.best ? help.best->saved.value_or(0.0) : 0.0;
+    if (now >= worth_naming && (most == nullptr || now > *most->best->saved)) {
+      most = &help;
+    }
+  }
+  const Unreplayed left = unreplayed(what);
+  std::string text =
+      fmt::format("no step alone{} makes the frame {} shorter",
+                  left.work + left.memory > 0 ? " of those that were tried" : "", percent(worth_naming));
+  if (most != nullptr) {
+    text += fmt::format("; at its best, {} makes it {} shorter", describe(most->best->keys),
+                        percent(*most->best->saved));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::pair<int, double> worth(const Help& help) {
+  if (!named(help)) {
+    const bool replayed = help.step && help.step->saved;
+    return {replayed ? 0 : -1, saved(help)};
+  }
+  return price(help) > 0.0 ? std::pair(1, saved(help) / price(help)) : std::pair(2, saved(help));
+}
+
+bool ties_with(const Help& first, const Help& help) {
+  return price(first) == price(help) && saved(first) - saved(help) <= tie;
+}
+
+std::optional<double> gain_of(const WhatHelps& what, const MeasuredChange& change) {
+  return change.end && *change.end > 0
+             ? std::optional(static_cast<double>(what.end) / static_cast<double>(*change.end) - 1.0)
+             : std::nullopt;
+}
+
+Unreplayed unreplayed(const WhatHelps& what) {
+  Unreplayed left;
+  for (const Help& help : what.helps) {
+    const MeasuredChange* const change = help.step ? &*help.step : help.best ? &*help.best : nullptr;
+    if (change == nullptr) {
+      continue;
+    }
+    switch (change->outcome) {
+      case Outcome::needless:
+        ++left.needless;
+        left.most_saved = std::max(left.most_saved, change->most_saved);
+        break;
+      case Outcome::work:
+        ++left.work;
+        break;
+      case Outcome::memory:
+        ++left.memory;
+        break;
+      case Outcome::measured:
+      case Outcome::uncounted:
+        break;
+    }
+  }
+  return left;
+}
+
+std::vector<const Help*> best_helps(const WhatHelps& what) {
+  std::vector<const Help*> helps;
+  for (const Help& help : what.helps) {
+    if (helps.size() < most_named && named(help)) {
+      helps.push_back(&help);
+    }
+  }
+  return helps;
+}
+
+std::string gain_text(const Help& help) {
+  std::string text =
+      fmt::format("{}: frame {} shorter{}", describe(help.step->keys), percent(saved(help)), at_best(help));
+  if (help.step->price) {
+    text += price(help) == 0.0 ? std::string(", without a price") : fmt::format(", price {:+g}", price(help));
+  }
+  return text;
+}
+
+std::string verdict(const WhatHelps& what, const processors::MachineConfig& machine,
+                    const processors::MachineResult& result) {
+  if (result.end == 0) {
+    return "nothing: the frame takes no time on this machine";
+  }
+  if (!what.measured) {
+    return "not measured: replays of this machine take long; --what-helps measures it";
+  }
+  const std::vector<const Help*> helps = best_helps(what);
+  if (!helps.empty()) {
+    return fmt::format("{}{}; {}", gain_text(*helps[0]), ties(helps), why(*helps[0], machine, result));
+  }
+  if (what.pair) {
+    return fmt::format("{} and {} bind together: {}: frame {} shorter, but by neither alone {}",
+                       what.pair->first, what.pair->second, describe(what.pair->step.keys),
+                       percent(*what.pair->step.saved), percent(worth_naming));
+  }
+  return nothing(what);
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,29 @@
+// What a measurement says in words.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "studies/helps/what_helps.h"
+
+namespace marti::studies {
+
+/// The order of helps: the larger, the better the advice. A step that is worth naming comes before one that
+/// is not; with prices a step that raises no price comes first, by the share it saves, and behind it those
+/// that do, by the share they save for each unit of the price.
+[[nodiscard]] std::pair<int, double> worth(const Help& help);
+
+/// The share of all nodes' time, at most 1, that has to do with a part of the machine; of an interconnect and
+/// of banks the share of the frame in which they are busy, if that is more.
+[[nodiscard]] double share_of(Part part, const processors::MachineConfig& machine,
+                              const processors::MachineResult& result);
+
+/// Why the part matters: how busy it is, or what share of the nodes' time it takes.
+[[nodiscard]] std::string why(const Help& help, const processors::MachineConfig& machine,
+                              const processors::MachineResult& result);
+
+/// The sentence of `what`, without a full stop.
+[[nodiscard]] std::string verdict(const WhatHelps& what, const processors::MachineConfig& machine,
+                                  const processors::MachineResult& result);
+
+}  // namespace marti::studies

@@ -1,0 +1,104 @@
+// What would make a machine's frame shorter, and by how much: measured by replays of changed machines.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studies/helps/change.h"
+#include "studies/helps/replays.h"
+#include "studies/helps/resource.h"
+#include "studies/keys/price_keys.h"
+
+namespace marti::studies {
+
+/// A gain of this share of the frame is worth naming.
+inline constexpr double worth_naming = 0.005;
+/// The most resources that a summary names.
+inline constexpr std::size_t most_named = 3;
+/// Gains that differ by at most so much are equal.
+inline constexpr double tie = 0.001;
+
+/// How much is measured.
+enum class Measuring : std::uint8_t {
+  none,
+  within_budget,  ///< about as much work as the run itself takes
+  all
+};
+
+/// Whether a change was replayed, and if not, why.
+enum class Outcome : std::uint8_t {
+  measured,
+  needless,   ///< it cannot be among the three best, or a resource at its best is not asked for
+  work,       ///< it would take more work than the budget has
+  memory,     ///< it would take too much memory
+  uncounted,  ///< its frame takes longer than can be counted
+};
+
+/// A changed machine and its frame.
+struct MeasuredChange {
+  std::vector<KeyChange> keys;
+  Outcome outcome = Outcome::needless;
+  std::optional<sim::Ticks> end{};  ///< only of a change that was measured
+  std::optional<double> saved{};    ///< share of the frame time that is saved; negative: the frame is longer
+  double most_saved = 1.0;          ///< by the nodes' own work; no replay could give more
+  std::optional<double> price{};    ///< by which the machine's price rises; std::nullopt: no prices are given
+};
+
+/// One resource (studies/helps/resource.h).
+struct Help {
+  std::string name;
+  Part part = Part::nodes;
+  std::optional<MeasuredChange> step;
+  std::optional<MeasuredChange> best;
+};
+
+/// Two steps at once.
+struct HelpPair {
+  std::string first;
+  std::string second;
+  MeasuredChange step;
+};
+
+struct WhatHelps {
+  sim::Ticks end = 0;    ///< frame time of the unchanged machine
+  bool measured = true;  ///< false: the budget is too small for even a few replays
+  /// Those worth most first: by the share of the frame that the step saves. With prices, behind the steps
+  /// that raise no price, the others by that share for each unit of the price. Behind them those whose step
+  /// was not replayed or does not help.
+  std::vector<Help> helps;
+  std::optional<HelpPair> pair;  ///< only where no step alone is worth naming and this pair is
+  std::string sentence;          ///< for people: what to change, what that gives, and why
+};
+
+/// Measures what helps the machine of `config`, which was timed on the work log with `result`, by replays
+/// that take about `budget` together.
+[[nodiscard]] WhatHelps what_helps(const sim::Config& config, const std::optional<Prices>& prices,
+                                   const processors::MachineConfig& machine,
+                                   const processors::MachineResult& result, const SharedLog& shared,
+                                   Work budget = unlimited_work);
+
+/// How much faster the machine gets: the frame time before, divided by that after, minus 1. std::nullopt for
+/// a change that was not replayed, or whose frame takes no time.
+[[nodiscard]] std::optional<double> gain_of(const WhatHelps& what, const MeasuredChange& change);
+
+/// The steps that were not replayed.
+struct Unreplayed {
+  std::size_t needless = 0;  ///< they cannot be among the three best
+  double most_saved = 0.0;   ///< the most that one of these can save
+  std::size_t work = 0;      ///< they would take too much work
+  std::size_t memory = 0;    ///< they would take too much memory
+};
+[[nodiscard]] Unreplayed unreplayed(const WhatHelps& what);
+
+/// The helps that are named: at most three, each with a step that is worth naming.
+[[nodiscard]] std::vector<const Help*> best_helps(const WhatHelps& what);
+/// Whether the sentence names it beside the first of best_helps(), because it is worth as much.
+[[nodiscard]] bool ties_with(const Help& first, const Help& help);
+
+/// "machine.nodes 16 -> 18: frame 10.9 % shorter (at its best, machine.nodes 16 -> 1025: 80.2 %)".
+[[nodiscard]] std::string gain_text(const Help& help);
+
+}  // namespace marti::studies

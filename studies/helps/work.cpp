@@ -1,0 +1,33 @@
+#include "studies/helps/work.h"
+
+namespace marti::studies {
+
+namespace {
+
+// Found by timing (docs/benchmarks.md); docs/model.md has the table.
+constexpr Work traced_step = 8;
+constexpr Work walked_reference = 4;
+constexpr Work stripped_reference = 10;
+constexpr Work stripping_of_a_reference = 4;
+constexpr Work event = 80;
+
+Work references_of(const processors::MachineResult& result) {
+  return static_cast<Work>(result.references().references());
+}
+
+}  // namespace
+
+Work replay_work(const processors::MachineResult& result, const processors::StrippedLog* stripped) {
+  const Work walking = stripped != nullptr ? stripped_reference * stripped->references()
+                                           : walked_reference * references_of(result);
+  return walking + event * result.events;
+}
+
+Work run_work(const processors::LogTotals& totals, const processors::MachineResult& machine,
+              const processors::MachineResult& one_node, const processors::StrippedLog* stripped) {
+  const Work stripping = stripped != nullptr ? stripping_of_a_reference * references_of(machine) : 0;
+  return traced_step * totals.all_steps() + stripping + replay_work(machine, stripped) +
+         replay_work(one_node, stripped);
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,105 @@
+#include "studies/show/helps_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "studies/show/json_parts.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* name_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::measured:
+      return "measured";
+    case Outcome::needless:
+      return "needless";
+    case Outcome::work:
+      return "too much work";
+    case Outcome::memory:
+      return "too much memory";
+    case Outcome::uncounted:
+      break;
+  }
+  return "too long to count";
+}
+
+std::string other_steps(std::size_t count) {
+  return fmt::format("{} other step{}", count, count == 1 ? "" : "s");
+}
+
+Json change_json(const WhatHelps& what, const std::optional<MeasuredChange>& change) {
+  if (!change) {
+    return nullptr;
+  }
+  Json keys = Json::object();
+  for (const KeyChange& key : change->keys) {
+    keys[key.key] = {{"from", key.from}, {"to", key.to}};
+  }
+  return {{"keys", keys},
+          {"outcome", name_of(change->outcome)},
+          {"frame_time_ps", change->end ? Json(*change->end) : Json(nullptr)},
+          {"saved", optional_json(change->saved)},
+          {"gain", optional_json(gain_of(what, *change))},
+          {"most_saved", change->most_saved},
+          {"price", optional_json(change->price)}};
+}
+
+}  // namespace
+
+Json helps_json(const WhatHelps& what) {
+  Json resources = Json::array();
+  for (const Help& help : what.helps) {
+    resources.push_back({{"resource", help.name},
+                         {"step", change_json(what, help.step)},
+                         {"best", change_json(what, help.best)}});
+  }
+  Json pair = nullptr;
+  if (what.pair) {
+    pair = {{"first", what.pair->first},
+            {"second", what.pair->second},
+            {"step", change_json(what, what.pair->step)}};
+  }
+  return {{"measured", what.measured}, {"sentence", what.sentence}, {"pair", pair}, {"resources", resources}};
+}
+
+std::string helps_lines(const WhatHelps& what) {
+  std::string text = fmt::format("\nwhat helps    {}\n", what.sentence);
+  const auto out = std::back_inserter(text);
+  if (!what.measured) {
+    return text;
+  }
+  const std::vector<const Help*> helps = best_helps(what);
+  const char* label = "then";
+  for (const Help* const help : helps) {
+    if (!ties_with(*helps[0], *help)) {
+      fmt::format_to(out, "  {:<12}{}\n", label, gain_text(*help));
+      label = "";
+    }
+  }
+  label = "not tried";
+  const Unreplayed left = unreplayed(what);
+  if (left.needless > 0) {
+    fmt::format_to(out, "  {:<12}{} that can save {:.1f} % at most\n", label, other_steps(left.needless),
+                   100.0 * left.most_saved);
+    label = "";
+  }
+  if (left.work > 0) {
+    fmt::format_to(out, "  {:<12}{}, which would take longer than the run; --what-helps tries all\n", label,
+                   other_steps(left.work));
+    label = "";
+  }
+  if (left.memory > 0) {
+    fmt::format_to(out, "  {:<12}{}, which would take too much memory\n", label, other_steps(left.memory));
+  }
+  return text;
+}
+
+}  // namespace marti::studies

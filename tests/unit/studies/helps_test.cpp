@@ -1,0 +1,336 @@
+// What helps is measured: its promises are kept by the machines that it advises.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
+
+#include "studies/helps/least_time.h"
+#include "studies/helps/resources.h"
+#include "studies/helps/what_helps.h"
+#include "studies/keys/machine_keys.h"
+#include "studies/run/run_result.h"
+#include "tests/contract/random_cases.h"
+#include "tests/support/configuration_of.h"
+#include "tests/support/long_tests.h"
+
+namespace marti::studies {
+namespace {
+
+using processors::MachineConfig;
+using processors::MachineResult;
+
+MachineConfig machine_of(const std::vector<std::string>& assignments) {
+  sim::Config config = test::configuration_of(assignments);
+  return read_machine(config);
+}
+
+std::vector<std::string> with(std::vector<std::string> assignments, const std::vector<KeyChange>& keys) {
+  for (const KeyChange& key : keys) {
+    assignments.push_back(key.key + "=" + key.to);
+  }
+  return assignments;
+}
+
+// A configuration, its machine and frame, and what helps it.
+struct Case {
+  Case(const processors::WorkLog& work_log, std::vector<std::string> values,
+       std::optional<Prices> prices = std::nullopt)
+      : log(work_log),
+        assignments(std::move(values)),
+        config(test::configuration_of(assignments)),
+        machine(read_machine(config)),
+        result(processors::replay(log, machine)),
+        what(what_helps(config, prices, machine, result, {log, nullptr, {}, {}})) {}
+
+  [[nodiscard]] sim::Ticks end_with(const std::vector<KeyChange>& keys) const {
+    return processors::replay(log, machine_of(with(assignments, keys))).end;
+  }
+  [[nodiscard]] const Help* find(std::string_view name) const {
+    const auto found = std::find_if(what.helps.begin(), what.helps.end(),
+                                    [&](const Help& help) { return help.name == name; });
+    return found == what.helps.end() ? nullptr : &*found;
+  }
+
+  const processors::WorkLog& log;
+  std::vector<std::string> assignments;
+  sim::Config config;
+  MachineConfig machine;
+  MachineResult result;
+  WhatHelps what;
+};
+
+double saved(const Case& one, sim::Ticks end) {
+  return 1.0 - static_cast<double>(end) / static_cast<double>(one.result.end);
+}
+
+// A promise is kept by the machine that has these values by its configuration.
+void expect_kept(const Case& one, const MeasuredChange& change) {
+  ASSERT_FALSE(change.keys.empty());
+  if (change.end) {
+    EXPECT_EQ(one.end_with(change.keys), *change.end) << describe(change.keys);
+    EXPECT_DOUBLE_EQ(*change.saved, saved(one, *change.end));
+    EXPECT_LE(*change.saved, change.most_saved + 1e-12) << describe(change.keys);
+  }
+}
+
+// Steps that were not replayed give no more than their bound, and none of them more than a step that is
+// named.
+void expect_rightly_left_out(const Case& one) {
+  const std::vector<const Help*> named = best_helps(one.what);
+  const double least = named.size() < 3 ? worth_naming : *named.back()->step->saved;
+  for (const Help& help : one.what.helps) {
+    if (help.step && help.step->outcome == Outcome::needless) {
+      const double left = saved(one, one.end_with(help.step->keys));
+      EXPECT_LE(left, help.step->most_saved + 1e-12) << describe(help.step->keys);
+      EXPECT_LE(left, std::max(least, worth_naming)) << describe(help.step->keys);
+    }
+  }
+}
+
+void expect_followed(const Case& one) {
+  const std::vector<const Help*> named = best_helps(one.what);
+  for (const Help& help : one.what.helps) {
+    for (const std::optional<MeasuredChange>* change : {&help.step, &help.best}) {
+      if (*change) {
+        expect_kept(one, **change);
+      }
+    }
+    if (help.step && help.step->saved && !named.empty()) {
+      EXPECT_LE(*help.step->saved, *named[0]->step->saved);
+    }
+  }
+  for (const Help* help : named) {
+    EXPECT_LT(*help->step->end, one.result.end) << one.what.sentence;
+  }
+  if (one.what.pair) {
+    EXPECT_TRUE(named.empty());
+    expect_kept(one, one.what.pair->step);
+    EXPECT_LT(*one.what.pair->step.end, one.result.end) << one.what.sentence;
+  }
+  expect_rightly_left_out(one);
+}
+
+using Maker = test::TimedCase (*)(test::Random&);
+constexpr std::array<Maker, 5> makers = {test::image_case, test::contexts_case, test::building_case,
+                                         test::pipeline_case, test::space_case};
+
+TEST(WhatHelps, KeepsItsPromisesOnMachinesOfEveryKind) {
+  const std::size_t step = test::stride(20);
+  for (std::size_t seed = 0; seed < 500; seed += step) {
+    test::Random random(seed);
+    test::TimedCase made = makers[seed / step % makers.size()](random);
+    test::use_default_interleave(made.machine);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const std::vector<std::string> assignments = test::assignments_of(made.machine);
+    const Case one(made.log, assignments);
+    // The configuration describes the random machine.
+    ASSERT_EQ(processors::replay(made.log, made.machine).end, one.result.end);
+    if (one.result.end > 0) {
+      expect_followed(one);
+    }
+  }
+}
+
+TEST(WhatHelps, IsTheSameWithOneThread) {
+  test::Random random(5);
+  const test::TimedCase made = test::image_case(random);
+  const std::vector<std::string> assignments = test::assignments_of(made.machine);
+  const Case all(made.log, assignments);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+  const Case one(made.log, assignments);
+  EXPECT_EQ(all.what.sentence, one.what.sentence);
+  ASSERT_EQ(all.what.helps.size(), one.what.helps.size());
+  for (std::size_t i = 0; i < all.what.helps.size(); ++i) {
+    EXPECT_EQ(all.what.helps[i].name, one.what.helps[i].name);
+    EXPECT_EQ(all.what.helps[i].step ? all.what.helps[i].step->end : std::nullopt,
+              one.what.helps[i].step ? one.what.helps[i].step->end : std::nullopt);
+  }
+}
+
+std::size_t count_of(const WhatHelps& what, Outcome outcome) {
+  return static_cast<std::size_t>(std::count_if(what.helps.begin(), what.helps.end(), [&](const Help& help) {
+    return help.step && help.step->outcome == outcome;
+  }));
+}
+
+// A budget takes steps away from what is measured without one, and says how many; it changes no other.
+TEST(WhatHelps, KeepsToItsBudget) {
+  test::Random random(7);
+  const test::TimedCase made = test::pipeline_case(random);
+  const Case all(made.log, test::assignments_of(made.machine));
+  ASSERT_EQ(count_of(all.what, Outcome::work), 0U);
+  ASSERT_GT(count_of(all.what, Outcome::measured), 6U);
+  const SharedLog shared{made.log, nullptr, {}, {}};
+  const Work replay = replay_work(all.result, nullptr);
+  for (const Work budget : {2 * replay, 4 * replay, 8 * replay}) {
+    const WhatHelps some = what_helps(all.config, std::nullopt, all.machine, all.result, shared, budget);
+    EXPECT_EQ(some.measured, budget > 2 * replay);
+    EXPECT_GT(unreplayed(some).work, 0U);
+    // Three quarters of the budget are for steps.
+    EXPECT_LE(count_of(some, Outcome::measured), 6U + count_of(all.what, Outcome::needless));
+    EXPECT_EQ(count_of(some, Outcome::measured) > 0, some.measured);
+    for (const Help& help : some.helps) {
+      if (help.step && help.step->end) {
+        EXPECT_EQ(help.step->end, all.end_with(help.step->keys)) << help.name;
+      }
+    }
+  }
+}
+
+TEST(WhatHelps, SaysThatMachinesTakeTooMuchMemory) {
+  test::Random random(5);
+  const test::TimedCase made = test::image_case(random);
+  const Case one(made.log, test::assignments_of(made.machine));
+  const WhatHelps none = what_helps(one.config, std::nullopt, one.machine, one.result,
+                                    {made.log, nullptr, {}, sim::MemoryBudget(0)});
+  EXPECT_GT(unreplayed(none).memory, 0U);
+  EXPECT_TRUE(best_helps(none).empty());
+  EXPECT_TRUE(none.sentence.starts_with("no step alone of those that were tried makes the frame "))
+      << none.sentence;
+}
+
+// One node that computes and waits for nothing: memory and host take no time.
+TEST(WhatHelps, AFasterNodeShortensAFrameOfComputingByItsClock) {
+  test::Random random(1);
+  const processors::WorkLog log = test::random_log(random, 12, 12);
+  const Case one(log, {"machine.nodes=1", "node.clock=100 MHz", "interconnect.kind=ideal",
+                       "interconnect.latency_cycles=0", "host.assignment=blocks"});
+  const Help* const clock = one.find("node.clock");
+  ASSERT_NE(clock, nullptr);
+  const std::int64_t cycles = one.result.end / 10'000;
+  EXPECT_EQ(one.result.end, cycles * 10'000);
+  EXPECT_EQ(clock->step->end, cycles * 9'091) << "110 MHz";
+  EXPECT_EQ(clock->best->end, cycles) << "1 THz, a tick a cycle";
+  EXPECT_EQ(best_helps(one.what)[0]->name, "machine.nodes") << "two nodes halve it, nearly";
+}
+
+// Nodes that compute in no time ask for lines all the time: the bus, which moves only whole lines, is full.
+const std::vector<std::string> full_bus = {"machine.nodes=4",
+                                           "node.clock=1 THz",
+                                           "costs.preset=unit",
+                                           "costs.add=0",
+                                           "costs.multiply=0",
+                                           "costs.divide=0",
+                                           "costs.square_root=0",
+                                           "costs.compare=0",
+                                           "costs.integer=0",
+                                           "costs.load=0",
+                                           "costs.store=0",
+                                           "cache.organisation=none",
+                                           "layout.node=32",
+                                           "layout.entry=32",
+                                           "layout.primitive=32",
+                                           "layout.quadric=32",
+                                           "layout.material=32",
+                                           "layout.texel=32",
+                                           "layout.pixel=32",
+                                           "layout.record_alignment=32",
+                                           "host.assignment=blocks",
+                                           "interconnect.width=4 B",
+                                           "interconnect.address_cycles=0",
+                                           "interconnect.clock=50 MHz",
+                                           "memory.clock=50 MHz",
+                                           "memory.access_cycles=0",
+                                           "memory.busy_cycles=0"};
+
+TEST(WhatHelps, TwiceTheWidthOfAFullBusHalvesTheFrame) {
+  test::Random random(2);
+  const processors::WorkLog log = test::random_log(random, 12, 12);
+  const Case one(log, full_bus);
+  const Help* const width = one.find("interconnect.width");
+  ASSERT_NE(width, nullptr);
+  EXPECT_EQ(2 * *width->step->end, one.result.end);
+  EXPECT_EQ(8 * *width->best->end, one.result.end) << "a line of 32 bytes in one beat";
+  EXPECT_EQ(
+      one.what.sentence,
+      "interconnect.width 4 B -> 8 B: frame 50.0 % shorter (at its best, interconnect.width 4 B -> 64 KiB: "
+      "87.5 %); the bus is 100.0 % busy");
+}
+
+// Bus and bank each take eight cycles for a line: whichever is made faster, the other is full.
+TEST(WhatHelps, TriesTwoStepsWhereNoneHelpsAlone) {
+  test::Random random(3);
+  const processors::WorkLog log = test::random_log(random, 40, 40);
+  std::vector<std::string> assignments = full_bus;
+  assignments.insert(assignments.end(), {"machine.nodes=32", "memory.banks=1", "memory.busy_cycles=8"});
+  const Case one(log, assignments);
+  ASSERT_TRUE(one.what.pair.has_value()) << one.what.sentence;
+  EXPECT_NE(one.what.sentence.find(" bind together: "), std::string::npos) << one.what.sentence;
+  EXPECT_TRUE(one.what.pair->first.starts_with("interconnect.") !=
+              one.what.pair->second.starts_with("interconnect."))
+      << one.what.sentence;
+  expect_followed(one);
+}
+
+TEST(WhatHelps, ChoosesByPriceWherePricesAreGiven) {
+  test::Random random(2);
+  const processors::WorkLog log = test::random_log(random, 12, 12);
+  Prices prices;
+  const Case free(log, full_bus);
+  ASSERT_EQ(free.what.helps[0].name, "interconnect.width");
+  prices.interconnect_byte = 0.0;
+  const Case unpriced(log, full_bus, prices);
+  ASSERT_FALSE(best_helps(unpriced.what).empty());
+  for (const Help* help : best_helps(unpriced.what)) {
+    EXPECT_EQ(help->step->price, 0.0) << help->name;
+  }
+  // The wider bus saves most, but the faster one is free. Of steps with a price that comes first which saves
+  // most for each unit of it.
+  prices.interconnect_byte = 2.0;
+  const Case priced(log, full_bus, prices);
+  EXPECT_EQ(priced.what.helps[0].name, "interconnect.clock");
+  const Help* const width = priced.find("interconnect.width");
+  ASSERT_NE(width, nullptr);
+  EXPECT_EQ(width->step->price, 8.0);
+  EXPECT_NE(gain_text(*width).find(", price +8"), std::string::npos) << gain_text(*width);
+  for (std::size_t i = 1; i < best_helps(priced.what).size(); ++i) {
+    const MeasuredChange& first = *best_helps(priced.what)[i - 1]->step;
+    const MeasuredChange& next = *best_helps(priced.what)[i]->step;
+    if (*next.price <= 0.0) {
+      EXPECT_LE(*first.price, 0.0);
+      EXPECT_GE(*first.saved, *next.saved);
+    } else if (*first.price > 0.0) {
+      EXPECT_GE(*first.saved / *first.price, *next.saved / *next.price);
+    }
+  }
+}
+
+TEST(WhatHelps, ANearlyFullBusIsNotRelievedByMoreNodes) {
+  namespace fs = std::filesystem;
+  const std::vector<std::string> assignments = {"image.width=128", "image.height=128", "machine.nodes=64",
+                                                "interconnect.width=4 B"};
+  for (const Measuring measuring : {Measuring::within_budget, Measuring::all}) {
+    sim::Config config =
+        sim::Config::from_file(run_schema(), fs::path(MARTI_SOURCE) / "configs" / "marti.toml", assignments);
+    const RunResult result = run(config, {.what_helps = measuring});
+    ASSERT_GT(utilisation_of(result.machine, result.timed).interconnect.value_or(0.0), 0.9);
+    ASSERT_TRUE(result.helps.has_value());
+    EXPECT_TRUE(result.helps->sentence.starts_with("interconnect.width 4 B -> 8 B: frame "))
+        << result.helps->sentence;
+    EXPECT_NE(best_helps(*result.helps)[1]->part, Part::nodes);
+  }
+}
+
+TEST(WhatHelps, ATreeThatIsBuiltBeforeTheFrameIsBetterBuiltOnDemand) {
+  namespace fs = std::filesystem;
+  const std::vector<std::string> assignments = {"image.width=64", "image.height=64",
+                                                "build.initial_level=full"};
+  sim::Config config =
+      sim::Config::from_file(run_schema(), fs::path(MARTI_SOURCE) / "configs" / "dynamic.toml", assignments);
+  const RunResult result = run(config, {.what_helps = Measuring::all});
+  ASSERT_TRUE(result.helps.has_value());
+  EXPECT_TRUE(result.helps->sentence.starts_with("build.initial_level full -> 1: frame "))
+      << result.helps->sentence;
+}
+
+TEST(WhatHelps, AFrameWithoutTimeNeedsNothing) {
+  const WhatHelps what = what_helps(test::configuration_of({}), std::nullopt, {}, {}, {{}, nullptr, {}, {}});
+  EXPECT_EQ(what.sentence, "nothing: the frame takes no time on this machine");
+  EXPECT_TRUE(what.helps.empty());
+}
+
+}  // namespace
+}  // namespace marti::studies
