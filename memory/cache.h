@@ -20,13 +20,9 @@ struct CacheCounters {
 
   static constexpr auto counters() {
     using C = sim::Counter<CacheCounters>;
-    return std::array{C{"hits", "1", "lines found", &CacheCounters::hits},
-                      C{"misses", "1", "lines brought in", &CacheCounters::misses}};
-  }
-  static constexpr auto formulas() {
-    using F = sim::Formula<CacheCounters>;
-    return std::array{F{"hit_ratio", "1", "hits / references",
-                        [](const CacheCounters& c) { return sim::ratio(c.hits, c.references()); }}};
+    return std::array{
+        C{"hits", "1", "lines found", &CacheCounters::hits, sim::MergeRule::sum, sim::Better::higher},
+        C{"misses", "1", "lines brought in", &CacheCounters::misses}};
   }
 };
 static_assert(sim::declares_every_member<CacheCounters>());

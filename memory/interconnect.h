@@ -86,7 +86,8 @@ struct InterconnectStatistics {
     return std::array{C{"reads", "1", "read transactions", &InterconnectStatistics::reads},
                       C{"writes", "1", "posted writes", &InterconnectStatistics::writes},
                       C{"bytes", "byte", "data moved by both", &InterconnectStatistics::bytes},
-                      C{"links", "1", "transfers possible at the same time", &InterconnectStatistics::links},
+                      C{"links", "1", "transfers possible at the same time", &InterconnectStatistics::links,
+                        sim::MergeRule::sum, sim::Better::neither},
                       C{"busy", "ps", "transfer time of all links together", &InterconnectStatistics::busy}};
   }
 };

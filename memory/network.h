@@ -58,7 +58,8 @@ struct NetworkStatistics {
         C{"messages", "1", "messages between different ports", &NetworkStatistics::messages},
         C{"bytes", "byte", "bytes of these messages", &NetworkStatistics::bytes},
         C{"hops", "1", "links that they crossed; ideal: none", &NetworkStatistics::hops},
-        C{"links", "1", "transfers possible at the same time", &NetworkStatistics::links},
+        C{"links", "1", "transfers possible at the same time", &NetworkStatistics::links, sim::MergeRule::sum,
+          sim::Better::neither},
         C{"busy", "ps", "time that messages held links, all together", &NetworkStatistics::busy}};
   }
 };

@@ -1,19 +1,14 @@
 // Declared statistics. A component counts in a plain struct of int64 members and declares each member
-// once, with name, unit and description, in a static constexpr function counters(); ratios are formulas of
-// counters, declared in formulas(), and never stored:
+// once, with name, unit and description, in a static constexpr function counters(). Ratios are never stored.
 //
 //   struct CacheCounters {
-//     std::int64_t references = 0;
 //     std::int64_t hits = 0;
+//     std::int64_t misses = 0;
 //     static constexpr auto counters() {
 //       using C = Counter<CacheCounters>;
-//       return std::array{C{"references", "1", "lines asked for", &CacheCounters::references},
-//                         C{"hits", "1", "lines found", &CacheCounters::hits}};
-//     }
-//     static constexpr auto formulas() {
-//       using F = Formula<CacheCounters>;
-//       return std::array{F{"hit_ratio", "1", "hits / references",
-//                           [](const CacheCounters& c) { return ratio(c.hits, c.references); }}};
+//       return std::array{C{"hits", "1", "lines found", &CacheCounters::hits, MergeRule::sum,
+//       Better::higher},
+//                         C{"misses", "1", "lines brought in", &CacheCounters::misses}};
 //     }
 //   };
 //
@@ -40,6 +35,13 @@ enum class MergeRule {
   maximum,  // for a peak, such as the longest queue
 };
 
+/// Whether a machine with a lower or a higher value is the better one.
+enum class Better : std::uint8_t {
+  lower,
+  higher,
+  neither,  // it says how large something is
+};
+
 /// One declared counter. `unit` is "1" for a plain count, else "byte", "ps", "ps2", "cycle", ...
 template <class S>
 struct Counter {
@@ -48,15 +50,7 @@ struct Counter {
   std::string_view description;
   std::int64_t S::*member;
   MergeRule rule = MergeRule::sum;
-};
-
-/// One declared formula; it has no value where its denominator is zero.
-template <class S>
-struct Formula {
-  std::string_view name;
-  std::string_view unit;
-  std::string_view description;
-  std::optional<double> (*value)(const S&);
+  Better better = Better::lower;
 };
 
 /// numerator / denominator; std::nullopt when the denominator is zero.
@@ -70,11 +64,6 @@ constexpr std::optional<double> ratio(std::int64_t numerator, std::int64_t denom
 template <class S>
 concept HasCounters = requires {
   { S::counters()[0].member } -> std::convertible_to<std::int64_t S::*>;
-};
-
-template <class S>
-concept HasFormulas = requires(const S& s) {
-  { S::formulas()[0].value(s) } -> std::convertible_to<std::optional<double>>;
 };
 
 /// For structs with no members but counters: whether each member is declared exactly once. For static_assert.
@@ -97,15 +86,6 @@ void for_each_counter(const S& statistics, Visitor&& visit) {
   constexpr auto table = S::counters();
   for (const auto& counter : table) {
     visit(counter, statistics.*counter.member);
-  }
-}
-
-/// Calls visit(const Formula<S>&, std::optional<double> value) for each formula.
-template <HasFormulas S, class Visitor>
-void for_each_formula(const S& statistics, Visitor&& visit) {
-  constexpr auto table = S::formulas();
-  for (const auto& formula : table) {
-    visit(formula, formula.value(statistics));
   }
 }
 

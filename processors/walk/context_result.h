@@ -25,7 +25,8 @@ struct ContextCounts {
         C{"switches", "1", "times that another context was taken up", &ContextCounts::switches},
         C{"joined", "1", "waits for a line that another context was fetching", &ContextCounts::joined},
         C{"issued", "1", "lines prefetched", &ContextCounts::issued},
-        C{"useful", "1", "of these, referred to before they were pushed out", &ContextCounts::useful},
+        C{"useful", "1", "of these, referred to before they were pushed out", &ContextCounts::useful,
+          sim::MergeRule::sum, sim::Better::higher},
         C{"useless", "1", "of these, pushed out or left over without a reference", &ContextCounts::useless},
         C{"late", "1", "waits for a prefetched line that was still under way", &ContextCounts::late},
         C{"dropped", "1", "prefetches left out because too many were under way", &ContextCounts::dropped}};

@@ -312,10 +312,14 @@ void add_compare_command(CLI::App& app, CompareArguments& arguments) {
 void add_report_command(CLI::App& app, studies::ReportArguments& arguments) {
   CLI::App* report = app.add_subcommand(
       "report", "One HTML page from a run, a sweep or a study: the answer, charts, a what-if");
-  report->add_option("DIR", arguments.directory, "directory of a run, a sweep or a study")
+  report
+      ->add_option("DIR", arguments.directory,
+                   "directory of a run, a sweep or a study; DIR:N for point N of a sweep")
       ->type_name("DIR")
       ->required();
-  report->add_option("-o,--output", arguments.output, "the page; DIR/report.html if not given")
+  report
+      ->add_option("-o,--output", arguments.output,
+                   "the page; DIR/report.html or DIR/point-N.html if not given")
       ->type_name("FILE.html")
       ->check([](const std::string& name) {
         return name.empty() ? std::string("the name of a file must not be empty") : std::string();

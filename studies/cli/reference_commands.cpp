@@ -10,6 +10,7 @@
 #include "studies/paper/paper_keys.h"
 #include "studies/run/run_result.h"
 #include "studies/schemes/schemes_keys.h"
+#include "studies/show/figure_list.h"
 #include "studies/stability/stability_keys.h"
 #include "studies/sweep/plan/sweep_keys.h"
 
@@ -33,6 +34,10 @@ void add_reference_commands(CLI::App& app, bool& markdown, void (*print)(const s
     print(markdown ? sim::list_keys_as_markdown(all_keys()) + combinations_as_markdown()
                    : sim::list_keys_as_text(all_keys()));
   });
+  CLI::App* figures = app.add_subcommand("figures", "Prints every figure of a machine and of a frame");
+  figures->add_flag("--markdown", markdown, "as Markdown, as in docs/figures.md");
+  figures->callback(
+      [&markdown, print] { print(markdown ? list_figures_as_markdown() : list_figures_as_text()); });
   CLI::App* completion =
       app.add_subcommand("completion", "Prints the script that completes commands in a shell");
   completion->require_subcommand(1);

@@ -9,9 +9,8 @@
 #include "scenes/procedural.h"
 #include "sim/schema.h"
 #include "studies/cli/command_tree.h"
+#include "studies/figures/derived_figures.h"
 #include "studies/run/plan/plan.h"
-#include "studies/sweep/plan/sweep_row.h"
-#include "studies/sweep/store/sweep_metrics.h"
 
 namespace marti::studies {
 
@@ -83,11 +82,10 @@ void add_values(std::string_view type, const sim::Schema& schema, std::string_vi
       candidates.add(item);
     }
   } else if (type == "METRIC") {
-    for (const SweepMetric& metric : derived_metrics()) {
-      candidates.add(metric.name);
-    }
-    for (const Column& column : sweep_columns()) {
-      candidates.add(column.name);
+    for (const auto& figures : {derived_figures(), counted_figures()}) {
+      for (const FigureEntry& figure : figures) {
+        candidates.add(figure.name);
+      }
     }
   } else if (type == "DIR") {
     candidates.ask_shell(":directories");

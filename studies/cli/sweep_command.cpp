@@ -9,14 +9,13 @@
 
 #include "sim/error.h"
 #include "sim/files.h"
+#include "studies/figures/derived_figures.h"
 #include "studies/keys/config_file.h"
 #include "studies/keys/frame_keys.h"
 #include "studies/sweep/plan/sweep_keys.h"
-#include "studies/sweep/plan/sweep_row.h"
 #include "studies/sweep/ranks/launch.h"
 #include "studies/sweep/ranks/ranks.h"
 #include "studies/sweep/store/points_table.h"
-#include "studies/sweep/store/sweep_metrics.h"
 #include "studies/sweep/sweep.h"
 #include "studies/tables/json_table.h"
 #include "studies/tables/text_units.h"
@@ -95,7 +94,7 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
     throw sim::UserError("--plan: prints the plan, as text; leave out --json and --best");
   }
   if (!arguments.best.empty()) {
-    (void)find_metric(arguments.best, sweep_columns());
+    (void)figure_named(arguments.best);
   }
   const SweepPlan plan = plan_sweep(config);
   if (arguments.plan_only) {

@@ -1,7 +1,5 @@
 #include "studies/compare/compare.h"
 
-#include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <optional>
 #include <string_view>
@@ -31,24 +29,6 @@ constexpr std::string_view expected =
     "of "
     "a sweep";
 
-// "DIR:N", where DIR is there.
-std::optional<Target> point_of(const std::string& name) {
-  const std::size_t colon = name.rfind(':');
-  if (colon == std::string::npos || colon + 1 == name.size()) {
-    return std::nullopt;
-  }
-  const fs::path directory = name.substr(0, colon);
-  std::int64_t number = 0;
-  const char* const end = name.data() + name.size();
-  const auto [stop, error] = std::from_chars(name.data() + colon + 1, end, number);
-  if (error != std::errc() || stop != end || !is_there(directory)) {
-    return std::nullopt;
-  }
-  std::error_code ignored;
-  const bool is_directory = fs::is_directory(directory, ignored);
-  return Target{Target::Kind::point, is_directory ? directory / "results.sqlite" : directory, number};
-}
-
 Target target_of(const std::string& name) {
   std::error_code ignored;
   if (fs::is_directory(name, ignored)) {
@@ -59,8 +39,8 @@ Target target_of(const std::string& name) {
     const bool sweep = fs::path(name).extension() == ".sqlite";
     return {sweep ? Target::Kind::sweep : Target::Kind::run, name, 0};
   }
-  if (const std::optional<Target> point = point_of(name)) {
-    return *point;
+  if (const std::optional<PointName> point = point_named(name)) {
+    return {Target::Kind::point, point->store, point->ordinal};
   }
   throw sim::UserError(name + ": there is no such file or directory; " + std::string(expected));
 }
@@ -68,13 +48,6 @@ Target target_of(const std::string& name) {
 ComparedResult read(const Target& target, const std::string& name) {
   return target.kind == Target::Kind::run ? read_run(target.file, name)
                                           : read_point(SweepReader(target.file), target.point, name);
-}
-
-// A run and a point count much the same under different names: only what both have is compared.
-void make_comparable(ComparedResult& run, ComparedResult& point) {
-  run.figures = named_as_in_sweep(run.figures);
-  std::erase_if(run.figures, [&](const auto& figure) { return !point.figures.contains(figure.first); });
-  std::erase_if(point.figures, [&](const auto& figure) { return !run.figures.contains(figure.first); });
 }
 
 }  // namespace
@@ -94,10 +67,9 @@ std::string compare_results(const std::string& a, const std::string& b, const Co
   }
   ComparedResult one = read(from, a);
   ComparedResult other = read(to, b);
-  if (from.kind == Target::Kind::run && to.kind == Target::Kind::point) {
-    make_comparable(one, other);
-  } else if (from.kind == Target::Kind::point && to.kind == Target::Kind::run) {
-    make_comparable(other, one);
+  if (from.kind != to.kind) {
+    remove_relative(one.figures);
+    remove_relative(other.figures);
   }
   const Differences found = differences_of(one, other);
   return options.json ? differences_json(one, other, found, options.all)

@@ -153,7 +153,7 @@ std::string text_of(const std::string& a, const std::string& b, const Sweep& fro
                  found.compared - found.equal);
   const std::vector<CounterDifference> counters = sorted(found);
   fmt::format_to(out, "counters       {} differ, {} equal\n", counters.size(),
-                 sweep_columns().size() - counters.size());
+                 counted_figures().size() - counters.size());
   if (counters.empty()) {
     return text;
   }

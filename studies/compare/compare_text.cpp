@@ -23,6 +23,11 @@ std::string printable(std::string text) {
   return text;
 }
 
+std::string time_of(const Cell& ticks) {
+  const auto* whole = std::get_if<std::int64_t>(&ticks);
+  return whole != nullptr ? seconds(*whole) : short_text(ticks, "-");
+}
+
 std::string count(std::size_t number, const char* what) {
   return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
 }
@@ -77,9 +82,9 @@ std::string differences_text(const ComparedResult& a, const ComparedResult& b, c
                  differ == 1 ? "s" : "", found.equal.size());
   // The frame time comes first, whatever its place in the order.
   for (const Difference& difference : found.numbers) {
-    if (difference.name == "machine.frame_time_ps" || difference.name == "end_ps") {
-      fmt::format_to(out, "frame time     {} ps in A, {} ps in B, {}\n", short_text(difference.a, "-"),
-                     short_text(difference.b, "-"), change_of(difference));
+    if (difference.name == "end") {
+      fmt::format_to(out, "frame time     {} in A, {} in B: {}\n", time_of(difference.a),
+                     time_of(difference.b), change_of(difference));
     }
   }
   text += lines_of(found.texts, true);

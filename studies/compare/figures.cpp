@@ -1,54 +1,71 @@
 #include "studies/compare/figures.h"
 
-#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
 
-#include "sim/error.h"
+#include "studies/figures/derived_figures.h"
+#include "studies/sweep/store/point_json.h"
+#include "studies/tables/json_table.h"
+#include "studies/tables/run_json.h"
 
 namespace marti::studies {
 
 namespace {
 
-// The name of a time ends in its unit, as in result.json.
-std::string name_of(const Column& column) { return column.name + (column.unit == "ps" ? "_ps" : ""); }
+using Json = nlohmann::ordered_json;
 
-void add(std::span<const Column> columns, const std::vector<std::optional<std::int64_t>>& counters,
-         const std::string& prefix, Figures& figures) {
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (counters[i]) {
-      figures[prefix + name_of(columns[i])] = *counters[i];
+void add(const RunJson& run, const std::string& part, const std::string& prefix, Figures& figures) {
+  for (const auto& [name, value] : run.at(part).items()) {
+    if (const Cell cell = cell_of(value); !std::holds_alternative<std::monostate>(cell)) {
+      figures[prefix + name] = cell;
     }
   }
 }
 
-}  // namespace
-
-void add_counters(const SweepRow& row, Figures& figures) { add(sweep_columns(), row.counters, "", figures); }
-
-ComparedResult read_point(const SweepReader& sweep, std::int64_t ordinal, const std::string& name) {
-  const std::vector<StoredPoint> points = sweep.points();
-  if (ordinal < 0 || static_cast<std::size_t>(ordinal) >= points.size()) {
-    throw sim::UserError(name + ": there is no such point; the sweep has " + std::to_string(points.size()) +
-                         ", numbered from 0");
+std::map<std::string, std::string> settings_of(const RunJson& run) {
+  std::map<std::string, std::string> settings;
+  for (const auto& [key, setting] : run.at("config.keys").items()) {
+    const auto value = setting.is_object() ? setting.find("value") : setting.end();
+    if (value == setting.end() || !value->is_string()) {
+      run.refuse("config.keys." + key + " has no text \"value\"");
+    }
+    settings[key] = value->get<std::string>();
   }
-  const std::int64_t machine = points[static_cast<std::size_t>(ordinal)].machine;
-  const std::optional<SweepRow> row = sweep.read_result(machine);
-  if (!row) {
-    throw sim::UserError(name + ": this point has not been run yet; run the sweep again to finish it");
-  }
+  return settings;
+}
+
+ComparedResult compared(const RunJson& run, const std::string& name) {
   ComparedResult result;
   result.name = name;
-  result.version = sweep.version();
-  for (auto& [key, value] : sweep.settings(machine)) {
-    result.settings[key] = value;
-  }
-  add_counters(*row, result.figures);
-  if (const std::optional<FrameRow> frame = sweep.read_frame(machine)) {
-    add(frame_columns(), frame->counters, "frame.", result.figures);
-    result.figures["frame.scene"] = frame->scene;
-    result.figures["frame.image_hash"] = frame->image_hash;
-    result.figures["frame.hit_hash"] = frame->hit_hash;
-  }
+  const Json& version = run.find("marti.version");
+  result.version = version.is_string() ? version.get<std::string>() : "unknown";
+  result.settings = settings_of(run);
+  add(run, "figures.frame", "frame.", result.figures);
+  add(run, "figures.machine", "", result.figures);
   return result;
+}
+
+}  // namespace
+
+ComparedResult read_run(const std::filesystem::path& path, const std::string& name) {
+  return compared(read_run_json(path), name);
+}
+
+ComparedResult read_point(const SweepReader& sweep, std::int64_t ordinal, const std::string& name) {
+  return compared(RunJson(point_json(sweep, ordinal, name), sweep.file().string()), name);
+}
+
+void add_counters(const SweepRow& row, Figures& figures) {
+  for_each_count(counted_figures(), row.counters,
+                 [&figures](const std::string& name, std::int64_t value) { figures[name] = value; });
+}
+
+void remove_relative(Figures& figures) {
+  for (const FigureEntry& entry : derived_figures()) {
+    if (entry.formula->is_relative()) {
+      figures.erase(entry.name);
+    }
+  }
 }
 
 }  // namespace marti::studies

@@ -11,7 +11,8 @@
 
 namespace marti::studies {
 
-/// By name. A figure is an integer, a real or a text (a hash, a kind).
+/// By the names of the catalogue (`marti figures`), those of the frame behind "frame.". A figure is an
+/// integer, a real or a text (a hash, the scene's name).
 using Figures = std::map<std::string, Cell>;
 
 struct ComparedResult {
@@ -21,20 +22,18 @@ struct ComparedResult {
   Figures figures;
 };
 
-/// A `result.json`. Its figures have the names of its fields, joined by dots; over the objects of a list
-/// counters are summed, of peaks the largest is taken, and the list's name has "[]" behind it. Histograms are
-/// left out. Throws UserError for a file that cannot be read, is not a result, or is one of another schema.
+/// A `result.json`. Throws UserError for a file that cannot be read, is not a result, or is one of another
+/// schema.
 [[nodiscard]] ComparedResult read_run(const std::filesystem::path& file, const std::string& name);
 
-/// A point of a sweep: the counters of its machine, and those of its frame behind "frame.". Throws UserError
-/// when it has not been run yet, or there is no such point.
+/// A point of a sweep. Throws UserError when it has not been run yet, or there is no such point.
 [[nodiscard]] ComparedResult read_point(const SweepReader& sweep, std::int64_t ordinal,
                                         const std::string& name);
 
-/// The counters of a row, with the names that read_point gives them.
+/// The counted figures of a row.
 void add_counters(const SweepRow& row, Figures& figures);
 
-/// The figures of a run that a point of a sweep has too, under the names they have there.
-[[nodiscard]] Figures named_as_in_sweep(const Figures& run);
+/// Removes what is measured against another machine, which a run and a sweep do not choose alike.
+void remove_relative(Figures& figures);
 
 }  // namespace marti::studies

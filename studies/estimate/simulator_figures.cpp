@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "studies/figures/scaling.h"
+#include "studies/figures/derived_figures.h"
 
 namespace marti::studies {
 
@@ -10,7 +10,7 @@ MachineFigures figures_of(const processors::MachineConfig& machine, const proces
   MachineFigures figures;
   figures[Figure::end] = static_cast<double>(result.end);
   figures[Figure::misses] = static_cast<double>(result.references().all_misses());
-  figures[Figure::use] = utilisation_of(machine, result).interconnect.value_or(0.0);
+  figures[Figure::use] = figure_of(machine, result, "interconnect_utilisation").value_or(0.0);
   double waited = 0.0;
   double tenures = 0.0;
   for (const processors::ClusterResult& cluster : result.clusters) {

@@ -5,8 +5,9 @@
 #include <string_view>
 #include <utility>
 
+#include "studies/figures/derived_figures.h"
+#include "studies/figures/find_limit.h"
 #include "studies/figures/flow_figures.h"
-#include "studies/figures/scaling.h"
 #include "studies/helps/verdict.h"
 
 namespace marti::studies {
@@ -79,7 +80,7 @@ std::string why_nodes(const std::string& name, const MachineConfig& machine, con
 
 std::string why_network(const MachineConfig& machine, const MachineResult& result) {
   const std::optional<double> busy = machine.scheme == processors::Scheme::image
-                                         ? utilisation_of(machine, result).interconnect
+                                         ? figure_of(machine, result, "interconnect_utilisation")
                                          : flow_figures(machine, result).network;
   return busy ? fmt::format("the network's links are {:.1f} % busy", 100.0 * *busy)
               : std::string("every message takes its latency");
@@ -112,10 +113,10 @@ double share_of(Part part, const MachineConfig& machine, const MachineResult& re
       return on_memory(result);
     case Part::interconnect:
       return std::max(share(result, {Activity::interconnect_wait, Activity::transfer}),
-                      utilisation_of(machine, result).interconnect.value_or(0.0));
+                      figure_of(machine, result, "interconnect_utilisation").value_or(0.0));
     case Part::banks:
       return std::max(share(result, {Activity::bank_wait, Activity::bank_access}),
-                      utilisation_of(machine, result).bank);
+                      figure_of(machine, result, "bank_utilisation").value_or(0.0));
     case Part::network:
       return share(result, {Activity::interconnect_wait, Activity::transfer, Activity::message_wait});
     case Part::messages:
@@ -142,13 +143,14 @@ std::string why(const Help& help, const MachineConfig& machine, const MachineRes
     case Part::local_memory:
       return fmt::format("nodes spend {:.1f} % of their time on memory", 100.0 * on_memory(result));
     case Part::interconnect:
-      if (const std::optional<double> busy = utilisation_of(machine, result).interconnect) {
+      if (const std::optional<double> busy = figure_of(machine, result, "interconnect_utilisation")) {
         return fmt::format("the {} is {:.1f} % busy", interconnect_name(machine), 100.0 * *busy);
       }
       return fmt::format("nodes spend {:.1f} % of their time on transfers",
                          percent(result, {Activity::transfer}));
     case Part::banks:
-      return fmt::format("the busiest bank is {:.1f} % busy", 100.0 * utilisation_of(machine, result).bank);
+      return fmt::format("the busiest bank is {:.1f} % busy",
+                         100.0 * figure_of(machine, result, "bank_utilisation").value_or(0.0));
     case Part::network:
       return why_network(machine, result);
     case Part::messages:

@@ -15,6 +15,7 @@
 #include "studies/report/plots/vega_bundle.h"
 #include "studies/report/read/read_report.h"
 #include "studies/tables/pending_files.h"
+#include "studies/tables/result_directory.h"
 
 namespace marti::studies {
 
@@ -23,6 +24,15 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path directory_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : "."; }
+
+// DIR/report.html, or DIR/point-N.html.
+fs::path page_of(const std::string& results) {
+  std::error_code ignored;
+  const std::optional<PointName> point =
+      fs::is_directory(results, ignored) ? std::nullopt : point_named(results);
+  return point ? directory_of(point->store) / ("point-" + std::to_string(point->ordinal) + ".html")
+               : fs::path(results) / "report.html";
+}
 
 bool is_page(const fs::path& file) {
   constexpr std::string_view begin = "<!doctype html";
@@ -96,8 +106,7 @@ void report_command(const ReportArguments& arguments, void (*print)(const std::s
   if (arguments.pdf && arguments.plots.empty()) {
     throw sim::UserError("--pdf: goes with --plots DIR, the directory for the files, which is missing");
   }
-  const fs::path file =
-      arguments.output.empty() ? fs::path(arguments.directory) / "report.html" : fs::path(arguments.output);
+  const fs::path file = arguments.output.empty() ? page_of(arguments.directory) : fs::path(arguments.output);
   const ReportData report = read_report(arguments.directory);
   if (!have_vega_scripts()) {
     throw sim::UserError(no_vega_scripts);

@@ -124,8 +124,9 @@ std::shared_ptr<const processors::StrippedLog> time_frame(const RecordConfig& re
     options.stripped = stripped.get();
     result.one_node = processors::replay(log, one_node, options);
   }
-  result.scaling = scaling_of(result.one_node.end, result.timed.end, result.machine.all_nodes());
-  result.loss = loss_of(result.one_node, result.timed);
+  result.totals = totals_of(result.timed);
+  result.counts = counts_of(result.machine, result.timed, result.totals);
+  result.one_node_counts = counts_of(processors::one_node_of(result.machine), result.one_node);
   result.bounds = processors::frame_bounds(result.machine, result.timed);
   result.prediction = processors::predict(result.machine, result.timed);
   return stripped;

@@ -13,8 +13,7 @@
 #include "processors/replay/bounds.h"
 #include "processors/replay/replay.h"
 #include "sim/config.h"
-#include "studies/figures/loss.h"
-#include "studies/figures/scaling.h"
+#include "studies/figures/derived_figures.h"
 #include "studies/helps/what_helps.h"
 #include "studies/run/functional_run.h"
 #include "studies/run/record/heat_map.h"
@@ -31,14 +30,20 @@ struct RunResult {
   FunctionalRun functional;
   processors::MachineResult timed;
   processors::MachineResult one_node;  ///< the same machine with one cluster of one node
-  Scaling scaling;
-  SpeedUpLoss loss;
+  MachineTotals totals;                ///< of the timed machine
+  Counts counts;                       ///< of the timed machine
+  Counts one_node_counts;
   std::optional<WhatHelps> helps;  ///< empty: not asked for
   processors::FrameBounds bounds;
   std::optional<processors::Prediction> prediction;
   std::optional<processors::WorkingSet> working_set;  ///< of the timed machine; empty: not asked for
   std::unique_ptr<Timeline> timeline;  ///< written, but not under its own name yet; null: not asked for
   std::unique_ptr<HeatMap> heat_map;   ///< null: not asked for
+
+  /// A figure of the timed machine (studies/figures/derived_figures.h), measured against one node.
+  [[nodiscard]] std::optional<double> figure(std::string_view name) const {
+    return figure_of({&counts, &one_node_counts}, name);
+  }
 };
 
 struct RunOptions {

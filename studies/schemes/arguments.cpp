@@ -40,8 +40,8 @@ std::vector<ScalingPoint> find(Kind kind, std::span<const ScalingPoint> points) 
   return found.size() >= fewest_points ? found : std::vector<ScalingPoint>{};
 }
 
-double efficiency(const ScalingPoint& point) { return point.scaling.efficiency.value_or(0.0); }
-double speed_up(const ScalingPoint& point) { return point.scaling.speed_up.value_or(0.0); }
+double efficiency(const ScalingPoint& point) { return point.efficiency.value_or(0.0); }
+double speed_up(const ScalingPoint& point) { return point.speed_up.value_or(0.0); }
 
 Claim naive(std::span<const ScalingPoint> points) {
   Claim claim{"naive pixel parallelism", "one shared memory saturates with few processors", "", {}};

@@ -4,44 +4,32 @@
 #include <iterator>
 #include <string>
 
-#include "sim/statistics.h"
+#include "studies/figures/derived_figures.h"
 
 namespace marti::studies {
 
-using processors::Activity;
-
 namespace {
 
-double share(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
-
-double sum_of(const processors::TimeDivision& time, std::initializer_list<Activity> parts) {
-  double sum = 0.0;
-  for (const Activity part : parts) {
-    sum += static_cast<double>(time[static_cast<std::size_t>(part)]);
-  }
-  return sum;
-}
-
 ScalingPoint point_of(const NamedMachine& machine, const processors::MachineResult& result,
-                      sim::Ticks one_node_end) {
+                      const Counts& one_node) {
   ScalingPoint point;
   point.machine = machine.name;
   point.scheme = machine.config.scheme;
   point.nodes = machine.config.all_nodes();
   point.end = result.end;
-  point.one_node_end = one_node_end;
-  point.scaling = scaling_of(one_node_end, result.end, point.nodes);
+  point.one_node_end = *count_of(one_node, "end");
   point.limit = find_limit(machine.config, result).limit;
-  point.shared_use = utilisation_of(machine.config, result).interconnect;
-  const processors::ReferenceCounts references = result.references();
-  point.hit_ratio = sim::ratio(references.all_hits(), references.references());
-  const processors::TimeDivision time = result.time();
-  const double all = static_cast<double>(result.end) * static_cast<double>(result.nodes.size());
-  point.idle = share(sum_of(time, {Activity::idle}), all);
-  point.waiting =
-      share(sum_of(time, {Activity::interconnect_wait, Activity::bank_wait, Activity::lock_wait,
-                          Activity::message_wait, Activity::queue_full_wait, Activity::dispatch_wait}),
-            all);
+  const Counts counts = counts_of(machine.config, result);
+  const auto figure = [&](std::string_view name) { return figure_of({&counts, &one_node}, name); };
+  point.speed_up = figure("speed_up");
+  point.efficiency = figure("efficiency");
+  point.shared_use = figure("interconnect_utilisation");
+  point.hit_ratio = figure("hit_ratio");
+  point.idle = figure("share_idle").value_or(0.0);
+  for (const std::string_view what :
+       {"interconnect_wait", "bank_wait", "lock_wait", "message_wait", "queue_full_wait", "dispatch_wait"}) {
+    point.waiting += figure("share_" + std::string(what)).value_or(0.0);
+  }
   for (const memory::NetworkStatistics& network : result.flow.networks) {
     point.messages += network.messages;
     point.message_bytes += network.bytes;
@@ -64,11 +52,12 @@ std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const proce
       shares.nearest = quickest->nodes[1];
       shares.shade = quickest->nodes[2];
     }
-    const sim::Ticks one_node_end = processors::replay(log, one_node_of(own.config)).end;
+    const processors::MachineConfig alone = one_node_of(own.config);
+    const Counts one_node = counts_of(alone, processors::replay(log, alone));
     for (const std::uint32_t nodes : config.nodes) {
       if (nodes >= fewest_nodes(own.config)) {
         const NamedMachine machine = read_machine_file(file, nodes, shares);
-        points.push_back(point_of(machine, processors::replay(log, machine.config), one_node_end));
+        points.push_back(point_of(machine, processors::replay(log, machine.config), one_node));
       }
     }
   }
@@ -96,8 +85,8 @@ Table scaling_table(std::span<const ScalingPoint> points) {
   for (const ScalingPoint& point : points) {
     table.add_row({point.machine,
                    std::string(processors::scheme_names[static_cast<std::size_t>(point.scheme)]),
-                   count_cell(point.nodes), point.end, point.one_node_end, cell(point.scaling.speed_up),
-                   cell(point.scaling.efficiency), std::string(name_of(point.limit)), cell(point.shared_use),
+                   count_cell(point.nodes), point.end, point.one_node_end, cell(point.speed_up),
+                   cell(point.efficiency), std::string(name_of(point.limit)), cell(point.shared_use),
                    cell(point.hit_ratio), point.waiting, point.idle, point.messages, point.message_bytes});
   }
   return table;

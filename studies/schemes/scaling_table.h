@@ -9,7 +9,7 @@
 
 #include "processors/program/work_log.h"
 #include "processors/replay/replay.h"
-#include "studies/figures/scaling.h"
+#include "studies/figures/find_limit.h"
 #include "studies/schemes/schemes_keys.h"
 #include "studies/schemes/stage_table.h"
 #include "studies/tables/table.h"
@@ -23,7 +23,8 @@ struct ScalingPoint {
   std::uint32_t nodes = 0;
   sim::Ticks end = 0;
   sim::Ticks one_node_end = 0;
-  Scaling scaling;
+  std::optional<double> speed_up;
+  std::optional<double> efficiency;
   Limit limit = Limit::nothing;
   std::optional<double> shared_use;  ///< share of the frame in which the memory's interconnect was busy
   std::optional<double> hit_ratio;

@@ -12,13 +12,6 @@ namespace marti::studies {
 
 nlohmann::ordered_json build_json(const processors::BuildResult& build, bool per_node) {
   return {{"sharing", processors::sharing_names[static_cast<std::size_t>(build.sharing)]},
-          {"start_up_ps", build.start_up},
-          {"start_up_wait_ps", build.start_up_wait},
-          {"databases", build.databases},
-          {"trees", build.trees},
-          {"wasted_splits", build.wasted_splits()},
-          {"counts", counters_json(build.counts())},
-          {"all_levels", counters_json(build.all_levels())},
           {"levels", counters_list(build.levels)},
           {"per_node", counters_list(build.nodes, per_node)}};
 }

@@ -19,7 +19,6 @@ nlohmann::ordered_json second_level_json(const processors::MachineConfig& machin
                                          const processors::MachineResult& result, bool per_cache) {
   Json object = {{"sharing", processors::second_level_names[static_cast<std::size_t>(machine.l2.sharing)]},
                  {"line", processors::second_level_cache(machine).line}};
-  add_counters(object, result.l2.counters());
   Json caches = nullptr;
   if (per_cache) {
     caches = Json::array();

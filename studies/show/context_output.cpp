@@ -11,9 +11,7 @@ namespace marti::studies {
 
 nlohmann::ordered_json context_json(const processors::MachineConfig& machine,
                                     const processors::ContextResult& result, bool per_node) {
-  return {{"contexts", machine.contexts},
-          {"counts", counters_json(result.counts())},
-          {"per_node", counters_list(result.nodes, per_node)}};
+  return {{"contexts", machine.contexts}, {"per_node", counters_list(result.nodes, per_node)}};
 }
 
 std::string context_lines(const processors::MachineConfig& machine, const processors::ContextResult& result) {

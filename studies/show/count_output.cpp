@@ -37,27 +37,6 @@ CacheCountResult::ByClass all_classes(const CacheCountResult& counts) {
   return sum;
 }
 
-Json classes_json(const CacheCountResult::ByClass& classes) {
-  Json object = Json::object();
-  for (std::size_t i = 0; i < classes.size(); ++i) {
-    object[std::string(memory::miss_class_names[i])] = classes[i];
-  }
-  return object;
-}
-
-Json sharing_json(const processors::MachineConfig& machine, const memory::SharingResult& sharing) {
-  Json histogram = Json::array();
-  for (const auto& [nodes, lines] : sharing.fetched) {
-    histogram.push_back({nodes, lines});
-  }
-  return {{"fetches", sharing.fetches},
-          {"distinct_lines", sharing.distinct},
-          {"duplicate_fetches", sharing.duplicates()},
-          {"lines_of_one", sharing.by(1)},
-          {"lines_of_all", sharing.by(machine.nodes)},
-          {"histogram", histogram}};
-}
-
 double percent(std::int64_t part, std::int64_t whole) {
   return 100.0 * sim::ratio(part, whole).value_or(0.0);
 }
@@ -110,17 +89,14 @@ void attribution_lines(std::string& text, const std::vector<AttributionRow>& row
 
 }  // namespace
 
-nlohmann::ordered_json counts_json(const processors::MachineConfig& machine, const CacheCountResult& counts) {
+nlohmann::ordered_json counts_json(const CacheCountResult& counts) {
   Json object = Json::object();
-  if (counts.miss_classes) {
-    Json classes = {{"all", classes_json(all_classes(counts))}};
-    for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
-      classes[std::string(memory::record_kind_names[kind])] = classes_json((*counts.miss_classes)[kind]);
-    }
-    object["miss_classes"] = classes;
-  }
   if (counts.sharing) {
-    object["sharing"] = sharing_json(machine, *counts.sharing);
+    Json fetched = Json::array();
+    for (const auto& [nodes, lines] : counts.sharing->fetched) {
+      fetched.push_back({nodes, lines});
+    }
+    object["lines_by_nodes"] = fetched;
   }
   if (counts.attribution) {
     Json rows = Json::array();

@@ -12,8 +12,7 @@
 namespace marti::studies {
 
 /// The field machine.counts, as docs/result-schema.md describes it.
-[[nodiscard]] nlohmann::ordered_json counts_json(const processors::MachineConfig& machine,
-                                                 const processors::CacheCountResult& counts);
+[[nodiscard]] nlohmann::ordered_json counts_json(const processors::CacheCountResult& counts);
 
 /// Lines of the summary; empty when nothing was asked for.
 [[nodiscard]] std::string counts_lines(const processors::MachineConfig& machine,

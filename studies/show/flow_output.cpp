@@ -83,28 +83,10 @@ nlohmann::ordered_json flow_json(const MachineConfig& machine, const MachineResu
       nodes.back()["memory_bytes"] = flow.memory_bytes[node];
     }
   }
-  Json object = {
-      {"rays", flow.rays},
-      {"contributions", flow.collected},
-      {"most_in_flight", flow.most_in_flight},
-      {"messages", figures.messages},
-      {"message_bytes", figures.bytes},
-      {"hops_a_message", figures.hops_a_message},
-      {"network_utilisation", optional_json(figures.network)},
-      {"counts", counters_json(sum_of_nodes(result))},
-      {"load", load_json(figures.all)},
-      {"stages", stages},
-      {"memory_bytes",
-       {{"least", figures.least_memory}, {"mean", figures.mean_memory}, {"most", figures.most_memory}}}};
-  if (machine.scheme == Scheme::space) {
-    object["regions"] = flow.regions;
-    object["top_nodes"] = flow.top_nodes;
-    object["duplicated_primitives"] = flow.duplicated_primitives;
-    object["sampling_work_ps"] = flow.sampling_work;
-  }
-  object["networks"] = networks_json(flow);
-  object["per_node"] = nodes;
-  return object;
+  return {{"load", load_json(figures.all)},
+          {"stages", stages},
+          {"networks", networks_json(flow)},
+          {"per_node", nodes}};
 }
 
 std::string flow_lines(const MachineConfig& machine, const MachineResult& result) {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "studies/run/frame_figures.h"
 #include "studies/run/plan/plan_output.h"
 #include "studies/run/run_result.h"
 #include "studies/show/build_output.h"
@@ -23,7 +24,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int schema_version = 2;
+constexpr int schema_version = 3;
 // Beyond this many nodes or clusters their own figures are left out: sums remain.
 constexpr std::size_t most_listed = 4096;
 
@@ -45,23 +46,10 @@ Json scene_json(const RunResult& r) {
     bounds = {{"lo", {s.bounds.lo.x, s.bounds.lo.y, s.bounds.lo.z}},
               {"hi", {s.bounds.hi.x, s.bounds.hi.y, s.bounds.hi.z}}};
   }
-  return {{"source", r.frame_config.scene},
-          {"name", s.name},
-          {"polygons", s.polygons},
-          {"triangles", s.triangles},
-          {"spheres", s.spheres},
-          {"cylinders", s.cylinders},
-          {"cones", s.cones},
-          {"vertices", s.vertices},
-          {"materials", s.materials},
-          {"textures", s.textures},
-          {"lights", s.lights},
-          {"bounds", bounds},
-          {"notes", r.functional.notes}};
+  return {{"source", r.frame_config.scene}, {"bounds", bounds}, {"notes", r.functional.notes}};
 }
 
 Json structure_json(const RunResult& r) {
-  const accel::Topology& topology = r.functional.frame.log->topology;
   Json levels = Json::array();
   for (const accel::LevelStatistics& level : r.functional.levels) {
     levels.push_back({{"branches", level.branches},
@@ -71,23 +59,24 @@ Json structure_json(const RunResult& r) {
                       {"overfull_leaves", level.overfull_leaves}});
   }
   return {{"kind", r.frame_config.structure},
-          {"nodes", topology.nodes.size()},
-          {"entries", topology.entries.size()},
           {"traversal", accel::traversal_names[static_cast<std::size_t>(r.functional.frame.log->traversal)]},
           {"mailboxes", r.functional.frame.log->mailboxes},
           {"notes", r.functional.structure_notes},
           {"levels", levels}};
 }
 
-Json image_json(const RunResult& r) {
-  const processors::Frame& frame = r.functional.frame;
-  const auto& kinds = processors::ray_kind_names;
-  return {{"width", frame.image.width},
-          {"height", frame.image.height},
-          {"rays", named(kinds, frame.rays.traced)},
-          {"hits", named(kinds, frame.rays.hit)},
-          {"image_hash", hash(r.functional.image_hash)},
-          {"hit_hash", hash(frame.hit_hash)}};
+// Figures without a value are left out.
+Json figures_json(const RunResult& r) {
+  Json frame = {{"scene", r.functional.scene.name},
+                {"image_hash", hash(r.functional.image_hash)},
+                {"hit_hash", hash(r.functional.frame.hit_hash)}};
+  for_each_count(frame_figures(), frame_counts(r.functional),
+                 [&frame](const std::string& name, std::int64_t value) { frame[name] = value; });
+  Json machine = Json::object();
+  const auto enter = [&machine](const std::string& name, auto value) { machine[name] = value; };
+  for_each_count(counted_figures(), r.counts, enter);
+  for_each_derived({&r.counts, &r.one_node_counts}, enter);
+  return {{"frame", frame}, {"machine", machine}};
 }
 
 Json log_json(const processors::LogTotals& t) {
@@ -136,17 +125,6 @@ Json wait_json(const memory::WaitStatistics& w) {
     buckets.push_back({bucket.lowest, bucket.highest, bucket.count});
   }
   object["histogram_ps"] = buckets;
-  return object;
-}
-
-Json reference_json(const processors::MachineResult& result) {
-  const processors::ReferenceCounts counts = result.references();
-  const auto records = processors::records_of(result.steps());
-  Json object = Json::object();
-  for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
-    object[std::string(memory::record_kind_names[kind])] = {
-        {"records", records[kind]}, {"hits", counts.hits[kind]}, {"misses", counts.misses[kind]}};
-  }
   return object;
 }
 
@@ -205,30 +183,13 @@ Json files_json(const std::map<std::string, std::string>& files) {
 
 std::string json_of(const RunResult& r, const std::map<std::string, std::string>& files) {
   const processors::MachineResult& timed = r.timed;
-  const Utilisation used = utilisation_of(r.machine, timed);
   Json machine = {{"scheme", processors::scheme_names[static_cast<std::size_t>(r.machine.scheme)]},
                   {"clusters", r.machine.clusters},
                   {"nodes", r.machine.nodes},
-                  {"frame_time_ps", timed.end},
                   {"node_clock_period_ps", r.machine.clock.period()},
-                  {"one_node_time_ps", r.scaling.one_node_end},
-                  {"speed_up", optional_json(r.scaling.speed_up)},
-                  {"efficiency", optional_json(r.scaling.efficiency)},
-                  {"karp_flatt_serial_fraction", optional_json(r.scaling.serial_fraction)},
-                  {"speed_up_loss", loss_json(r)},
+                  {"one_node_time_ps", r.one_node.end},
                   {"bounds", bounds_json(r)},
                   {"what_helps", r.helps ? helps_json(*r.helps) : Json(nullptr)},
-                  {"interconnect_utilisation", optional_json(used.interconnect)},
-                  {"busiest_bank_utilisation", used.bank},
-                  {"mean_bank_utilisation", used.mean_bank},
-                  {"packets", timed.packets},
-                  {"host", counters_json(timed.host)},
-                  {"database_bytes", timed.database_bytes},
-                  {"database_copies", timed.copies},
-                  {"unloaded_miss_ps", timed.unloaded_miss},
-                  {"time_ps", named(processors::activity_names, timed.time())},
-                  {"steps", counters_json(timed.steps())},
-                  {"references", reference_json(timed)},
                   {"per_cluster", clusters_json(timed)},
                   {"per_node", nodes_json(timed)}};
   if (timed.build.sharing != processors::Sharing::given) {
@@ -241,7 +202,7 @@ std::string json_of(const RunResult& r, const std::map<std::string, std::string>
     machine["l2"] = second_level_json(r.machine, timed, timed.l2.caches.size() <= most_listed);
   }
   if (r.machine.count.any()) {
-    machine["counts"] = counts_json(r.machine, timed.counts);
+    machine["counts"] = counts_json(timed.counts);
   }
   if (r.working_set) {
     machine["working_set"] = working_set_json(*r.working_set);
@@ -251,10 +212,9 @@ std::string json_of(const RunResult& r, const std::map<std::string, std::string>
   }
   const Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
                        {"config", config_json(r.config_name, r.values)},
+                       {"figures", figures_json(r)},
                        {"scene", scene_json(r)},
                        {"structure", structure_json(r)},
-                       {"image", image_json(r)},
-                       {"work_log", log_json(r.functional.totals)},
                        {"voxel_cut", voxel_json(r)},
                        {"plan", plan_json(r.plan)},
                        {"machine", machine},

@@ -27,17 +27,6 @@ std::string_view binding(const RunResult& r) {
 
 }  // namespace
 
-Json loss_json(const RunResult& r) {
-  Json parts = Json::object();
-  Json speed_up = Json::object();
-  for (std::size_t i = 0; i < losses; ++i) {
-    parts[std::string(loss_names[i])] = r.loss.parts[i];
-    speed_up[std::string(loss_names[i])] =
-        r.timed.end > 0 ? Json(ticks(r.loss.parts[i]) / ticks(r.timed.end)) : Json(nullptr);
-  }
-  return {{"total_ps", r.loss.total}, {"parts_ps", parts}, {"lost_speed_up", speed_up}};
-}
-
 Json bounds_json(const RunResult& r) {
   const processors::FrameBounds& b = r.bounds;
   Json prediction = nullptr;
@@ -69,16 +58,17 @@ Json bounds_json(const RunResult& r) {
 }
 
 std::string loss_lines(const RunResult& r) {
-  const double n = r.scaling.nodes;
-  if (r.scaling.nodes == 1 || !r.scaling.speed_up) {
+  const double n = r.machine.all_nodes();
+  const std::optional<double> speed_up = r.figure("speed_up");
+  if (n == 1.0 || !speed_up) {
     return "";
   }
   std::string text = fmt::format("\nlost speed-up {:.2f} of {}: n - s, and its share of the nodes' time\n",
-                                 n - *r.scaling.speed_up, r.scaling.nodes);
-  for (std::size_t i = 0; i < losses; ++i) {
-    std::string name(loss_names[i]);
+                                 n - *speed_up, r.machine.all_nodes());
+  for (const std::string_view loss : loss_names) {
+    std::string name(loss);
     std::replace(name.begin(), name.end(), '_', ' ');
-    const double part = ticks(r.loss.parts[i]) / ticks(r.timed.end);
+    const double part = r.figure("lost_" + std::string(loss)).value_or(0.0);
     text += fmt::format("  {:<14}{:>12.2f} {:>9.2f} %\n", name, part, 100.0 * part / n);
   }
   return text;

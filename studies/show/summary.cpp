@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/units.h"
+#include "studies/figures/find_limit.h"
 #include "studies/run/plan/plan_output.h"
 #include "studies/run/run_result.h"
 #include "studies/show/build_output.h"
@@ -133,9 +134,9 @@ void machine_lines(Lines out, const RunResult& r) {
   fmt::format_to(out, "\nframe time    {} = {} node cycles\n", seconds(r.timed.end),
                  grouped(r.timed.end / machine.clock.period()));
   fmt::format_to(out, "speed-up      {} on {}, efficiency {}, serial fraction (Karp-Flatt) {}\n",
-                 ratio(r.scaling.speed_up, 2), counted(r.scaling.nodes, "node"),
-                 ratio(r.scaling.efficiency, 3), ratio(r.scaling.serial_fraction, 4));
-  fmt::format_to(out, "one node      {}\n", seconds(r.scaling.one_node_end));
+                 ratio(r.figure("speed_up"), 2), counted(r.machine.all_nodes(), "node"),
+                 ratio(r.figure("efficiency"), 3), ratio(r.figure("serial_fraction"), 4));
+  fmt::format_to(out, "one node      {}\n", seconds(r.one_node.end));
 }
 
 void time_lines(Lines out, const RunResult& r) {
@@ -159,32 +160,20 @@ std::string waiting(const memory::WaitStatistics& w) {
                      seconds(w.histogram.percentile(95.0).value_or(0)), seconds(w.max));
 }
 
-void gather(memory::WaitStatistics& into, const memory::WaitStatistics& from) {
-  into.count += from.count;
-  into.sum = sim::add_ticks(into.sum, from.sum);
-  into.max = std::max(into.max, from.max);
-  into.histogram.merge(from.histogram);
-}
-
-void distribution_lines(Lines out, const RunResult& r, const Utilisation& used) {
-  memory::DistributedStatistics accesses;
-  memory::NetworkStatistics network;
-  for (const processors::ClusterResult& cluster : r.timed.clusters) {
-    sim::merge(accesses, cluster.distributed->accesses);
-    sim::merge(network, cluster.distributed->network);
-    gather(network.waits, cluster.distributed->network.waits);
-  }
+void distribution_lines(Lines out, const RunResult& r) {
+  const memory::DistributedStatistics& accesses = *r.totals.distributed;
+  const memory::NetworkStatistics& network = *r.totals.network;
   const std::int64_t remote = accesses.remote_reads + accesses.remote_writes;
   const std::int64_t all = remote + accesses.local_reads + accesses.local_writes;
   fmt::format_to(out,
                  "\n{:<14}{} messages, {} with their headers, {:.1f} hops each; {} of the accesses remote\n",
                  "network", grouped(network.messages), bytes(static_cast<double>(network.bytes)),
-                 sim::ratio(network.hops, network.messages).value_or(0.0),
+                 r.figure("hops_a_message").value_or(0.0),
                  percent(static_cast<double>(remote), static_cast<double>(all)));
-  if (used.interconnect) {
+  if (const std::optional<double> used = r.figure("interconnect_utilisation")) {
     fmt::format_to(out, "  {:<12}{:.1f} % of its links busy, {}\n",
                    memory::network_kind_names[static_cast<std::size_t>(r.machine.network.kind)],
-                   100.0 * *used.interconnect, waiting(network.waits));
+                   100.0 * *used, waiting(*r.totals.network_waits));
   }
 }
 
@@ -206,32 +195,24 @@ void memory_lines(Lines out, const RunResult& r) {
     return;  // nodes share no memory
   }
 
-  const Utilisation used = utilisation_of(r.machine, r.timed);
-  memory::WaitStatistics waits;
-  memory::WaitStatistics bank_waits;
-  std::int64_t moved = 0;
-  for (const processors::ClusterResult& cluster : r.timed.clusters) {
-    gather(waits, cluster.interconnect.waits);
-    moved += cluster.interconnect.bytes;
-    for (const memory::BankStatistics& bank : cluster.banks) {
-      gather(bank_waits, bank.waits);
-    }
-  }
+  const double moved = static_cast<double>(r.totals.interconnect->bytes);
   const bool distributed = r.machine.placement == processors::Placement::distributed;
   const bool ideal = r.machine.interconnect.kind == memory::InterconnectKind::ideal;
   if (ideal && !distributed) {
-    fmt::format_to(out, "\ninterconnect  ideal, {} moved\n", bytes(static_cast<double>(moved)));
+    fmt::format_to(out, "\ninterconnect  ideal, {} moved\n", bytes(moved));
     return;
   }
   if (distributed) {
-    distribution_lines(out, r, used);
+    distribution_lines(out, r);
   } else {
     fmt::format_to(out, "\n{:<14}{:.1f} % busy, {}, {} moved\n", interconnect_name(r.machine),
-                   100.0 * used.interconnect.value_or(0.0), waiting(waits),
-                   bytes(static_cast<double>(moved)));
+                   100.0 * r.figure("interconnect_utilisation").value_or(0.0),
+                   waiting(*r.totals.interconnect_waits), bytes(moved));
   }
   fmt::format_to(out, "{:<14}{:.1f} % busy (the busiest {:.1f} %), {}\n", distributed ? "memories" : "banks",
-                 100.0 * used.mean_bank, 100.0 * used.bank, waiting(bank_waits));
+                 100.0 * r.figure("mean_bank_utilisation").value_or(0.0),
+                 100.0 * r.figure("bank_utilisation").value_or(0.0),
+                 r.totals.bank_waits ? waiting(*r.totals.bank_waits) : "no transactions");
 }
 
 }  // namespace

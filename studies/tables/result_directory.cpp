@@ -1,6 +1,6 @@
 #include "studies/tables/result_directory.h"
 
-#include <string>
+#include <charconv>
 
 #include "sim/error.h"
 
@@ -35,6 +35,22 @@ fs::path results_in(const fs::path& directory, std::string_view expected) {
                          std::string(expected));
   }
   return is_run ? run : database;
+}
+
+std::optional<PointName> point_named(const std::string& name) {
+  const std::size_t colon = name.rfind(':');
+  if (colon == std::string::npos || colon + 1 == name.size()) {
+    return std::nullopt;
+  }
+  const fs::path directory = name.substr(0, colon);
+  std::int64_t ordinal = 0;
+  const char* const end = name.data() + name.size();
+  const auto [stop, error] = std::from_chars(name.data() + colon + 1, end, ordinal);
+  if (error != std::errc() || stop != end || !is_there(directory)) {
+    return std::nullopt;
+  }
+  std::error_code ignored;
+  return PointName{fs::is_directory(directory, ignored) ? directory / "results.sqlite" : directory, ordinal};
 }
 
 }  // namespace marti::studies

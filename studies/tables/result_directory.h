@@ -2,7 +2,10 @@
 // results.sqlite.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <string_view>
 
 namespace marti::studies {
@@ -14,5 +17,13 @@ namespace marti::studies {
 /// what it should be then.
 [[nodiscard]] std::filesystem::path results_in(const std::filesystem::path& directory,
                                                std::string_view expected);
+
+/// A point of a sweep as it is named on the command line.
+struct PointName {
+  std::filesystem::path store;
+  std::int64_t ordinal = 0;
+};
+/// "DIR:N" or "DIR/results.sqlite:N", where DIR is there; std::nullopt for another name.
+[[nodiscard]] std::optional<PointName> point_named(const std::string& name);
 
 }  // namespace marti::studies

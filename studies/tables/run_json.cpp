@@ -15,9 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t most_bytes = std::int64_t{256} << 20U;
-// Results of schema 1 have machine.limit in place of machine.what_helps.
-constexpr int oldest_schema = 1;
-constexpr int newest_schema = 2;
+constexpr int schema = 3;
 // A result is far less deep, and its objects have far fewer fields.
 constexpr std::size_t deepest = 32;
 constexpr std::size_t most_fields = 2000;
@@ -149,10 +147,10 @@ RunJson read_run_json(const std::filesystem::path& path, std::initializer_list<c
   if (!found.is_number_integer()) {
     refuse(file, "has no number \"marti.schema\"");
   }
-  if (found < oldest_schema || found > newest_schema) {
+  if (found != schema) {
     throw sim::UserError(file + ": is a result of schema " + found.dump() +
-                         ", but this program reads schemas " + std::to_string(oldest_schema) + " to " +
-                         std::to_string(newest_schema) + "; read it with the program that wrote it");
+                         ", but this program reads schema " + std::to_string(schema) +
+                         "; read it with the program that wrote it, or run it again");
   }
   for (const char* part : parts) {
     (void)run.at(part);

@@ -23,23 +23,23 @@ TEST(CacheCommand, WhatIsCountedAddsUpInTheResultAndInItsTable) {
                            "shadow rays", "attribution.csv"}) {
     EXPECT_NE(outcome.output.find(line), std::string::npos) << line << "\n" << outcome.output;
   }
-  const auto result = nlohmann::json::parse(read(directory.path() / "out" / "result.json"))["machine"];
-  std::int64_t misses = 0;
-  for (const auto& [kind, counts] : result["references"].items()) {
-    misses += counts["misses"].get<std::int64_t>();
-  }
-  const auto& counts = result["counts"];
+  const auto result = nlohmann::json::parse(read(directory.path() / "out" / "result.json"));
+  const auto figure = [&](const std::string& name) {
+    return result["figures"]["machine"][name].get<std::int64_t>();
+  };
+  const std::int64_t misses = figure("misses");
   std::int64_t classed = 0;
-  for (const auto& count : counts["miss_classes"]["all"]) {
-    classed += count.get<std::int64_t>();
+  for (const char* why : {"compulsory", "capacity", "conflict", "invalidation"}) {
+    classed += figure("all_misses_" + std::string(why));
   }
   EXPECT_EQ(classed, misses);
-  EXPECT_EQ(counts["sharing"]["fetches"], misses);
+  EXPECT_EQ(figure("sharing_fetches"), misses);
+  const auto& counts = result["machine"]["counts"];
   std::int64_t lines = 0;
-  for (const auto& bucket : counts["sharing"]["histogram"]) {
+  for (const auto& bucket : counts["lines_by_nodes"]) {
     lines += bucket[1].get<std::int64_t>();
   }
-  EXPECT_EQ(lines, counts["sharing"]["distinct_lines"].get<std::int64_t>());
+  EXPECT_EQ(lines, figure("sharing_distinct_lines"));
   std::int64_t attributed = 0;
   std::int64_t waited = 0;
   for (const auto& row : counts["attribution"]) {
@@ -47,9 +47,8 @@ TEST(CacheCommand, WhatIsCountedAddsUpInTheResultAndInItsTable) {
     waited += row["bank_wait_ps"].get<std::int64_t>() + row["bank_access_ps"].get<std::int64_t>();
   }
   EXPECT_EQ(attributed, misses);
-  EXPECT_EQ(waited, result["time_ps"]["bank_wait"].get<std::int64_t>() +
-                        result["time_ps"]["bank_access"].get<std::int64_t>());
-  EXPECT_EQ(result["l2"]["hits"].get<std::int64_t>() + result["l2"]["misses"].get<std::int64_t>(), misses);
+  EXPECT_EQ(waited, figure("time_bank_wait") + figure("time_bank_access"));
+  EXPECT_EQ(figure("l2_hits") + figure("l2_misses"), misses);
   const std::string table = read(directory.path() / "out" / "attribution.csv");
   EXPECT_EQ(static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')),
             counts["attribution"].size() + 1);
@@ -66,12 +65,11 @@ TEST(CacheCommand, TheWorkingSetIsThatOfTheMachineAtItsOwnSize) {
          {"working set ", "2 x compulsory with", "working_set.csv", "working_set.vl.json"}) {
       EXPECT_NE(outcome.output.find(line), std::string::npos) << line << "\n" << outcome.output;
     }
-    const auto machine = nlohmann::json::parse(read(out / "result.json"))["machine"];
-    std::int64_t misses = 0;
+    const auto result = nlohmann::json::parse(read(out / "result.json"));
+    const auto& machine = result["machine"];
+    const auto& figures = result["figures"]["machine"];
+    auto misses = figures["misses"].get<std::int64_t>();
     std::int64_t compulsory = 0;
-    for (const auto& [kind, counts] : machine["references"].items()) {
-      misses += counts["misses"].get<std::int64_t>();
-    }
     std::size_t rows = 1;
     for (const auto& cache : machine["working_set"]["caches"]) {
       const auto& points = cache[cache["sets"] == 1 ? "fully_associative" : "ways"];
@@ -84,7 +82,7 @@ TEST(CacheCommand, TheWorkingSetIsThatOfTheMachineAtItsOwnSize) {
       rows += cache["fully_associative"].size() + cache["ways"].size();
     }
     EXPECT_EQ(misses, 0);
-    EXPECT_EQ(compulsory, machine["counts"]["miss_classes"]["all"]["compulsory"].get<std::int64_t>());
+    EXPECT_EQ(compulsory, figures["all_misses_compulsory"].get<std::int64_t>());
     const std::string table = read(out / "working_set.csv");
     EXPECT_GE(static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')), rows);
     const auto chart = nlohmann::json::parse(read(out / "working_set.vl.json"));

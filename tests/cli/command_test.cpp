@@ -77,6 +77,7 @@ TEST(Command, JsonHoldsTheConservationLaws) {
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   const nlohmann::json result = nlohmann::json::parse(outcome.output);
   const nlohmann::json& machine = result["machine"];
+  const nlohmann::json& figures = result["figures"]["machine"];
   ASSERT_EQ(machine["per_node"].size(), 16U);
   std::int64_t pixels = 0;
   for (const nlohmann::json& node : machine["per_node"]) {
@@ -84,15 +85,16 @@ TEST(Command, JsonHoldsTheConservationLaws) {
     for (const auto& [activity, time] : node["time_ps"].items()) {
       sum += time.get<std::int64_t>();
     }
-    EXPECT_EQ(sum, machine["frame_time_ps"].get<std::int64_t>());
+    EXPECT_EQ(sum, figures["end"].get<std::int64_t>());
     pixels += node["writes"].get<std::int64_t>();
   }
   EXPECT_EQ(pixels, 24 * 16);
   std::int64_t misses = 0;
-  for (const auto& [kind, counts] : machine["references"].items()) {
-    misses += counts["misses"].get<std::int64_t>();
+  for (const char* kind : {"node", "list", "primitive", "material"}) {
+    misses += figures[std::string(kind) + "_misses"].get<std::int64_t>();
   }
-  EXPECT_EQ(machine["per_cluster"][0]["interconnect"]["reads"].get<std::int64_t>(), misses);
+  EXPECT_EQ(misses, figures["misses"]);
+  EXPECT_EQ(machine["per_cluster"][0]["interconnect"]["reads"], figures["misses"]);
 }
 
 // All of them are refused in tests/fuzz, by the library; here is what the program adds.
@@ -177,6 +179,16 @@ TEST(Command, ConfigListsEveryKeyAndTheReferenceIsUpToDate) {
       << "run: marti config --markdown > docs/configuration.md";
 }
 
+TEST(Command, FiguresListsEveryFigureAndTheReferenceIsUpToDate) {
+  const Outcome text = marti("figures");
+  EXPECT_EQ(text.status, 0);
+  for (const char* figure : {"end", "speed_up", "hits", "node_misses", "camera_rays"}) {
+    EXPECT_NE(text.output.find("\n  " + std::string(figure) + " "), std::string::npos) << figure;
+  }
+  EXPECT_EQ(marti("figures --markdown").output, read(fs::path(MARTI_SOURCE) / "docs" / "figures.md"))
+      << "run: marti figures --markdown > docs/figures.md";
+}
+
 TEST(Command, AnExportedSceneRendersLikeItsSource) {
   const TemporaryDirectory directory;
   const fs::path file = directory.path() / "teapot.glb";
@@ -192,7 +204,7 @@ TEST(Command, AnExportedSceneRendersLikeItsSource) {
   const Outcome original = marti("run --json " + quoted(config) + size + "teapot:2");
   // The file holds single-precision positions, so a few rays at edges may differ, and no more.
   const auto camera_hits = [](const Outcome& outcome) {
-    return nlohmann::json::parse(outcome.output)["image"]["hits"]["camera"].get<int>();
+    return nlohmann::json::parse(outcome.output)["figures"]["frame"]["camera_hits"].get<int>();
   };
   EXPECT_NEAR(camera_hits(rendered), camera_hits(original), 3);
   EXPECT_EQ(marti("scene export teapot:2 " + quoted(directory.path() / "teapot.obj")).status, 2);
@@ -206,7 +218,7 @@ TEST(Command, FramesOfAnAnimationDiffer) {
   const auto hash = [&](const std::string& more) {
     const Outcome outcome = marti("run --json " + quoted(config) + options + more);
     EXPECT_EQ(outcome.status, 0) << outcome.output;
-    return nlohmann::json::parse(outcome.output)["image"]["image_hash"].get<std::string>();
+    return nlohmann::json::parse(outcome.output)["figures"]["frame"]["image_hash"].get<std::string>();
   };
   const std::string begin = hash("");
   const std::string third = hash(" --set frames.first=3");
@@ -256,12 +268,16 @@ TEST(Command, TheVoxelCutReportsWhatItSavedAndWhatItCost) {
   EXPECT_LE(report["exact"]["visible_pixels"], report["exact"]["changed_pixels"]);
   EXPECT_LT(report["use"]["nodes"], report["exact"]["use"]["nodes"]);
   EXPECT_EQ(report["exact"]["use"]["voxels"], 0);
-  EXPECT_EQ(result["machine"]["steps"]["cuts"], result["work_log"]["cuts"]);
-  EXPECT_EQ(result["machine"]["steps"]["passes"], result["work_log"]["passes"]);
+  const nlohmann::json& figures = result["figures"];
+  EXPECT_EQ(figures["machine"]["steps_cuts"], figures["frame"]["log_cuts"]);
+  EXPECT_EQ(figures["machine"]["steps_passes"], figures["frame"]["log_passes"]);
 
   const Outcome exact = marti(run + " --json -o " + quoted(directory.path() / "exact"));
   EXPECT_TRUE(json_of(exact)["voxel_cut"].is_null());
-  EXPECT_EQ(json_of(exact)["work_log"], report["exact"]["work_log"]);
+  const nlohmann::json whole = json_of(exact)["figures"]["frame"];
+  for (const auto& [name, count] : report["exact"]["work_log"].items()) {
+    EXPECT_EQ(count, whole["log_" + name]) << name;
+  }
   EXPECT_EQ(read(out / "exact.png"), read(directory.path() / "exact" / "image.png"));
   EXPECT_NE(read(out / "image.png"), read(out / "exact.png"));
 

@@ -59,7 +59,7 @@ TEST_F(PlanCommand, SaysWhatIsLeftOutAndWhatIsKept) {
   for (const auto& [name, entry] : all["plan"].items()) {
     EXPECT_NE(entry["decision"], "left out") << name;
   }
-  for (const char* same : {"image", "work_log", "machine", "structure", "scene", "config"}) {
+  for (const char* same : {"figures", "machine", "structure", "scene", "config"}) {
     EXPECT_EQ(one[same], planned[same]) << same;
     EXPECT_EQ(all[same], planned[same]) << same;
   }

@@ -117,8 +117,8 @@ TEST_F(ReportCommand, ReportsARun) {
   for (const json& row : data["charts"][0]["spec"]["data"]["values"]) {
     shown += row["ps"].get<std::int64_t>();
   }
-  const json& machine = result["machine"];
-  EXPECT_EQ(shown, machine["frame_time_ps"].get<std::int64_t>() * machine["nodes"].get<std::int64_t>());
+  const json& figures = result["figures"]["machine"];
+  EXPECT_EQ(shown, figures["end"].get<std::int64_t>() * figures["nodes"].get<std::int64_t>());
 }
 
 TEST_F(ReportCommand, ReportsASweepWithItsModel) {
@@ -273,10 +273,29 @@ TEST_F(ReportCommand, RefusesADamagedStore) {
   }
 }
 
+TEST_F(ReportCommand, ReportsAPointOfASweepAsARun) {
+  const fs::path sweep = made_sweep();
+  const Outcome made = marti("report " + quoted(sweep.string() + ":3"));
+  ASSERT_EQ(made.status, 0) << made.output;
+  EXPECT_NE(made.output.find("times as fast as its base machine"), std::string::npos) << made.output;
+  const json data = data_of(sweep / "point-3.html");
+  for (const char* name : {"run_cycles", "run_references", "run_waits"}) {
+    EXPECT_TRUE(has_chart(data, name)) << name;
+  }
+  std::int64_t shown = 0;
+  for (const json& row : data["charts"][0]["spec"]["data"]["values"]) {
+    shown += row["ps"].get<std::int64_t>();
+  }
+  const Outcome rows = marti("sweep " + quoted(place("sweep.toml")) + " -o " + quoted(sweep) + " --json 2> /dev/null");
+  const json point = json::parse(rows.output)["rows"][3];
+  EXPECT_EQ(shown, point["end"].get<std::int64_t>() * point["nodes"].get<std::int64_t>());
+  expect_refused("report " + quoted(sweep.string() + ":99"), "there is no such point; the sweep has 24");
+}
+
 TEST_F(ReportCommand, EscapesWhatASceneIsCalled) {
   const fs::path run = made_run();
   json result = json::parse(read(run / "result.json"));
-  result["scene"]["name"] = "</script><script>alert(1)</script>";
+  result["figures"]["frame"]["scene"] = "</script><script>alert(1)</script>";
   result["machine"]["what_helps"]["sentence"] = "<img src=x onerror=alert(1)>";
   write(run / "result.json", result.dump());
   ASSERT_EQ(marti("report " + quoted(run)).status, 0);

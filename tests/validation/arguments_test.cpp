@@ -42,15 +42,15 @@ const std::vector<ScalingPoint>& points() {
   return all;
 }
 
-double efficiency(const ScalingPoint& point) { return point.scaling.efficiency.value(); }
+double efficiency(const ScalingPoint& point) { return point.efficiency.value(); }
 
 TEST(Arguments, NaiveSharedMemorySaturates) {
   const std::vector<ScalingPoint> naive = points_of(points(), "naive_pixel");
   ASSERT_EQ(naive.size(), 4U);
   EXPECT_GT(naive.back().shared_use.value(), 0.99);
   // Sixteen times as many nodes gain nothing.
-  EXPECT_LT(naive[3].scaling.speed_up.value(), 1.05 * naive[1].scaling.speed_up.value());
-  EXPECT_LT(naive.back().scaling.speed_up.value(), 3.0);
+  EXPECT_LT(naive[3].speed_up.value(), 1.05 * naive[1].speed_up.value());
+  EXPECT_LT(naive.back().speed_up.value(), 3.0);
 }
 
 TEST(Arguments, PacketsWithCachesSaturateMuchLater) {
@@ -108,10 +108,10 @@ TEST(Arguments, HalfTheEfficiencyIsFoundBetweenPoints) {
   std::vector<ScalingPoint> machine(3);
   for (std::uint32_t i = 0; i < 3; ++i) {
     machine[i].nodes = 1U << (2U * i);
-    machine[i].scaling.efficiency = 1.0 - 0.375 * i;
+    machine[i].efficiency = 1.0 - 0.375 * i;
   }
   EXPECT_NEAR(half_efficiency_nodes(machine), 6.35, 0.01);  // 2^(2 + 2 * 1/3)
-  machine[2].scaling.efficiency = 0.5;
+  machine[2].efficiency = 0.5;
   EXPECT_EQ(half_efficiency_nodes(machine), 16.0);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "studies/figures/derived_figures.h"
 #include "studies/report/model/answer_text.h"
 
 namespace marti::studies {
@@ -18,14 +19,11 @@ constexpr double most_figure = 1e12;   // of ratios: far beyond any
 // Where most of the lost speed-up went.
 std::string largest_loss(const RunJson& run) {
   std::pair<std::string, double> largest = {"", 0.0};
-  const auto& lost = run.find("machine.speed_up_loss.lost_speed_up");
-  if (!lost.is_object()) {
-    return {};
-  }
   double all = 0.0;
-  for (const auto& [name, ignored] : lost.items()) {
+  for (const std::string_view loss : loss_names) {
+    const std::string name(loss);
     const std::optional<double> value =
-        run.optional_number("machine.speed_up_loss.lost_speed_up." + name, -most_figure, most_figure);
+        run.optional_number("figures.machine.lost_" + name, -most_figure, most_figure);
     if (value) {
       all += *value;
       if (*value > largest.second) {
@@ -43,7 +41,7 @@ std::string largest_loss(const RunJson& run) {
 std::string bound_sentence(const RunJson& run) {
   const std::optional<double> least =
       run.optional_number("machine.bounds.frame_time_at_least_ps", 0.0, longest);
-  const double end = run.required_number("machine.frame_time_ps", 1.0, longest);
+  const double end = run.required_number("figures.machine.end", 1.0, longest);
   if (!least) {
     return {};
   }
@@ -71,20 +69,21 @@ std::string saturation_sentence(const RunJson& run) {
 }  // namespace
 
 std::string machine_text(const RunJson& run) {
-  const double clusters = run.required_number("machine.clusters", 1.0, most_nodes);
-  const double nodes = run.required_number("machine.nodes", 1.0, most_nodes);
+  const double clusters = run.required_number("figures.machine.clusters", 1.0, most_nodes);
+  const double nodes = run.required_number("figures.machine.nodes", clusters, most_nodes) / clusters;
   const std::string each = fmt::format("{:.0f} node{}", nodes, nodes == 1.0 ? "" : "s");
   return clusters > 1.0 ? fmt::format("{:.0f} clusters of {}", clusters, each) : each;
 }
 
-std::vector<std::string> answer_of(const RunJson& run) {
+std::vector<std::string> answer_of(const RunJson& run, const std::string& base) {
   std::vector<std::string> answer;
   std::string first =
       fmt::format("A frame takes {} on {}",
-                  time_text(run.required_number("machine.frame_time_ps", 1.0, longest)), machine_text(run));
-  if (const std::optional<double> speed_up = run.optional_number("machine.speed_up", 0.0, most_figure)) {
-    first += fmt::format(": {:.2f} times as fast as one node, an efficiency of {:.1f} %", *speed_up,
-                         100.0 * run.required_number("machine.efficiency", 0.0, most_figure));
+                  time_text(run.required_number("figures.machine.end", 1.0, longest)), machine_text(run));
+  if (const std::optional<double> speed_up =
+          run.optional_number("figures.machine.speed_up", 0.0, most_figure)) {
+    first += fmt::format(": {:.2f} times as fast as {}, an efficiency of {:.1f} %", *speed_up, base,
+                         100.0 * run.required_number("figures.machine.efficiency", 0.0, most_figure));
   }
   answer.push_back(first + ".");
   if (const std::string helps = run.text("machine.what_helps.sentence"); !helps.empty()) {

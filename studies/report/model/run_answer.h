@@ -12,8 +12,9 @@ namespace marti::studies {
 /// them.
 [[nodiscard]] std::string machine_text(const RunJson& run);
 
-/// How fast, what helps, what was lost: the most important first. Throws UserError, naming the file and
+/// How fast, what helps, what was lost: the most important first. `base`: what the speed-up is measured
+/// against. Throws UserError, naming the file and
 /// the field, when a figure that it needs is missing or one that it uses is out of range.
-[[nodiscard]] std::vector<std::string> answer_of(const RunJson& run);
+[[nodiscard]] std::vector<std::string> answer_of(const RunJson& run, const std::string& base);
 
 }  // namespace marti::studies

@@ -7,8 +7,10 @@
 #include <tuple>
 #include <utility>
 
+#include "processors/cost/accounting.h"
 #include "sim/error.h"
 #include "sim/units.h"
+#include "studies/figures/derived_figures.h"
 #include "studies/report/model/chart_library.h"
 
 namespace marti::studies {
@@ -45,18 +47,14 @@ Table cycles_table(const RunJson& run) {
               {{"activity", ColumnType::text, "", "see docs/model.md, Accounting"},
                {"ps", ColumnType::integer, "ps", "time of all nodes"},
                {"share", ColumnType::real, "fraction", "of all nodes' time"}});
-  const RunJson times(run.find("machine.time_ps"), run.file());
   double all = 0.0;
-  if (!times.json().is_object()) {
-    return table;
+  for (const std::string_view activity : processors::activity_names) {
+    all += run.count("figures.machine.time_" + std::string(activity));
   }
-  for (const auto& [name, value] : times.json().items()) {
-    all += times.count(name);
-  }
-  for (const auto& [name, value] : times.json().items()) {
-    const std::int64_t ps = whole(times, name);
+  for (const std::string_view activity : processors::activity_names) {
+    const std::int64_t ps = whole(run, "figures.machine.time_" + std::string(activity));
     if (ps > 0) {
-      table.add_row({name, ps, static_cast<double>(ps) / all});
+      table.add_row({std::string(activity), ps, static_cast<double>(ps) / all});
     }
   }
   return table;
@@ -66,11 +64,10 @@ Table loss_table(const RunJson& run) {
   Table table("run_loss", "Where the lost speed-up went",
               {{"part", ColumnType::text, "", "see docs/model.md, Speed-up"},
                {"lost", ColumnType::real, "1", "of the ideal speed-up; below 0: won"}});
-  const Json& parts = run.find("machine.speed_up_loss.lost_speed_up");
-  if (run.count("machine.nodes") * run.count("machine.clusters") > 1.0 && parts.is_object()) {
-    for (const auto& [name, value] : parts.items()) {
-      if (value.is_number()) {
-        table.add_row({name, value.get<double>()});
+  if (run.count("figures.machine.nodes") > 1.0) {
+    for (const std::string_view loss : loss_names) {
+      if (const std::optional<double> lost = run.number("figures.machine.lost_" + std::string(loss))) {
+        table.add_row({std::string(loss), *lost});
       }
     }
   }
@@ -83,15 +80,12 @@ Table references_table(const RunJson& run) {
                {"hits", ColumnType::integer, "1", "references that hit the first-level cache"},
                {"misses", ColumnType::integer, "1", "references that missed"},
                {"hit_ratio", ColumnType::real, "fraction", "hits by both"}});
-  const RunJson kinds(run.find("machine.references"), run.file());
-  if (!kinds.json().is_object()) {
-    return table;
-  }
-  for (const auto& [name, value] : kinds.json().items()) {
-    const std::int64_t hits = whole(kinds, name + ".hits");
-    const std::int64_t misses = whole(kinds, name + ".misses");
+  for (const std::string_view kind : memory::record_kind_names) {
+    const std::string prefix = "figures.machine." + std::string(kind);
+    const std::int64_t hits = whole(run, prefix + "_hits");
+    const std::int64_t misses = whole(run, prefix + "_misses");
     if (const std::int64_t all = plus(hits, misses); all > 0) {
-      table.add_row({name, hits, misses, static_cast<double>(hits) / static_cast<double>(all)});
+      table.add_row({std::string(kind), hits, misses, static_cast<double>(hits) / static_cast<double>(all)});
     }
   }
   return table;
@@ -149,13 +143,14 @@ Table memory_table(const RunJson& run) {
                {"records", ColumnType::integer, "1", "how many"},
                {"bytes", ColumnType::integer, "byte", "records by their size, without alignment"}});
   const std::int64_t quadrics =
-      plus(plus(whole(run, "scene.spheres"), whole(run, "scene.cylinders")), whole(run, "scene.cones"));
+      plus(plus(whole(run, "figures.frame.spheres"), whole(run, "figures.frame.cylinders")),
+           whole(run, "figures.frame.cones"));
   const std::tuple<const char*, const char*, std::int64_t> kinds[] = {
-      {"nodes", "layout.node", whole(run, "structure.nodes")},
-      {"list entries", "layout.entry", whole(run, "structure.entries")},
-      {"triangles", "layout.primitive", whole(run, "scene.triangles")},
+      {"nodes", "layout.node", whole(run, "figures.frame.structure_nodes")},
+      {"list entries", "layout.entry", whole(run, "figures.frame.structure_entries")},
+      {"triangles", "layout.primitive", whole(run, "figures.frame.triangles")},
       {"spheres, cylinders, cones", "layout.quadric", quadrics},
-      {"materials", "layout.material", whole(run, "scene.materials")}};
+      {"materials", "layout.material", whole(run, "figures.frame.materials")}};
   for (const auto& [name, key, count] : kinds) {
     if (count > 0 && size_of(run, key) > 0) {
       table.add_row({std::string(name), count, times(count, size_of(run, key))});
@@ -260,7 +255,7 @@ Table nodes_table(const RunJson& run) {
                {"memory", ColumnType::real, "fraction", "transfers and bank accesses without queues"},
                {"waits", ColumnType::real, "fraction", "waiting for anything"},
                {"idle", ColumnType::real, "fraction", "nothing left to do"}});
-  const double end = run.count("machine.frame_time_ps");
+  const double end = run.count("figures.machine.end");
   std::int64_t number = 0;
   for (const RunJson& node : run.list("machine.per_node")) {
     const auto share = [&](std::initializer_list<const char*> activities) {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "processors/cost/accounting.h"
-#include "studies/figures/scaling.h"
+#include "studies/figures/find_limit.h"
 #include "studies/report/model/answer_text.h"
 #include "studies/sweep/store/sweep_best.h"
 

@@ -27,7 +27,7 @@ struct Chosen {
 [[nodiscard]] std::string place_text(const ReportPoints& sweep, const ReportPoint& point);
 
 /// Where most of the time of a machine of the image scheme goes: the sentence of find_limit
-/// (studies/figures/scaling.h). Empty for a machine of another scheme, because a store lacks how busy its
+/// (studies/figures/find_limit.h). Empty for a machine of another scheme, because a store lacks how busy its
 /// stages and nodes are; for one of more than 65,536 nodes; and where the store has no times.
 [[nodiscard]] std::string limit_sentence(const ReportPoint& point);
 

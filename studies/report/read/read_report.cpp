@@ -6,7 +6,6 @@
 #include "studies/report/model/sweep_report.h"
 #include "studies/report/read/read_points.h"
 #include "studies/sweep/store/store_schema.h"
-#include "studies/tables/result_directory.h"
 #include "studies/tables/sqlite_connection.h"
 
 namespace marti::studies {
@@ -18,7 +17,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view expected =
     "expected is the directory of `marti run CONFIG -o DIR`, `marti sweep CONFIG -o DIR` or `marti study "
     "... -o "
-    "DIR`";
+    "DIR`, or DIR:N for point N of a sweep";
 
 // Sweeps and studies both have a results.sqlite; its table `columns` differs. Other faults of the file are
 // reported by the code that reads it.
@@ -35,6 +34,9 @@ ReportData read_report(const fs::path& directory) {
   std::error_code error;
   const fs::file_status status = fs::status(directory, error);
   if (status.type() == fs::file_type::not_found) {
+    if (const std::optional<PointName> point = point_named(directory.string())) {
+      return read_point_report(*point);
+    }
     throw sim::UserError(directory.string() + ": there is no such directory; " + std::string(expected));
   }
   if (error) {

@@ -4,12 +4,14 @@
 #include <filesystem>
 
 #include "studies/report/model/report_data.h"
+#include "studies/tables/result_directory.h"
 
 namespace marti::studies {
 
-/// Reads the directory that `marti run -o`, `marti sweep -o` or `marti study ... -o` has written. The same
-/// files give the same data. Throws UserError, naming the file and what to do, for any other directory, and
-/// for what cannot be read, is damaged, of another version or too large for a page.
+/// Reads the directory that `marti run -o`, `marti sweep -o` or `marti study ... -o` has written, or point N
+/// of a sweep ("DIR:N"). The same files give the same data. Throws UserError, naming the file and what to do,
+/// for any other directory, and for what cannot be read, is damaged, of another version or too large for a
+/// page.
 [[nodiscard]] ReportData read_report(const std::filesystem::path& directory);
 
 // The readers of runs and studies, with the same errors.
@@ -17,6 +19,9 @@ namespace marti::studies {
 /// A directory of `marti run -o`: result.json, and if they exist image.png, heat-*.png and
 /// working_set.vl.json beside it.
 [[nodiscard]] ReportData read_run_report(const std::filesystem::path& directory);
+
+/// A point of a sweep.
+[[nodiscard]] ReportData read_point_report(const PointName& point);
 
 /// A directory of `marti study ... -o`: results.sqlite, and if they exist *.png and report.txt beside it.
 [[nodiscard]] ReportData read_study_report(const std::filesystem::path& directory);

@@ -1,4 +1,5 @@
-// The report of a run's directory: what its result.json says, and the files beside it.
+// The report of a run's directory: what its result.json says, and the files beside it; and that of a point of
+// a sweep, as far as its store says the same.
 #include <fmt/format.h>
 
 #include <map>
@@ -11,6 +12,7 @@
 #include "studies/report/model/run_charts.h"
 #include "studies/report/read/read_report.h"
 #include "studies/report/read/report_files.h"
+#include "studies/sweep/store/point_json.h"
 #include "studies/tables/result_directory.h"
 #include "studies/tables/run_files.h"
 #include "studies/tables/run_json.h"
@@ -50,14 +52,13 @@ Table plan_table(const RunJson& run) {
 }
 
 Table figures_table(const RunJson& run) {
-  Table table(
-      "figures", "Figures of the run",
-      {{"figure", ColumnType::text, "", "field of result.json"}, {"value", ColumnType::text, "", ""}});
-  for (const char* part : {"scene", "structure", "image", "work_log", "machine"}) {
+  Table table("figures", "Figures of the run",
+              {{"figure", ColumnType::text, "", "name in the catalogue (`marti figures`)"},
+               {"value", ColumnType::text, "", "times in ps"}});
+  for (const char* part : {"figures.frame", "figures.machine"}) {
     for (const auto& [name, value] : run.at(part).items()) {
-      if (value.is_number() || value.is_boolean() || value.is_string()) {
-        table.add_row(
-            {fmt::format("{}.{}", part, name), value.is_string() ? value.get<std::string>() : value.dump()});
+      if (value.is_number() || value.is_string()) {
+        table.add_row({name, value.is_string() ? value.get<std::string>() : value.dump()});
       }
     }
   }
@@ -110,28 +111,45 @@ void add_files(const fs::path& directory, const RunJson& run, ReportData& report
   }
 }
 
+// What a run and a point of a sweep have both.
+ReportData machine_report(const RunJson& run, const std::string& base) {
+  ReportData report;
+  report.kind = "run";
+  report.answer = answer_of(run, base);
+  add_run_charts(run, report);
+  add_configuration(run, report);
+  report.provenance = {{"version of marti", run.text("marti.version")},
+                       {"configuration", run.text("config.file")},
+                       {"hash of the image", run.text("figures.frame.image_hash")},
+                       {"hash of all hits", run.text("figures.frame.hit_hash")}};
+  return report;
+}
+
 }  // namespace
 
 ReportData read_run_report(const fs::path& directory) {
-  const RunJson run = read_run_json(directory / "result.json", {"config.keys", "scene", "structure", "image",
-                                                                "work_log", "plan", "machine"});
-  ReportData report;
-  report.kind = "run";
-  report.title = fmt::format("Run of {} on {}", run.text("scene.name"), machine_text(run));
-  report.answer = answer_of(run);
-  add_run_charts(run, report);
+  const RunJson run = read_run_json(
+      directory / "result.json",
+      {"config.keys", "figures.frame", "figures.machine", "scene", "structure", "plan", "machine"});
+  ReportData report = machine_report(run, "one node");
+  report.title = fmt::format("Run of {} on {}", run.text("figures.frame.scene"), machine_text(run));
   add_files(directory, run, report);
   if (Table helps = helps_table(run); !helps.rows().empty()) {
     report.tables.push_back({std::move(helps), false});
   }
   report.tables.push_back({plan_table(run), true});
   report.tables.push_back({figures_table(run), true});
-  add_configuration(run, report);
-  report.provenance = {{"version of marti", run.text("marti.version")},
-                       {"configuration", run.text("config.file")},
-                       {"scene", run.text("scene.source")},
-                       {"hash of the image", run.text("image.image_hash")},
-                       {"hash of all hits", run.text("image.hit_hash")}};
+  report.provenance.emplace_back("scene", run.text("scene.source"));
+  return report;
+}
+
+ReportData read_point_report(const PointName& point) {
+  const std::string name = fmt::format("{}:{}", point.store.string(), point.ordinal);
+  const RunJson run(point_json(SweepReader(point.store), point.ordinal, name), point.store.string());
+  ReportData report = machine_report(run, "its base machine");
+  report.title = fmt::format("Point {} of a sweep: {} on {}", point.ordinal, run.text("figures.frame.scene"),
+                             machine_text(run));
+  report.tables.push_back({figures_table(run), true});
   return report;
 }
 

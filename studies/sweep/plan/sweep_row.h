@@ -12,8 +12,9 @@
 
 #include "processors/machine/machine_config.h"
 #include "processors/replay/replay.h"
+#include "studies/figures/counted_figures.h"
+#include "studies/run/frame_figures.h"
 #include "studies/run/functional_run.h"
-#include "studies/tables/table.h"
 
 namespace marti::studies {
 
@@ -33,29 +34,24 @@ struct SweepHistogram {
 };
 
 struct SweepRow {
-  /// One for each of sweep_columns(), whatever the machine; std::nullopt where the machine has no such part.
-  std::vector<std::optional<std::int64_t>> counters;
+  Counts counters;  ///< one for each of counted_figures()
   std::vector<SweepHistogram> histograms;
   bool operator==(const SweepRow&) const = default;
   static auto parts(auto& row) { return std::tie(row.counters, row.histograms); }
 };
 
-/// The counters of every row, in order: all integers. "end" (ps) is the frame time.
-[[nodiscard]] std::span<const Column> sweep_columns();
-
 /// Names of the histograms that a row can have.
 [[nodiscard]] std::span<const std::string_view> sweep_histogram_names();
 
-/// Sums over nodes, clusters and banks; of peaks the largest. Throws InternalError for a sum that does not
-/// fit.
+/// Throws InternalError for a sum that does not fit.
 [[nodiscard]] SweepRow sweep_row(const processors::MachineConfig& machine,
                                  const processors::MachineResult& result);
 
 /// What is kept of a functional run: counters of its scene, structure, rays and log.
 struct FrameRow {
-  std::vector<std::optional<std::int64_t>> counters;  ///< one for each of frame_columns()
-  std::string scene;                                  ///< its name
-  std::string scene_hash;                             ///< 16 hexadecimal digits, like the other hashes
+  Counts counters;         ///< one for each of frame_figures()
+  std::string scene;       ///< its name
+  std::string scene_hash;  ///< 16 hexadecimal digits, like the other hashes
   std::string image_hash;
   std::string hit_hash;
   std::vector<std::string> notes;
@@ -64,9 +60,6 @@ struct FrameRow {
     return std::tie(row.counters, row.scene, row.scene_hash, row.image_hash, row.hit_hash, row.notes);
   }
 };
-
-/// The counters of every FrameRow, in order: all integers.
-[[nodiscard]] std::span<const Column> frame_columns();
 
 /// `scene_hash` is that of the scene as opened (studies/run/scene_hash.h).
 [[nodiscard]] FrameRow frame_row(const FunctionalRun& run, std::uint64_t scene_hash);

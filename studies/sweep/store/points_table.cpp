@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "sim/error.h"
-#include "studies/sweep/plan/sweep_row.h"
-#include "studies/sweep/store/sweep_metrics.h"
+#include "studies/figures/derived_figures.h"
+#include "studies/sweep/store/sweep_best.h"
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_table.h"
 #include "studies/tables/text_units.h"
@@ -69,14 +69,11 @@ Column column_of(const std::string& name) {
   if (const auto found = own.find(name); found != own.end()) {
     describe(found->second.first, found->second.second);
   }
-  for (const SweepMetric& metric : derived_metrics()) {
-    if (metric.name == name) {
-      describe(metric.unit, metric.description);
-    }
-  }
-  for (const Column& counter : sweep_columns()) {
-    if (counter.name == name) {
-      describe(counter.unit, counter.description);
+  for (const auto& figures : {counted_figures(), derived_figures()}) {
+    for (const FigureEntry& figure : figures) {
+      if (figure.name == name) {
+        describe(figure.unit, figure.description);
+      }
     }
   }
   return column;
@@ -122,7 +119,8 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
   std::vector<std::string> names = reader.axes();
   const std::size_t axes = names.size();
   names.insert(names.end(), {"cost", metric});
-  const Better better = find_metric(metric, sweep_columns()).better;
+  const FigureEntry& figure = figure_named(metric);
+  const Better better = figure.better;
   std::vector<Row> rows = rows_of(reader, names);
   std::erase_if(rows, [](const Row& row) { return !number_of(row.figures.back()); });
   std::vector<Offer> offers;
@@ -139,20 +137,20 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
     front.push_back(rows[index]);
   }
   // Times that differ in their fourth digit must not look alike.
-  const bool time = find_metric(metric, sweep_columns()).unit == "ps";
-  const auto figure = [time](const Cell& cell) {
+  const bool time = figure.unit == "ps";
+  const auto shown = [time](const Cell& cell) {
     return time ? seconds(static_cast<sim::Ticks>(*number_of(cell))) : text_of(cell);
   };
   std::string text = fmt::format("best {}{}: {} at a cost of {:g}:", metric,
                                  budget ? fmt::format(" within {:g}", *budget) : std::string(),
-                                 figure(rows[*best].figures.back()), offers[*best].cost);
+                                 shown(rows[*best].figures.back()), offers[*best].cost);
   for (std::size_t axis = 0; axis < axes; ++axis) {
     text += (axis == 0 ? " " : ", ") + names[axis] + " = " + text_of(rows[*best].figures[axis]);
   }
   Table table = table_of("best", "Points that no other beats in cost and " + metric, names, front);
   for (Row& row : front) {
     if (time) {
-      row.figures.back() = figure(row.figures.back());
+      row.figures.back() = shown(row.figures.back());
     }
   }
   text += "\n\n" + studies::text_of(table_of("best", table.title(), names, front));

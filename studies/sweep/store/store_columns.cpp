@@ -1,57 +1,28 @@
 #include "studies/sweep/store/store_columns.h"
 
-#include "processors/cost/accounting.h"
-#include "studies/sweep/plan/sweep_row.h"
+#include "studies/figures/derived_figures.h"
+#include "studies/run/frame_figures.h"
 #include "studies/tables/sqlite_connection.h"
 
 namespace marti::studies {
 
 namespace {
 
-// A figure of the view summary. r is the result of the point's machine, b of its base, c of the machine that
-// all are compared with. SQL has no value where it divides by 0.
-struct Derived {
-  std::string name;
-  std::string unit;
-  std::string description;
-  std::string sql;
-};
-
-std::string quotient(const std::string& part, const std::string& whole) {
-  return "CAST(" + part + " AS REAL) / (" + whole + ")";
+StoreColumn column_of(const std::string& table, const FigureEntry& figure) {
+  return {table,
+          figure.name,
+          figure.unit,
+          figure.description,
+          std::string(merge_names.at(static_cast<std::size_t>(figure.merge))),
+          std::string(better_names.at(static_cast<std::size_t>(figure.better))),
+          figure.formula ? figure.formula->text() : std::string()};
 }
 
-std::vector<Derived> derived() {
-  std::vector<Derived> all = {
-      {"end", "ps", "frame time", "r.\"end\""},
-      {"nodes", "1", "nodes of all clusters", "r.nodes"},
-      {"speed_up", "1", "frame time of the base machine / frame time", quotient("b.\"end\"", "r.\"end\"")},
-      {"efficiency", "1", "speed_up * nodes of the base machine / nodes",
-       quotient("b.\"end\"", "r.\"end\"") + " * b.nodes / r.nodes"},
-      {"times_faster", "1", "frame time of the machine compared with / frame time",
-       quotient("c.\"end\"", "r.\"end\"")},
-      {"hit_ratio", "1", "hits / (hits + misses), first level", quotient("r.hits", "r.hits + r.misses")},
-      {"l2_hit_ratio", "1", "l2_hits / (l2_hits + l2_misses)",
-       quotient("r.l2_hits", "r.l2_hits + r.l2_misses")},
-      {"interconnect_utilisation", "1", "share of the frame time that the busiest cluster's links transfer",
-       quotient("r.most_interconnect_busy", "r.\"end\" * (r.interconnect_links / r.clusters)")},
-      {"bank_utilisation", "1", "share of the frame time that the busiest bank is busy, at most 1",
-       "MIN(1.0, " + quotient("r.most_bank_busy", "r.\"end\"") + ")"},
-      {"network_utilisation", "1", "share of the frame time that the busiest cluster's network is busy",
-       quotient("r.most_network_busy", "r.\"end\" * (r.network_links / r.clusters)")},
-      {"mean_interconnect_wait", "ps", "interconnect_wait_sum / interconnect_wait_count",
-       quotient("r.interconnect_wait_sum", "r.interconnect_wait_count")},
-      {"mean_bank_wait", "ps", "bank_wait_sum / bank_wait_count",
-       quotient("r.bank_wait_sum", "r.bank_wait_count")},
-      {"finish_balance", "1", "mean finish of the nodes / the latest",
-       quotient("r.node_finish", "r.nodes * r.latest_finish")},
-  };
-  for (const std::string_view activity : processors::activity_names) {
-    const std::string name(activity);
-    all.push_back({"share_" + name, "1", "share of the nodes' time: " + name,
-                   quotient("r.time_" + name, "r.nodes * r.\"end\"")});
-  }
-  return all;
+// The figures of the view summary: those by which points are told apart at a glance.
+std::vector<FigureEntry> summary_figures() {
+  std::vector<FigureEntry> figures = {figure_named("end"), figure_named("nodes")};
+  figures.insert(figures.end(), derived_figures().begin(), derived_figures().end());
+  return figures;
 }
 
 std::vector<StoreColumn> point_columns(const std::string& table, std::span<const std::string> axes) {
@@ -118,8 +89,8 @@ std::vector<StoreColumn> store_columns(std::span<const std::string> axes) {
       {"histograms", "count", "1", "waits in the bucket"},
       {"results", "machine", "", "the machine"},
       {"results", "checksum", "", "of the row and its histograms"}};
-  for (const Column& column : sweep_columns()) {
-    all.push_back({"results", column.name, column.unit, column.description});
+  for (const FigureEntry& figure : counted_figures()) {
+    all.push_back(column_of("results", figure));
   }
   append(all, {{"frame_results", "frame", "", "the frame"},
                {"frame_results", "scene", "", "the scene's own name"},
@@ -127,13 +98,13 @@ std::vector<StoreColumn> store_columns(std::span<const std::string> axes) {
                {"frame_results", "image_hash", "", "of the bits of all pixels, FNV-1a"},
                {"frame_results", "hit_hash", "", "of the outcome of every ray"},
                {"frame_results", "checksum", "", "of the row and its notes"}});
-  for (const Column& column : frame_columns()) {
-    all.push_back({"frame_results", column.name, column.unit, column.description});
+  for (const FigureEntry& figure : frame_figures()) {
+    all.push_back(column_of("frame_results", figure));
   }
   append(all, point_columns("points", axes));
   append(all, point_columns("summary", axes));
-  for (const Derived& figure : derived()) {
-    all.push_back({"summary", figure.name, figure.unit, figure.description});
+  for (const FigureEntry& figure : summary_figures()) {
+    all.push_back(column_of("summary", figure));
   }
   return all;
 }
@@ -145,8 +116,10 @@ std::string summary_view(std::span<const std::string> axes) {
     sql += separator + "p." + sql_name(column.name) + " AS " + sql_name(column.name);
     separator = ", ";
   }
-  for (const Derived& figure : derived()) {
-    sql += ", " + figure.sql + " AS " + sql_name(figure.name);
+  // r is the result of the point's machine, b of its base, c of the machine that all are compared with.
+  for (const FigureEntry& figure : summary_figures()) {
+    sql += ", " + (figure.formula ? figure.formula->sql() : "r." + sql_name(figure.name)) + " AS " +
+           sql_name(figure.name);
   }
   return sql +
          " FROM points p LEFT JOIN results r ON r.machine = p.machine LEFT JOIN results b ON b.machine = "

@@ -15,10 +15,10 @@ namespace {
 using Counters = std::vector<std::optional<std::int64_t>>;
 
 // Columns are found by their names: another version may have had others.
-std::vector<int> places_of(const SqliteStatement& row, std::span<const Column> columns) {
+std::vector<int> places_of(const SqliteStatement& row, std::span<const FigureEntry> columns) {
   const std::vector<std::string> names = row.column_names();
   std::vector<int> places;
-  for (const Column& column : columns) {
+  for (const FigureEntry& column : columns) {
     const auto at = std::find(names.begin(), names.end(), column.name);
     places.push_back(at == names.end() ? -1 : static_cast<int>(at - names.begin()));
   }
@@ -54,15 +54,15 @@ bool is_usual(const SweepHistogram::Bucket& bucket) {
 }  // namespace
 
 RowWriter::RowWriter(SqliteConnection& connection)
-    : result_(connection, insert_sql("results", sweep_columns().size() + first_result_counter)),
+    : result_(connection, insert_sql("results", counted_figures().size() + first_result_counter)),
       bucket_(connection, insert_sql("wait_buckets", 5)),
-      frame_(connection, insert_sql("frame_results", frame_columns().size() + first_frame_counter)),
+      frame_(connection, insert_sql("frame_results", frame_figures().size() + first_frame_counter)),
       note_(connection, insert_sql("frame_notes", 3)),
       machine_sums_(connection, machine_results),
       frame_sums_(connection, frame_results) {}
 
 void RowWriter::add(std::int64_t machine, const SweepRow& row) {
-  sim::ensure(row.counters.size() == sweep_columns().size(), "a row has another number of counters");
+  sim::ensure(row.counters.size() == counted_figures().size(), "a row has another number of counters");
   std::vector<Cell> cells = {machine, no_checksum_yet};
   std::transform(row.counters.begin(), row.counters.end(), std::back_inserter(cells), counter_cell);
   result_.run(cells);
@@ -80,7 +80,7 @@ void RowWriter::add(std::int64_t machine, const SweepRow& row) {
 }
 
 void RowWriter::add(std::int64_t frame, const FrameRow& row) {
-  sim::ensure(row.counters.size() == frame_columns().size(), "a frame's row has another number of counters");
+  sim::ensure(row.counters.size() == frame_figures().size(), "a frame's row has another number of counters");
   std::vector<Cell> cells = {frame, row.scene, row.scene_hash, row.image_hash, row.hit_hash, no_checksum_yet};
   std::transform(row.counters.begin(), row.counters.end(), std::back_inserter(cells), counter_cell);
   frame_.run(cells);
@@ -99,8 +99,8 @@ RowReader::RowReader(SqliteConnection& connection)
                "WHERE h.machine = ? ORDER BY h.wait, h.lowest"),
       frame_(connection, "SELECT * FROM frame_results WHERE frame = ?"),
       notes_(connection, "SELECT note FROM frame_notes WHERE frame = ? ORDER BY ordinal"),
-      result_places_(places_of(result_, sweep_columns())),
-      frame_places_(places_of(frame_, frame_columns())) {}
+      result_places_(places_of(result_, counted_figures())),
+      frame_places_(places_of(frame_, frame_figures())) {}
 
 std::optional<SweepRow> RowReader::find_machine(std::int64_t machine) {
   if (!result_.with({machine}).next()) {

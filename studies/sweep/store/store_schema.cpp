@@ -20,7 +20,7 @@ namespace marti::studies {
 namespace {
 
 constexpr std::int64_t application = 0x6d617274;  // "mart"
-constexpr std::int64_t format = 2;                // 1: without checksums
+constexpr std::int64_t format = 3;                // 1: without checksums; 2: columns say less of figures
 
 constexpr std::string_view what_to_do =
     "; give another directory, or remove the file and run the sweep again";
@@ -29,7 +29,8 @@ constexpr const char* fixed_tables = R"(
 CREATE TABLE store (what TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE provenance (what TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE columns ("table" TEXT NOT NULL, name TEXT NOT NULL, unit TEXT NOT NULL,
-                      description TEXT NOT NULL);
+                      description TEXT NOT NULL, merge TEXT NOT NULL, better TEXT NOT NULL,
+                      formula TEXT NOT NULL);
 CREATE TABLE settings (id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL, UNIQUE (key, value));
 CREATE TABLE sections (section INTEGER NOT NULL, setting INTEGER NOT NULL,
                        PRIMARY KEY (section, setting)) WITHOUT ROWID;
@@ -67,7 +68,7 @@ CREATE VIEW histograms AS
 )";
 
 bool has_columns(SqliteConnection& connection, const std::string& table, std::size_t first,
-                 std::span<const Column> columns) {
+                 std::span<const FigureEntry> columns) {
   std::vector<std::string> names;  // none when there is no such table
   SqliteStatement rows(connection, "SELECT name FROM pragma_table_info(?) ORDER BY cid");
   rows.with({table});
@@ -76,12 +77,12 @@ bool has_columns(SqliteConnection& connection, const std::string& table, std::si
   }
   return names.size() == first + columns.size() &&
          std::equal(columns.begin(), columns.end(), names.begin() + static_cast<std::ptrdiff_t>(first),
-                    [](const Column& column, const std::string& name) { return name == column.name; });
+                    [](const FigureEntry& column, const std::string& name) { return name == column.name; });
 }
 
-std::string counters_sql(std::span<const Column> columns) {
+std::string counters_sql(std::span<const FigureEntry> columns) {
   std::string sql;
-  for (const Column& column : columns) {
+  for (const FigureEntry& column : columns) {
     sql += ", " + sql_name(column.name) + " INTEGER";
   }
   return sql;
@@ -169,8 +170,8 @@ void check_store_version(SqliteConnection& connection, const std::filesystem::pa
   // program that was changed may give other results.
   if (connection.value<std::int64_t>("PRAGMA user_version") != format ||
       value_of(connection, "build") != build_of_program() ||
-      !has_columns(connection, "results", first_result_counter, sweep_columns()) ||
-      !has_columns(connection, "frame_results", first_frame_counter, frame_columns())) {
+      !has_columns(connection, "results", first_result_counter, counted_figures()) ||
+      !has_columns(connection, "frame_results", first_frame_counter, frame_figures())) {
     throw sim::UserError(file.string() + ": was written by another build of version " + found +
                          ", whose results could differ" + std::string(what_to_do));
   }
@@ -181,11 +182,11 @@ void create_store(SqliteConnection& connection) {
                      "; PRAGMA user_version = " + std::to_string(format));
   connection.execute(fixed_tables);
   connection.execute("CREATE TABLE results (machine INTEGER PRIMARY KEY, checksum INTEGER" +
-                     counters_sql(sweep_columns()) + ")");
+                     counters_sql(counted_figures()) + ")");
   connection.execute(
       "CREATE TABLE frame_results (frame INTEGER PRIMARY KEY, scene TEXT NOT NULL, scene_hash TEXT NOT NULL, "
       "image_hash TEXT NOT NULL, hit_hash TEXT NOT NULL, checksum INTEGER" +
-      counters_sql(frame_columns()) + ")");
+      counters_sql(frame_figures()) + ")");
   SqliteStatement store(connection, insert_sql("store", 2));
   store.run({"format", std::to_string(format)});
   store.run({"version", std::string(version)});
@@ -212,9 +213,10 @@ void create_points(SqliteConnection& connection, const SweepPlan& plan) {
   }
   connection.execute(table + ")");
   connection.execute(summary_view(plan.axes));
-  SqliteStatement insert(connection, insert_sql("columns", 4));
+  SqliteStatement insert(connection, insert_sql("columns", 7));
   for (const StoreColumn& column : store_columns(plan.axes)) {
-    insert.run({column.table, column.name, column.unit, column.description});
+    insert.run({column.table, column.name, column.unit, column.description, column.merge, column.better,
+                column.formula});
   }
 }
 

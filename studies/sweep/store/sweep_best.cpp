@@ -10,7 +10,7 @@ namespace marti::studies {
 
 namespace {
 
-bool is_better(double a, double b, Better better) { return better == Better::lower ? a < b : a > b; }
+bool is_better(double a, double b, Better better) { return better == Better::higher ? a > b : a < b; }
 
 void check(std::span<const Offer> offers) {
   const bool numbers = std::none_of(offers.begin(), offers.end(), [](const Offer& offer) {

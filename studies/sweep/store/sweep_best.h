@@ -2,14 +2,13 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
-namespace marti::studies {
+#include "studies/figures/figure_entry.h"
 
-enum class Better : std::uint8_t { lower, higher };
+namespace marti::studies {
 
 /// A machine as a buyer sees it. Neither figure is NaN.
 struct Offer {

@@ -21,15 +21,10 @@ struct QueueCounters {
                       C{"waits", "ps", "sum of their waits", &QueueCounters::waits},
                       C{"longest", "1", "longest queue", &QueueCounters::longest, MergeRule::maximum}};
   }
-  static constexpr auto formulas() {
-    using F = Formula<QueueCounters>;
-    return std::array{F{"mean_wait", "ps", "waits / arrivals",
-                        [](const QueueCounters& c) { return ratio(c.waits, c.arrivals); }}};
-  }
   friend bool operator==(const QueueCounters&, const QueueCounters&) = default;
 };
 static_assert(declares_every_member<QueueCounters>());
-static_assert(HasCounters<QueueCounters> && HasFormulas<QueueCounters> && !HasCounters<Moments>);
+static_assert(HasCounters<QueueCounters> && !HasCounters<Moments>);
 
 struct Incomplete {
   std::int64_t seen = 0;
@@ -55,11 +50,6 @@ TEST(Statistics, DeclaredNamesAreVisitedInOrder) {
     seen += std::string(counter.name) + "=" + std::to_string(value) + " " + std::string(counter.unit) + ";";
   });
   EXPECT_EQ(seen, "arrivals=7 1;waits=35 ps;longest=2 1;");
-  for_each_formula(QueueCounters{7, 35, 2}, [&](const auto& formula, std::optional<double> value) {
-    EXPECT_EQ(formula.name, "mean_wait");
-    EXPECT_EQ(value, 5.0);
-  });
-  for_each_formula(QueueCounters{}, [&](const auto&, std::optional<double> value) { EXPECT_FALSE(value); });
 }
 
 TEST(Statistics, NoSamplesHaveNoMean) {

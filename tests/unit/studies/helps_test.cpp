@@ -306,7 +306,7 @@ TEST(WhatHelps, ANearlyFullBusIsNotRelievedByMoreNodes) {
     sim::Config config =
         sim::Config::from_file(run_schema(), fs::path(MARTI_SOURCE) / "configs" / "marti.toml", assignments);
     const RunResult result = run(config, {.what_helps = measuring});
-    ASSERT_GT(utilisation_of(result.machine, result.timed).interconnect.value_or(0.0), 0.9);
+    ASSERT_GT(result.figure("interconnect_utilisation").value_or(0.0), 0.9);
     ASSERT_TRUE(result.helps.has_value());
     EXPECT_TRUE(result.helps->sentence.starts_with("interconnect.width 4 B -> 8 B: frame "))
         << result.helps->sentence;

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "studies/figures/scaling.h"
+#include "studies/figures/find_limit.h"
 #include "studies/report/model/answer_text.h"
 #include "studies/report/model/run_answer.h"
 #include "studies/report/model/sweep_answer.h"
@@ -154,13 +154,13 @@ TEST(TimeText, KeepsWithin64Bits) {
 }
 
 const char* const whole_run =
-    R"({"machine": {"frame_time_ps": 2000000, "nodes": 4, "clusters": 1, "speed_up": 3,
-  "efficiency": 0.75, "bounds": {"frame_time_at_least_ps": 1000000, "by": "computing",
-  "prediction": {"saturation_nodes": 11.0, "mean_value_error": -0.125}},
-  "speed_up_loss": {"lost_speed_up": {"bank_wait": 1.0}}}})";
+    R"({"figures": {"machine": {"end": 2000000, "speed_up": 3, "efficiency": 0.75, "lost_contention": 1.0,
+  "nodes": 4, "clusters": 1}},
+  "machine": {"bounds": {"frame_time_at_least_ps": 1000000, "by": "computing",
+  "prediction": {"saturation_nodes": 11.0, "mean_value_error": -0.125}}}})";
 
 TEST(AnswerOfRun, BoundsThisMachineOnly) {
-  const std::vector<std::string> answer = answer_of(RunJson(Json::parse(whole_run), "f"));
+  const std::vector<std::string> answer = answer_of(RunJson(Json::parse(whole_run), "f"), "one node");
   ASSERT_EQ(answer.size(), 4U);
   EXPECT_EQ(answer[0],
             "A frame takes 2.000 us on 4 nodes: 3.00 times as fast as one node, an efficiency of 75.0 %.");
@@ -171,19 +171,22 @@ TEST(AnswerOfRun, BoundsThisMachineOnly) {
 }
 
 TEST(AnswerOfRun, NamesTheFieldThatIsWrong) {
-  const std::vector<std::string> required = {"/frame_time_ps", "/nodes", "/clusters", "/efficiency"};
+  const std::string figures = "/figures/machine";
+  const std::string bounds = "/machine/bounds";
+  const std::vector<std::string> required = {figures + "/end", figures + "/nodes", figures + "/clusters",
+                                             figures + "/efficiency"};
   const std::vector<std::string> optional = {
-      "/speed_up", "/bounds/frame_time_at_least_ps", "/bounds/prediction/saturation_nodes",
-      "/bounds/prediction/mean_value_error", "/speed_up_loss/lost_speed_up/bank_wait"};
+      figures + "/speed_up", bounds + "/frame_time_at_least_ps", bounds + "/prediction/saturation_nodes",
+      bounds + "/prediction/mean_value_error", figures + "/lost_contention"};
   const auto error = [&](const std::string& field, const Json& value) {
     Json run = Json::parse(whole_run);
-    run["machine"][Json::json_pointer(field)] = value;
-    return user_error_of([&] { (void)answer_of(RunJson(run, "some/result.json")); });
+    run[Json::json_pointer(field)] = value;
+    return user_error_of([&] { (void)answer_of(RunJson(run, "some/result.json"), "one node"); });
   };
   const auto expect_refused = [&](const std::string& field) {
     for (const Json& value : {Json("4"), Json(true), Json(-1e300), Json(1e300), Json(Json::array())}) {
       const std::string message = error(field, value);
-      EXPECT_NE(message.find("some/result.json: has no number \"machine."), std::string::npos)
+      EXPECT_NE(message.find("some/result.json: has no number \""), std::string::npos)
           << field << value << message;
       EXPECT_NE(message.find(field.substr(field.rfind('/') + 1)), std::string::npos) << message;
     }
@@ -196,8 +199,8 @@ TEST(AnswerOfRun, NamesTheFieldThatIsWrong) {
     expect_refused(field);
     EXPECT_EQ(error(field, nullptr), "no UserError") << field;
   }
-  EXPECT_NE(error("/frame_time_ps", 0), "no UserError");
-  EXPECT_NE(error("/nodes", 0), "no UserError");
+  EXPECT_NE(error(figures + "/end", 0), "no UserError");
+  EXPECT_NE(error(figures + "/nodes", 0), "no UserError");
 }
 
 }  // namespace

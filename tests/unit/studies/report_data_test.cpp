@@ -235,7 +235,7 @@ TEST(IsThere, NamesALinkToNothingAndWhatMayNotBeLookedAt) {
 
 TEST(RunCharts, NameTheFileWhoseCountsAreTooLarge) {
   const RunJson run(
-      Json::parse(R"({"machine": {"references": {"node": {"hits": 9223372036854775807, "misses": 1}}}})"),
+      Json::parse(R"({"figures": {"machine": {"node_hits": 9223372036854775807, "node_misses": 1}}})"),
       "some/result.json");
   ReportData report;
   const std::string error = user_error_of([&] { add_run_charts(run, report); });

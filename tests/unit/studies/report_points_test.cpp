@@ -32,7 +32,7 @@ class ReadReportPoints : public testing::Test {
       }
       for (std::size_t machine = 0; machine < 4; ++machine) {
         SweepRow row;
-        for (std::size_t i = 0; i < sweep_columns().size(); ++i) {
+        for (std::size_t i = 0; i < counted_figures().size(); ++i) {
           row.counters.emplace_back(1000 + 10 * machine);
         }
         store.add_result(machine, row, 1);

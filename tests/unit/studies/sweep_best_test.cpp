@@ -7,7 +7,6 @@
 #include <map>
 
 #include "studies/keys/machine_cost.h"
-#include "studies/sweep/store/sweep_metrics.h"
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
@@ -112,17 +111,6 @@ TEST(Cost, IsThatOfEachPart) {
   machine.placement = processors::Placement::distributed;
   machine.network.width = 4;
   EXPECT_DOUBLE_EQ(cost_of(prices, machine), 2 * (1000.0 + 3 * (130.0 + 4 * 20.0)));
-}
-
-TEST(Metrics, AreFoundByName) {
-  const std::vector<Column> columns = {{"end", ColumnType::integer, "ps", "frame time"},
-                                       {"node_hits", ColumnType::integer, "1", "hits"}};
-  EXPECT_EQ(find_metric("speed_up", columns).better, Better::higher);
-  EXPECT_EQ(find_metric("interconnect_utilisation", columns).better, Better::lower);
-  EXPECT_EQ(find_metric("end", columns).better, Better::lower);
-  EXPECT_EQ(find_metric("node_hits", columns).better, Better::higher);
-  EXPECT_NE(test::user_error_of([&] { (void)find_metric("speedup", columns); }).find("\"speed_up\""),
-            std::string::npos);
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ using Random = std::mt19937_64;
 /// Any row that a machine could have.
 inline studies::SweepRow random_sweep_row(Random& random) {
   studies::SweepRow row;
-  for (std::size_t i = 0; i < studies::sweep_columns().size(); ++i) {
+  for (std::size_t i = 0; i < studies::counted_figures().size(); ++i) {
     row.counters.emplace_back();
     if (random() % 3 != 0) {
       row.counters.back() = static_cast<std::int64_t>(random() >> (1 + random() % 63));
@@ -103,7 +103,7 @@ inline studies::SweepRow plain_row(std::size_t machine) {
 
 inline studies::FrameRow made_frame_row(std::size_t frame) {
   studies::FrameRow row;
-  row.counters.resize(studies::frame_columns().size());
+  row.counters.resize(studies::frame_figures().size());
   row.counters[frame] = static_cast<std::int64_t>(7 * frame);
   row.scene = "teapot's \"lid\"";
   row.scene_hash = row.image_hash = row.hit_hash = "0123456789abcdef";

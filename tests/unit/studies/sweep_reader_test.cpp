@@ -34,8 +34,8 @@ double real(const Cell& cell) {
 }
 
 std::optional<std::int64_t> counter(std::size_t machine, std::string_view name) {
-  for (std::size_t i = 0; i < sweep_columns().size(); ++i) {
-    if (sweep_columns()[i].name == name) {
+  for (std::size_t i = 0; i < counted_figures().size(); ++i) {
+    if (counted_figures()[i].name == name) {
       return made_row(machine).counters[i];
     }
   }

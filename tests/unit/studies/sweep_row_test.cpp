@@ -22,7 +22,7 @@ using processors::MachineResult;
 std::map<std::string, std::optional<std::int64_t>> named(const SweepRow& row) {
   std::map<std::string, std::optional<std::int64_t>> values;
   for (std::size_t i = 0; i < row.counters.size(); ++i) {
-    values[sweep_columns()[i].name] = row.counters[i];
+    values[counted_figures()[i].name] = row.counters[i];
   }
   return values;
 }
@@ -61,7 +61,7 @@ RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheirMachine, (std::uint64_t seed)) {
   const MachineConfig machine = any_machine(random);
   const MachineResult result = processors::replay(log, machine);
   const SweepRow row = sweep_row(machine, result);
-  RC_ASSERT(row.counters.size() == sweep_columns().size());
+  RC_ASSERT(row.counters.size() == counted_figures().size());
   auto values = named(row);
   const auto value = [&](const std::string& name) { return values.at(name).value_or(-1); };
 
@@ -192,18 +192,6 @@ TEST(SweepRows, WhatIsCountedOnlyWhenAskedIsThere) {
     machine.build.sharing = sharing;
     expect_counts_that_add_up(log, machine);
   }
-}
-
-TEST(SweepRows, ColumnsAreDescribedOnce) {
-  for (const auto columns : {sweep_columns(), frame_columns()}) {
-    std::set<std::string> names;
-    for (const Column& column : columns) {
-      EXPECT_TRUE(names.insert(column.name).second) << column.name;
-      EXPECT_FALSE(column.description.empty()) << column.name;
-      EXPECT_FALSE(column.unit.empty()) << column.name;
-    }
-  }
-  EXPECT_EQ(sweep_columns()[0].name, "end");
 }
 
 }  // namespace

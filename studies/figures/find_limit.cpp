@@ -1,4 +1,4 @@
-#include "studies/figures/scaling.h"
+#include "studies/figures/find_limit.h"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "processors/node/memory_system.h"
+#include "studies/figures/derived_figures.h"
 #include "studies/figures/flow_figures.h"
 
 namespace marti::studies {
@@ -17,8 +18,6 @@ namespace {
 
 // Waits for a part that is always busy are named if they take at least this share of the nodes' time.
 constexpr double notable_share = 0.1;
-
-double share(sim::Ticks part, double whole) { return whole > 0.0 ? static_cast<double>(part) / whole : 0.0; }
 
 // What the nodes do in this part of their time.
 std::string_view activity_of(Limit limit) {
@@ -48,18 +47,24 @@ std::string_view activity_of(Limit limit) {
   return "computing";
 }
 
-std::string describe(Limit limit, double part, const Utilisation& used,
-                     const processors::MachineConfig& machine, const processors::MachineResult& result) {
+double busy_percent(const processors::MachineConfig& machine, const processors::MachineResult& result,
+                    std::string_view utilisation) {
+  return 100.0 * figure_of(machine, result, utilisation).value_or(0.0);
+}
+
+std::string describe(Limit limit, double part, const processors::MachineConfig& machine,
+                     const processors::MachineResult& result) {
   const double percent = 100.0 * part;
   if (limit == Limit::interconnect) {
     return fmt::format("nodes spend {:.1f} % of their time waiting for the {}, which is {:.1f} % busy",
-                       percent, interconnect_name(machine), 100.0 * used.interconnect.value_or(0.0));
+                       percent, interconnect_name(machine),
+                       busy_percent(machine, result, "interconnect_utilisation"));
   }
   if (limit == Limit::bank) {
     const bool distributed = machine.placement == processors::Placement::distributed;
     return fmt::format(
         "nodes spend {:.1f} % of their time waiting for {}, of which the busiest is {:.1f} % busy", percent,
-        distributed ? "each other's memories" : "banks", 100.0 * used.bank);
+        distributed ? "each other's memories" : "banks", busy_percent(machine, result, "bank_utilisation"));
   }
   std::string text = fmt::format("nodes spend {:.1f} % of their time {}", percent, activity_of(limit));
   if (limit == Limit::imbalance && machine.scheme == processors::Scheme::image) {
@@ -84,46 +89,6 @@ std::string interconnect_name(const processors::MachineConfig& machine) {
       break;
   }
   return "bus";
-}
-
-Scaling scaling_of(sim::Ticks one_node_end, sim::Ticks end, std::uint32_t nodes) {
-  Scaling scaling;
-  scaling.nodes = nodes;
-  scaling.one_node_end = one_node_end;
-  if (end > 0 && one_node_end > 0) {
-    const double n = nodes;
-    const double s = static_cast<double>(one_node_end) / static_cast<double>(end);
-    scaling.speed_up = s;
-    scaling.efficiency = s / n;
-    if (nodes > 1) {
-      scaling.serial_fraction = (1.0 / s - 1.0 / n) / (1.0 - 1.0 / n);
-    }
-  }
-  return scaling;
-}
-
-Utilisation utilisation_of(const processors::MachineConfig& machine,
-                           const processors::MachineResult& result) {
-  Utilisation used;
-  std::int64_t banks = 0;
-  double busy = 0.0;
-  const double end = static_cast<double>(result.end);
-  for (const processors::ClusterResult& cluster : result.clusters) {
-    if (processors::has_links(machine)) {
-      const double links = static_cast<double>(cluster.interconnect.links);
-      used.interconnect =
-          std::max(used.interconnect.value_or(0.0), share(cluster.interconnect.busy, end * links));
-    }
-    for (const memory::BankStatistics& bank : cluster.banks) {
-      // A bank that is still recovering when the frame ends counts as busy until then.
-      const double utilisation = std::min(1.0, share(bank.busy, end));
-      used.bank = std::max(used.bank, utilisation);
-      busy += utilisation;
-      ++banks;
-    }
-  }
-  used.mean_bank = banks > 0 ? busy / static_cast<double>(banks) : 0.0;
-  return used;
 }
 
 Finding find_limit(const processors::MachineConfig& machine, const processors::MachineResult& result) {
@@ -166,7 +131,7 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
     // First come shared resources, then the slowest part, whose nodes may be busy waiting for a shared
     // resource.
     const Bottleneck bottleneck = bottleneck_of(machine, result);
-    if (utilisation_of(machine, result).interconnect.value_or(0.0) >= full) {
+    if (figure_of(machine, result, "interconnect_utilisation").value_or(0.0) >= full) {
       finding = {Limit::interconnect, part({Activity::interconnect_wait}) / all, ""};
     } else if (bottleneck != Bottleneck::none) {
       finding = {bottleneck == Bottleneck::host ? Limit::dispatch : Limit::messages, flow / all, ""};
@@ -174,7 +139,7 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
       finding = {Limit::slowest_part, waits.slowest / all, ""};
     }
   }
-  finding.sentence = describe(finding.limit, finding.share, utilisation_of(machine, result), machine, result);
+  finding.sentence = describe(finding.limit, finding.share, machine, result);
   return finding;
 }
 

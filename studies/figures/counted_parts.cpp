@@ -1,0 +1,122 @@
+#include "studies/figures/counted_parts.h"
+
+#include <algorithm>
+#include <string>
+
+#include "memory/miss_classes.h"
+#include "processors/walk/attribution.h"
+#include "sim/error.h"
+
+namespace marti::studies {
+
+using processors::MachineConfig;
+using processors::MachineResult;
+
+void add_flow_figures(FigureParts& parts, const MachineConfig& machine, const MachineResult& r,
+                      const MachineTotals& totals) {
+  const processors::FlowResult& flow = r.flow;
+  const bool there = totals.flow.has_value();
+  const bool space = there && machine.scheme == processors::Scheme::space;
+  parts.add_all("flow_", "rays of all nodes", totals.flow);
+  parts.add("flow_rays", {"1", "camera rays the host sent and rays made"}, only(there, flow.rays));
+  parts.add("flow_collected", {"1", "contributions that reached the host"}, only(there, flow.collected));
+  parts.add("flow_most_in_flight", {"1", "most rays at a time, of all clusters", Merge::largest},
+            only(there, flow.most_in_flight));
+  const bool memory = !flow.memory_bytes.empty();
+  const auto [least, most] = std::minmax_element(flow.memory_bytes.begin(), flow.memory_bytes.end());
+  parts.add_count("flow_least_memory",
+                  {"byte", "the database in a node's own memory: the least of a node", Merge::least},
+                  memory ? std::optional(*least) : std::nullopt);
+  parts.add_count("flow_most_memory",
+                  {"byte", "the database in a node's own memory: the most of a node", Merge::largest},
+                  memory ? std::optional(*most) : std::nullopt);
+  std::uint64_t all = 0;
+  for (const std::uint64_t bytes : flow.memory_bytes) {
+    sim::ensure(!__builtin_add_overflow(all, bytes, &all), "a counter of a row overflowed");
+  }
+  parts.add_count("flow_memory", {"byte", "the database in the nodes' own memories, all together"},
+                  only(memory, all));
+  parts.add_count("regions", {"1", "space: regions cut out of the tree", Merge::one, Better::neither},
+                  only(space, flow.regions));
+  parts.add_count("top_nodes", {"1", "space: tree nodes that every node has", Merge::one},
+                  only(space, flow.top_nodes));
+  parts.add_count("duplicated_primitives",
+                  {"1", "space: records beyond one of each, in a cluster", Merge::one},
+                  only(space, flow.duplicated_primitives));
+  parts.add("sampling_work",
+            {"ps", "space: computing of one node for the pre-pass of sampled regions, before the frame",
+             Merge::one},
+            only(space, flow.sampling_work));
+}
+
+void add_build_figures(FigureParts& parts, const MachineResult& r) {
+  const processors::BuildResult& build = r.build;
+  const bool there = build.sharing != processors::Sharing::given;
+  parts.add("build_start_up", {"ps", "when the initial trees are there", Merge::one},
+            only(there, build.start_up));
+  parts.add("build_start_up_wait", {"ps", "waits of all nodes for it"}, only(there, build.start_up_wait));
+  parts.add("build_databases", {"1", "copies of the initial tree", Merge::one}, only(there, build.databases));
+  parts.add("build_trees", {"1", "copies of what is below it", Merge::one}, only(there, build.trees));
+  parts.add("build_wasted_splits", {"1", "splits that another node of the database had made too"},
+            there ? std::optional(build.wasted_splits()) : std::nullopt);
+  parts.add_count("build_levels", {"1", "levels of the tree", Merge::one, Better::neither},
+                  only(there, build.levels.size()));
+  parts.add_all("build_", "building, all nodes", only(there, build.counts()));
+  parts.add_all("tree_", "all levels of the trees", only(there, build.all_levels()));
+}
+
+void add_cache_figures(FigureParts& parts, const MachineResult& r, const MachineTotals& totals) {
+  parts.add_all("l2_", "second level", only(!r.l2.caches.empty(), r.l2.counters()));
+  parts.add_all("l2_wait_", "waits of hits for lines on their way to a shared second level", totals.l2_waits);
+  parts.add_all("contexts_", "all nodes", only(!r.contexts.nodes.empty(), r.contexts.counts()));
+}
+
+void add_asked_figures(FigureParts& parts, const MachineConfig& machine, const MachineResult& r) {
+  const auto& classes = r.counts.miss_classes;
+  for (std::size_t i = 0; i < memory::miss_classes; ++i) {
+    std::optional<std::int64_t> all;
+    for (std::size_t kind = 0; classes && kind < memory::record_kinds; ++kind) {
+      all = all.value_or(0) + (*classes)[kind][i];
+    }
+    parts.add("all_misses_", memory::miss_class_names[i], {"1", "misses of this class"}, all);
+  }
+  for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
+    const std::string prefix = std::string(memory::record_kind_names[kind]) + "_misses_";
+    for (std::size_t i = 0; i < memory::miss_classes; ++i) {
+      parts.add(prefix, memory::miss_class_names[i], {"1", "misses of records of this kind, of this class"},
+                classes ? std::optional((*classes)[kind][i]) : std::nullopt);
+    }
+  }
+  const auto& sharing = r.counts.sharing;
+  parts.add("sharing_fetches", {"1", "lines fetched"},
+            sharing ? std::optional(sharing->fetches) : std::nullopt);
+  parts.add("sharing_distinct_lines", {"1", "lines that anybody of a cluster fetched"},
+            sharing ? std::optional(sharing->distinct) : std::nullopt);
+  parts.add("sharing_lines_of_one", {"1", "of these, fetched by one node only"},
+            sharing ? std::optional(sharing->by(1)) : std::nullopt);
+  parts.add("sharing_lines_of_all", {"1", "of these, fetched by every node of the cluster"},
+            sharing ? std::optional(sharing->by(machine.nodes)) : std::nullopt);
+  const auto attributed = [&](const auto& of) {
+    std::optional<processors::AttributionCounts> sum;
+    if (r.counts.attribution) {
+      sum.emplace();
+      for (const processors::AttributionRow& row : *r.counts.attribution) {
+        if (of(row)) {
+          sim::merge(*sum, row.counts);
+        }
+      }
+    }
+    return sum;
+  };
+  for (std::size_t ray = 0; ray < processors::ray_kinds; ++ray) {
+    const std::string name(processors::ray_kind_names[ray]);
+    parts.add_all(name + "_ray_", "for " + name + " rays",
+                  attributed([ray](const processors::AttributionRow& row) {
+                    return static_cast<std::size_t>(row.ray) == ray && !row.splitting;
+                  }));
+  }
+  parts.add_all("split_", "for splitting branches of the tree",
+                attributed([](const processors::AttributionRow& row) { return row.splitting; }));
+}
+
+}  // namespace marti::studies

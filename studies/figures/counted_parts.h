@@ -1,0 +1,30 @@
+// The counted figures of parts that not every machine has: they have no value where it has not.
+#pragma once
+
+#include <optional>
+
+#include "processors/replay/replay.h"
+#include "studies/figures/figure_parts.h"
+#include "studies/figures/machine_totals.h"
+
+namespace marti::studies {
+
+/// The value of a part, if there is one.
+template <class Value>
+std::optional<Value> only(bool there, Value value) {
+  return there ? std::optional(value) : std::nullopt;
+}
+
+/// Of rays that move from node to node.
+void add_flow_figures(FigureParts& parts, const processors::MachineConfig& machine,
+                      const processors::MachineResult& result, const MachineTotals& totals);
+/// Of a tree that is built.
+void add_build_figures(FigureParts& parts, const processors::MachineResult& result);
+/// Of the second level, of contexts and prefetching.
+void add_cache_figures(FigureParts& parts, const processors::MachineResult& result,
+                       const MachineTotals& totals);
+/// What is counted only when it is asked for.
+void add_asked_figures(FigureParts& parts, const processors::MachineConfig& machine,
+                       const processors::MachineResult& result);
+
+}  // namespace marti::studies

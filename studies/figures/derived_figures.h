@@ -1,0 +1,49 @@
+// The derived figures of a timed machine: ratios of counted ones, never stored. They are columns of the view
+// `summary` of a sweep's store, and fields of `figures.machine` in result.json.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "studies/figures/counted_figures.h"
+
+namespace marti::studies {
+
+[[nodiscard]] std::span<const FigureEntry> derived_figures();
+
+/// Why n nodes together spend more time than the nodes of the base: the derived figures of these names, with
+/// "lost_" before them, add up to n less the speed-up (times the nodes of the base).
+inline constexpr std::array<std::string_view, 5> loss_names = {"extra_misses", "contention", "imbalance",
+                                                               "overhead", "idle"};
+
+/// A machine's counts, and those of the machines that it is measured against, where they are known.
+struct MeasuredCounts {
+  const Counts* own = nullptr;
+  const Counts* base = nullptr;
+  const Counts* compared = nullptr;
+};
+
+/// The value of the counted or derived figure of this name; std::nullopt where the machine has no such part,
+/// a denominator is 0, or the machine that it is measured against is unknown. Throws InternalError for an
+/// unknown name.
+[[nodiscard]] std::optional<double> figure_of(const MeasuredCounts& counts, std::string_view name);
+/// Calls visit(name, value) for each derived figure that has a value.
+template <class Visit>
+void for_each_derived(const MeasuredCounts& counts, Visit&& visit) {
+  for (const FigureEntry& entry : derived_figures()) {
+    if (const std::optional<double> value = figure_of(counts, entry.name)) {
+      visit(entry.name, *value);
+    }
+  }
+}
+/// Of a figure that is not measured against another machine.
+[[nodiscard]] std::optional<double> figure_of(const processors::MachineConfig& machine,
+                                              const processors::MachineResult& result, std::string_view name);
+
+/// The entry of a counted or derived figure. Throws UserError for an unknown name, with the nearest known
+/// one.
+[[nodiscard]] const FigureEntry& figure_named(std::string_view name);
+
+}  // namespace marti::studies

@@ -1,0 +1,43 @@
+// Where most of the nodes' time goes.
+#pragma once
+
+#include <string>
+
+#include "processors/replay/replay.h"
+
+namespace marti::studies {
+
+/// What connects the nodes to their memory: "ideal interconnect", "bus", "crossbar", or for a distributed
+/// database "mesh network" and the like.
+[[nodiscard]] std::string interconnect_name(const processors::MachineConfig& machine);
+
+enum class Limit {
+  nothing,
+  interconnect,
+  bank,
+  memory_latency,
+  dispatch,
+  start_up,
+  lock,
+  imbalance,
+  write_buffer,
+  slowest_part,
+  queues,
+  messages,
+  compute
+};
+
+/// Where most of the nodes' time goes. It does not say what would help: studies/helps measures that.
+struct Finding {
+  Limit limit = Limit::nothing;
+  double share = 0.0;    ///< of all nodes' time
+  std::string sentence;  ///< for people; names the figure it rests on
+};
+
+[[nodiscard]] Finding find_limit(const processors::MachineConfig& machine,
+                                 const processors::MachineResult& result);
+
+/// The name of a limit in results for programs.
+[[nodiscard]] std::string_view name_of(Limit limit);
+
+}  // namespace marti::studies

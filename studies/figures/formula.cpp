@@ -1,0 +1,105 @@
+#include "studies/figures/formula.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace marti::studies {
+
+struct Formula::Node {
+  char operation = 0;  // 'f': a figure, 'c': a constant, 'm': the smaller of both, else as written
+  std::string figure{};
+  Whose whose = Whose::own;
+  double constant = 0.0;
+  std::shared_ptr<const Node> a{};
+  std::shared_ptr<const Node> b{};
+
+  // Factors bind more strongly than terms; leaves and functions need no parentheses.
+  [[nodiscard]] int strength() const {
+    return operation == '+' || operation == '-' ? 0 : operation == '*' || operation == '/' ? 1 : 2;
+  }
+  [[nodiscard]] std::optional<double> value(const LookUp& look_up) const;
+  [[nodiscard]] std::string sql() const;
+  [[nodiscard]] std::string text() const;
+  [[nodiscard]] bool is_relative() const {
+    return operation == 'f' ? whose != Whose::own : a != nullptr && (a->is_relative() || b->is_relative());
+  }
+};
+
+std::optional<double> Formula::Node::value(const LookUp& look_up) const {
+  if (operation == 'f') {
+    return look_up(figure, whose);
+  }
+  if (operation == 'c') {
+    return constant;
+  }
+  const std::optional<double> left = a->value(look_up);
+  const std::optional<double> right = b->value(look_up);
+  if (!left || !right || (operation == '/' && *right == 0.0)) {
+    return std::nullopt;
+  }
+  switch (operation) {
+    case '+':
+      return *left + *right;
+    case '-':
+      return *left - *right;
+    case '*':
+      return *left * *right;
+    case '/':
+      return *left / *right;
+    default:
+      return std::min(*left, *right);
+  }
+}
+
+std::string Formula::Node::sql() const {
+  if (operation == 'f') {
+    constexpr std::string_view rows[] = {"r", "b", "c"};
+    return fmt::format("CAST({}.\"{}\" AS REAL)", rows[static_cast<std::size_t>(whose)], figure);
+  }
+  if (operation == 'c') {
+    return fmt::format("{:.1f}", constant);
+  }
+  if (operation == 'm') {
+    return fmt::format("MIN({}, {})", a->sql(), b->sql());
+  }
+  return fmt::format("({} {} {})", a->sql(), operation, b->sql());
+}
+
+std::string Formula::Node::text() const {
+  if (operation == 'f') {
+    constexpr std::string_view whom[] = {"", " of the base", " of the machine compared with"};
+    return figure + std::string(whom[static_cast<std::size_t>(whose)]);
+  }
+  if (operation == 'c') {
+    return fmt::format("{:g}", constant);
+  }
+  if (operation == 'm') {
+    return fmt::format("min({}, {})", a->text(), b->text());
+  }
+  const auto part = [this](const Node& node, bool right) {
+    const bool weaker = node.strength() < strength() ||
+                        (right && node.strength() == strength() && (operation == '-' || operation == '/'));
+    return weaker ? "(" + node.text() + ")" : node.text();
+  };
+  return fmt::format("{} {} {}", part(*a, false), operation, part(*b, true));
+}
+
+Formula::Formula(std::string_view figure, Whose whose)
+    : node_(std::make_shared<Node>(Node{.operation = 'f', .figure = std::string(figure), .whose = whose})) {}
+
+Formula::Formula(double constant)
+    : node_(std::make_shared<Node>(Node{.operation = 'c', .constant = constant})) {}
+
+Formula::Formula(char operation, const Formula& a, const Formula& b)
+    : node_(std::make_shared<Node>(Node{.operation = operation, .a = a.node_, .b = b.node_})) {}
+
+std::optional<double> Formula::value(const LookUp& figure) const { return node_->value(figure); }
+
+std::string Formula::sql() const { return node_->sql(); }
+
+std::string Formula::text() const { return node_->text(); }
+
+bool Formula::is_relative() const { return node_->is_relative(); }
+
+}  // namespace marti::studies

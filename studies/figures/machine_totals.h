@@ -1,0 +1,33 @@
+// What a timed machine counted, over all its nodes, clusters and banks.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "memory/wait_statistics.h"
+#include "processors/replay/replay.h"
+
+namespace marti::studies {
+
+/// Parts that a machine does not have have no value.
+struct MachineTotals {
+  std::optional<memory::InterconnectStatistics> interconnect;
+  std::optional<memory::BankStatistics> bank;
+  std::optional<memory::DistributedStatistics> distributed;
+  std::optional<memory::NetworkStatistics> network;
+  std::optional<processors::NodeStatistics> node;
+  std::optional<processors::FlowCounts> flow;
+  std::optional<memory::WaitStatistics> interconnect_waits;
+  std::optional<memory::WaitStatistics> bank_waits;
+  std::optional<memory::WaitStatistics> network_waits;
+  std::optional<memory::WaitStatistics> l2_waits;  ///< for lines on their way to a shared second level
+  std::int64_t banks = 0;
+  sim::Ticks most_interconnect_busy = 0;  ///< of the busiest cluster
+  sim::Ticks most_bank_busy = 0;          ///< of the busiest bank
+  sim::Ticks most_network_busy = 0;       ///< of the busiest cluster
+};
+
+/// Throws InternalError for a sum that does not fit.
+[[nodiscard]] MachineTotals totals_of(const processors::MachineResult& result);
+
+}  // namespace marti::studies

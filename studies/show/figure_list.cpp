@@ -1,0 +1,88 @@
+#include "studies/show/figure_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <span>
+#include <string_view>
+
+#include "studies/figures/derived_figures.h"
+#include "studies/run/frame_figures.h"
+
+namespace marti::studies {
+
+namespace {
+
+std::string_view merge_of(const FigureEntry& figure) {
+  return merge_names.at(static_cast<std::size_t>(figure.merge));
+}
+std::string_view better_of(const FigureEntry& figure) {
+  return better_names.at(static_cast<std::size_t>(figure.better));
+}
+
+void list_text(std::string_view title, std::span<const FigureEntry> figures, std::string& text) {
+  std::size_t width = 0;
+  for (const FigureEntry& figure : figures) {
+    width = std::max(width, figure.name.size());
+  }
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "{}\n", title);
+  for (const FigureEntry& figure : figures) {
+    fmt::format_to(out, "  {:<{}}  {:<4}  {:<7}  {:<6}  {}\n", figure.name, width, figure.unit,
+                   merge_of(figure), better_of(figure), figure.description);
+    if (figure.formula) {
+      fmt::format_to(out, "  {:<{}}  = {}\n", "", width, figure.formula->text());
+    }
+  }
+}
+
+void list_counted(std::string_view title, std::span<const FigureEntry> figures, std::string& text) {
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "\n## {}\n\n| figure | unit | merge | better | what |\n|---|---|---|---|---|\n", title);
+  for (const FigureEntry& figure : figures) {
+    fmt::format_to(out, "| `{}` | {} | {} | {} | {} |\n", figure.name, figure.unit, merge_of(figure),
+                   better_of(figure), figure.description);
+  }
+}
+
+}  // namespace
+
+std::string list_figures_as_text() {
+  std::string text = "name, unit, how parts make it, which is better, what it is\n\n";
+  list_text("Machine, derived", derived_figures(), text);
+  list_text("\nMachine, counted", counted_figures(), text);
+  list_text("\nFrame", frame_figures(), text);
+  return text;
+}
+
+std::string list_figures_as_markdown() {
+  std::string text =
+      "# Figures\n\n"
+      "All figures of a machine and of a frame, as `marti figures --markdown` prints them. A figure has one "
+      "name "
+      "everywhere: in\n`result.json` (`figures.machine`, `figures.frame`), in the store of a sweep (tables "
+      "`results` and `frame_results`, view\n`summary`), in `marti compare`, in `marti sweep --best`, in a "
+      "report. Times are in ps. A figure has no value where the\nmachine has no such part or a denominator "
+      "is "
+      "0.\n\n"
+      "*merge* says how the figures of nodes, clusters, banks and levels make the machine's: their *sum*, "
+      "the "
+      "*largest*, the\n*least*; *one*: a machine has only one. *better*: a machine with a lower or a higher "
+      "value "
+      "is the better one.\n"
+      "\n## Derived figures of a machine\n\n"
+      "Ratios are computed from merged figures, never stored. The *base* is the machine that the speed-up is "
+      "measured against:\nin a run it is the same machine with one node.\n\n"
+      "| figure | unit | better | formula | what |\n|---|---|---|---|---|\n";
+  const auto out = std::back_inserter(text);
+  for (const FigureEntry& figure : derived_figures()) {
+    fmt::format_to(out, "| `{}` | {} | {} | `{}` | {} |\n", figure.name, figure.unit, better_of(figure),
+                   figure.formula->text(), figure.description);
+  }
+  list_counted("Counted figures of a machine", counted_figures(), text);
+  list_counted("Figures of a frame", frame_figures(), text);
+  return text;
+}
+
+}  // namespace marti::studies

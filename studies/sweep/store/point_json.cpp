@@ -1,0 +1,77 @@
+#include "studies/sweep/store/point_json.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "sim/error.h"
+#include "studies/figures/derived_figures.h"
+#include "studies/run/frame_figures.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json machine_figures(const SweepReader& sweep, const SweepRow& row, std::int64_t base_machine) {
+  Json figures = Json::object();
+  const auto enter = [&figures](const std::string& name, auto value) { figures[name] = value; };
+  for_each_count(counted_figures(), row.counters, enter);
+  const std::optional<SweepRow> base = sweep.read_result(base_machine);
+  const std::optional<std::int64_t> other = sweep.compare();
+  const std::optional<SweepRow> compared = other ? sweep.read_result(*other) : std::nullopt;
+  for_each_derived(
+      {&row.counters, base ? &base->counters : nullptr, compared ? &compared->counters : nullptr}, enter);
+  return figures;
+}
+
+Json frame_json(const FrameRow& frame) {
+  Json figures = {{"scene", frame.scene}, {"image_hash", frame.image_hash}, {"hit_hash", frame.hit_hash}};
+  for_each_count(frame_figures(), frame.counters,
+                 [&figures](const std::string& name, std::int64_t value) { figures[name] = value; });
+  return figures;
+}
+
+Json waits_json(const SweepRow& row, std::string_view what) {
+  Json buckets = Json::array();
+  for (const SweepHistogram& histogram : row.histograms) {
+    if (histogram.what == what) {
+      for (const SweepHistogram::Bucket& bucket : histogram.buckets) {
+        buckets.push_back({bucket.lowest, bucket.highest, bucket.count});
+      }
+    }
+  }
+  return {{"waits", {{"histogram_ps", buckets}}}};
+}
+
+}  // namespace
+
+Json point_json(const SweepReader& sweep, std::int64_t ordinal, const std::string& name) {
+  const std::vector<StoredPoint> points = sweep.points();
+  if (ordinal < 0 || static_cast<std::size_t>(ordinal) >= points.size()) {
+    throw sim::UserError(name + ": there is no such point; the sweep has " + std::to_string(points.size()) +
+                         ", numbered from 0");
+  }
+  const StoredPoint& point = points[static_cast<std::size_t>(ordinal)];
+  const std::optional<SweepRow> row = sweep.read_result(point.machine);
+  const std::optional<FrameRow> frame = sweep.read_frame(point.machine);
+  if (!row || !frame) {
+    throw sim::UserError(name + ": this point has not been run yet; run the sweep again to finish it");
+  }
+  Json keys = Json::object();
+  const std::vector<std::string>& axes = sweep.axes();
+  for (const auto& [key, value] : sweep.settings(point.machine)) {
+    const bool is_axis = std::find(axes.begin(), axes.end(), key) != axes.end();
+    keys[key] = {{"value", value}, {"given", is_axis}};
+  }
+  // The store has histograms of all clusters together.
+  const Json waits = {{"interconnect", waits_json(*row, "interconnect_wait")},
+                      {"banks", {waits_json(*row, "bank_wait")}},
+                      {"distributed", {{"network", waits_json(*row, "network_wait")}}}};
+  return {{"marti", {{"version", sweep.version()}}},
+          {"config", {{"file", name}, {"keys", keys}}},
+          {"figures", {{"frame", frame_json(*frame)}, {"machine", machine_figures(sweep, *row, point.base)}}},
+          {"machine", {{"per_cluster", Json::array({waits})}}}};
+}
+
+}  // namespace marti::studies
