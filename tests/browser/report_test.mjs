@@ -136,13 +136,15 @@ for (const [kind, report] of Object.entries(reports)) {
 describe("the values", () => {
   it("of a run are those of result.json, and the bars are as long as they say", () =>
     withPage("run", async (page) => {
-      const { machine, structure } = readJson(join(reports.run.directory, "result.json"));
-      const all = Object.values(machine.time_ps).reduce((sum, ps) => sum + ps, 0);
+      const { figures, structure } = readJson(join(reports.run.directory, "result.json"));
+      const { machine } = figures;
+      const times = Object.keys(machine).filter((name) => name.startsWith("time_") && name !== "time_without_work");
+      const all = times.reduce((sum, name) => sum + machine[name], 0);
       const cycles = await rowsOf(page, "run_cycles");
       const shown = cycles.filter(({ ps }) => ps > 0);
-      assert.equal(shown.length, Object.values(machine.time_ps).filter((ps) => ps > 0).length);
+      assert.equal(shown.length, times.filter((name) => machine[name] > 0).length);
       for (const { activity, ps, share } of cycles) {
-        assertClose(ps, machine.time_ps[activity], activity, 0);
+        assertClose(ps, machine[`time_${activity}`], activity, 0);
         assertClose(share, ps / all, activity, 1e-9);
       }
       const bars = await markBoxes(page, "run_cycles");
@@ -152,7 +154,7 @@ describe("the values", () => {
         assert.ok(Math.abs(bars[i].width - share * scale) < 1, `the bar of ${activity}: ${bars[i].width}`);
       });
       for (const { record, hits, misses } of await rowsOf(page, "run_references")) {
-        assert.deepEqual([hits, misses], [machine.references[record].hits, machine.references[record].misses]);
+        assert.deepEqual([hits, misses], [machine[`${record}_hits`], machine[`${record}_misses`]]);
       }
       const levels = structure.levels.map(({ branches, leaves, empty_leaves, entries }) => {
         return { branches, leaves, empty_leaves, entries };
