@@ -38,9 +38,11 @@ struct DistributedStatistics {
   static constexpr auto counters() {
     using C = sim::Counter<DistributedStatistics>;
     return std::array{
-        C{"local_reads", "1", "reads of the node's own memory", &DistributedStatistics::local_reads},
+        C{"local_reads", "1", "reads of the node's own memory", &DistributedStatistics::local_reads,
+          sim::MergeRule::sum, sim::Better::neither},
         C{"remote_reads", "1", "reads of another node's: two messages", &DistributedStatistics::remote_reads},
-        C{"local_writes", "1", "writes to the node's own memory", &DistributedStatistics::local_writes},
+        C{"local_writes", "1", "writes to the node's own memory", &DistributedStatistics::local_writes,
+          sim::MergeRule::sum, sim::Better::neither},
         C{"remote_writes", "1", "writes to another node's: one message",
           &DistributedStatistics::remote_writes}};
   }

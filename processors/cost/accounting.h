@@ -61,31 +61,36 @@ struct StepCounts {
 
   static constexpr auto counters() {
     using C = sim::Counter<StepCounts>;
-    return std::array{C{"camera_rays", "1", "camera rays set up", &StepCounts::camera_rays},
-                      C{"shadow_rays", "1", "shadow rays set up", &StepCounts::shadow_rays},
-                      C{"reflection_rays", "1", "reflected rays set up", &StepCounts::reflection_rays},
-                      C{"refraction_rays", "1", "refracted rays set up", &StepCounts::refraction_rays},
-                      C{"branches", "1", "branch nodes visited", &StepCounts::branches},
-                      C{"leaves", "1", "leaf nodes visited, empty ones included", &StepCounts::leaves},
-                      C{"lists", "1", "object lists read", &StepCounts::lists},
-                      C{"tests", "1", "primitives tested", &StepCounts::tests},
-                      C{"sphere_tests", "1", "of these, spheres", &StepCounts::sphere_tests},
-                      C{"cone_tests", "1", "of these, cylinders and cones", &StepCounts::cone_tests},
-                      C{"lookups", "1", "mailboxes looked up", &StepCounts::lookups},
-                      C{"shades", "1", "surface points shaded", &StepCounts::shades},
-                      C{"lights", "1", "light contributions added", &StepCounts::lights},
-                      C{"texels", "1", "texels read", &StepCounts::texels},
-                      C{"cuts", "1", "nodes taken as one voxel", &StepCounts::cuts},
-                      C{"passes", "1", "nodes too little covered for that", &StepCounts::passes},
-                      C{"pixels", "1", "pixels finished", &StepCounts::pixels}};
+    return std::array{
+        C{"camera_rays", "1", "camera rays set up", &StepCounts::camera_rays, sim::MergeRule::sum,
+          sim::Better::neither},
+        C{"shadow_rays", "1", "shadow rays set up", &StepCounts::shadow_rays, sim::MergeRule::sum,
+          sim::Better::neither},
+        C{"reflection_rays", "1", "reflected rays set up", &StepCounts::reflection_rays, sim::MergeRule::sum,
+          sim::Better::neither},
+        C{"refraction_rays", "1", "refracted rays set up", &StepCounts::refraction_rays, sim::MergeRule::sum,
+          sim::Better::neither},
+        C{"branches", "1", "branch nodes visited", &StepCounts::branches},
+        C{"leaves", "1", "leaf nodes visited, empty ones included", &StepCounts::leaves},
+        C{"lists", "1", "object lists read", &StepCounts::lists},
+        C{"tests", "1", "primitives tested", &StepCounts::tests},
+        C{"sphere_tests", "1", "of these, spheres", &StepCounts::sphere_tests},
+        C{"cone_tests", "1", "of these, cylinders and cones", &StepCounts::cone_tests},
+        C{"lookups", "1", "mailboxes looked up", &StepCounts::lookups},
+        C{"shades", "1", "surface points shaded", &StepCounts::shades},
+        C{"lights", "1", "light contributions added", &StepCounts::lights},
+        C{"texels", "1", "texels read", &StepCounts::texels},
+        C{"cuts", "1", "nodes taken as one voxel", &StepCounts::cuts},
+        C{"passes", "1", "nodes too little covered for that", &StepCounts::passes},
+        C{"pixels", "1", "pixels finished", &StepCounts::pixels, sim::MergeRule::sum, sim::Better::neither}};
   }
 };
 static_assert(sim::declares_every_member<StepCounts>());
 
 /// The counter of each RayKind.
 inline constexpr std::array<std::int64_t StepCounts::*, ray_kinds> ray_counters = {
-    &StepCounts::camera_rays, &StepCounts::shadow_rays, &StepCounts::reflection_rays,
-    &StepCounts::refraction_rays};
+    &StepCounts::camera_rays,     &StepCounts::shadow_rays, &StepCounts::reflection_rays,
+    &StepCounts::refraction_rays, sim::MergeRule::sum,      sim::Better::neither};
 
 /// References are lines touched (without a cache: parts of at most one interleave unit each); one record may
 /// take several references.
@@ -110,8 +115,10 @@ struct NodeStatistics {
 
   static constexpr auto counters() {
     using C = sim::Counter<NodeStatistics>;
-    return std::array{C{"packets", "1", "packets traced", &NodeStatistics::packets},
-                      C{"writes", "1", "pixels written", &NodeStatistics::writes},
+    return std::array{C{"packets", "1", "packets traced", &NodeStatistics::packets, sim::MergeRule::sum,
+                        sim::Better::neither},
+                      C{"writes", "1", "pixels written", &NodeStatistics::writes, sim::MergeRule::sum,
+                        sim::Better::neither},
                       C{"finish", "ps", "when no packet was left", &NodeStatistics::finish}};
   }
 };

@@ -28,11 +28,15 @@ struct FlowCounts {
     using C = sim::Counter<FlowCounts>;
     using sim::MergeRule;
     return std::array{
-        C{"taken", "1", "rays taken from the queue", &FlowCounts::taken},
-        C{"made", "1", "rays made at points shaded here", &FlowCounts::made},
+        C{"taken", "1", "rays taken from the queue", &FlowCounts::taken, sim::MergeRule::sum,
+          sim::Better::neither},
+        C{"made", "1", "rays made at points shaded here", &FlowCounts::made, sim::MergeRule::sum,
+          sim::Better::neither},
         C{"passed_on", "1", "rays sent to other nodes for their next steps", &FlowCounts::passed_on},
-        C{"ended", "1", "rays that ended here", &FlowCounts::ended},
-        C{"contributions", "1", "contributions to pixels sent to the host", &FlowCounts::contributions},
+        C{"ended", "1", "rays that ended here", &FlowCounts::ended, sim::MergeRule::sum,
+          sim::Better::neither},
+        C{"contributions", "1", "contributions to pixels sent to the host", &FlowCounts::contributions,
+          sim::MergeRule::sum, sim::Better::neither},
         C{"bytes_sent", "byte", "bytes of the messages sent", &FlowCounts::bytes_sent},
         C{"longest_queue", "1", "most slots of its queue in use at a time", &FlowCounts::longest_queue,
           MergeRule::maximum},

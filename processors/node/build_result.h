@@ -76,7 +76,8 @@ struct BuildLevel {
         C{"made", "1", "nodes made by splitting their parents", &BuildLevel::made},
         C{"made_entries", "1", "entries of the lists they were made with", &BuildLevel::made_entries},
         C{"distinct_splits", "1", "different branches among them", &BuildLevel::distinct_splits},
-        C{"visits", "1", "visits of rays to nodes", &BuildLevel::visits},
+        C{"visits", "1", "visits of rays to nodes", &BuildLevel::visits, sim::MergeRule::sum,
+          sim::Better::neither},
         C{"node_bytes", "byte", "bytes of node records", &BuildLevel::node_bytes},
         C{"list_bytes", "byte", "bytes of the lists of L and P nodes", &BuildLevel::list_bytes},
         C{"released_bytes", "byte", "bytes of lists no longer needed", &BuildLevel::released_bytes}};

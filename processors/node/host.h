@@ -25,9 +25,11 @@ struct HostStatistics {
 
   static constexpr auto counters() {
     using C = sim::Counter<HostStatistics>;
-    return std::array{C{"requests", "1", "requests of free nodes, those that found no packet left included",
+    return std::array{C{"requests", "1",
+                        "requests of free nodes, those that found no packet left included; where rays move, "
+                        "camera rays sent",
                         &HostStatistics::requests},
-                      C{"busy", "ps", "time that requests kept the host", &HostStatistics::busy}};
+                      C{"busy", "ps", "time that these kept the host", &HostStatistics::busy}};
   }
 };
 static_assert(sim::declares_every_member<HostStatistics>());

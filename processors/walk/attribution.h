@@ -54,7 +54,7 @@ struct AttributionCounts {
         C{"references", "1", "lines asked for in the first level", &AttributionCounts::references},
         C{"misses", "1", "of these, misses of the first level", &AttributionCounts::misses},
         C{"second_level_hits", "1", "of these, hits of a private second level",
-          &AttributionCounts::second_level_hits},
+          &AttributionCounts::second_level_hits, sim::MergeRule::sum, sim::Better::higher},
         C{"interconnect_wait", "ps", "waiting for the interconnect", &AttributionCounts::interconnect_wait},
         C{"transfer", "ps", "transfers", &AttributionCounts::transfer},
         C{"bank_wait", "ps", "waiting for banks", &AttributionCounts::bank_wait},

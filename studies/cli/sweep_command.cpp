@@ -94,7 +94,11 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
     throw sim::UserError("--plan: prints the plan, as text; leave out --json and --best");
   }
   if (!arguments.best.empty()) {
-    (void)figure_named(arguments.best);
+    if (figure_named(arguments.best).better == Better::neither) {
+      throw sim::UserError(
+          "--best: of " + arguments.best +
+          " neither a lower nor a higher value is better; `marti figures` says of which it is");
+    }
   }
   const SweepPlan plan = plan_sweep(config);
   if (arguments.plan_only) {

@@ -41,14 +41,15 @@ void add_machine(FigureParts& parts, const MachineResult& r) {
   parts.add_all("host_", "host", std::optional(r.host));
   const processors::TimeDivision time = r.time();
   for (std::size_t i = 0; i < processors::activities; ++i) {
-    parts.add("time_", processors::activity_names[i], {"ps", "time of all nodes: this activity"}, time[i]);
+    parts.add("time_", processors::activity_names[i],
+              {"ps", "time of all nodes in this activity (model.md, Accounting)"}, time[i]);
   }
   sim::Ticks without_work = 0;
   for (const processors::NodeStatistics& node : r.nodes) {
     if (!processors::had_work(node)) {
-      without_work =
-          sim::add_ticks(without_work, node.time[static_cast<std::size_t>(Activity::idle)] +
-                                           node.time[static_cast<std::size_t>(Activity::message_wait)]);
+      for (const Activity activity : {Activity::idle, Activity::message_wait}) {
+        without_work = sim::add_ticks(without_work, node.time[static_cast<std::size_t>(activity)]);
+      }
     }
   }
   parts.add("time_without_work",
@@ -59,9 +60,12 @@ void add_machine(FigureParts& parts, const MachineResult& r) {
 void add_references(FigureParts& parts, const MachineResult& r) {
   const processors::ReferenceCounts counts = r.references();
   const auto records = processors::records_of(r.steps());
-  parts.add("hits", {"1", "lines found in the nodes' own caches, first level", Merge::sum, Better::higher},
+  parts.add("hits",
+            {"1", "lines found in the nodes' own caches, first level; without a cache none", Merge::sum,
+             Better::higher},
             counts.all_hits());
-  parts.add("misses", {"1", "lines not found there"}, counts.all_misses());
+  parts.add("misses", {"1", "lines not found there; without a cache, parts of records read (model.md)"},
+            counts.all_misses());
   for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
     const std::string prefix = std::string(memory::record_kind_names[kind]) + "_";
     parts.add(prefix, "records",
@@ -79,21 +83,26 @@ void add_nodes(FigureParts& parts, const MachineResult& r, const MachineTotals& 
   const auto by_finish = [](const auto& a, const auto& b) { return a.finish < b.finish; };
   const auto [first, last] = std::minmax_element(r.nodes.begin(), r.nodes.end(), by_finish);
   const bool there = !r.nodes.empty();
-  parts.add("earliest_finish", {"ps", "when the first node learned that no packet was left", Merge::least},
+  parts.add("earliest_finish",
+            {"ps", "when the first node learned that no packet was left", Merge::least, Better::neither},
             there ? std::optional(first->finish) : std::nullopt);
   parts.add("latest_finish", {"ps", "when the last node did", Merge::largest},
             there ? std::optional(last->finish) : std::nullopt);
 }
 
 void add_memory(FigureParts& parts, const MachineTotals& totals) {
-  parts.add_all("interconnect_", "interconnects of all clusters", totals.interconnect);
+  parts.add_all("interconnect_", "interconnects of all clusters (distributed memory: its network)",
+                totals.interconnect);
   parts.add("most_interconnect_busy",
             {"ps", "transfer time of the busiest cluster's interconnect", Merge::largest},
             only(totals.interconnect.has_value(), totals.most_interconnect_busy));
   parts.add_all("interconnect_wait_", "waits for the interconnects", totals.interconnect_waits);
   const bool banks = totals.bank.has_value();
-  parts.add("banks", {"1", "banks of all clusters", Merge::sum, Better::neither}, only(banks, totals.banks));
-  parts.add_all("bank_", "all banks", totals.bank);
+  parts.add(
+      "banks",
+      {"1", "banks of all clusters; distributed memory: the nodes' memories", Merge::sum, Better::neither},
+      only(banks, totals.banks));
+  parts.add_all("bank_", "all banks (distributed memory: the nodes' memories)", totals.bank);
   parts.add("most_bank_busy", {"ps", "busy time of the busiest bank", Merge::largest},
             only(banks, totals.most_bank_busy));
   parts.add_all("bank_wait_", "waits for the banks", totals.bank_waits);

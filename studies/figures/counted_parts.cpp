@@ -18,9 +18,11 @@ void add_flow_figures(FigureParts& parts, const MachineConfig& machine, const Ma
   const bool there = totals.flow.has_value();
   const bool space = there && machine.scheme == processors::Scheme::space;
   parts.add_all("flow_", "rays of all nodes", totals.flow);
-  parts.add("flow_rays", {"1", "camera rays the host sent and rays made"}, only(there, flow.rays));
-  parts.add("flow_collected", {"1", "contributions that reached the host"}, only(there, flow.collected));
-  parts.add("flow_most_in_flight", {"1", "most rays at a time, of all clusters", Merge::largest},
+  parts.add("flow_rays", {"1", "camera rays the host sent and rays made", Merge::sum, Better::neither},
+            only(there, flow.rays));
+  parts.add("flow_collected", {"1", "contributions that reached the host", Merge::sum, Better::neither},
+            only(there, flow.collected));
+  parts.add("flow_most_in_flight", {"1", "most rays at a time, of all clusters together", Merge::one},
             only(there, flow.most_in_flight));
   const bool memory = !flow.memory_bytes.empty();
   const auto [least, most] = std::minmax_element(flow.memory_bytes.begin(), flow.memory_bytes.end());
@@ -32,7 +34,7 @@ void add_flow_figures(FigureParts& parts, const MachineConfig& machine, const Ma
                   memory ? std::optional(*most) : std::nullopt);
   std::uint64_t all = 0;
   for (const std::uint64_t bytes : flow.memory_bytes) {
-    sim::ensure(!__builtin_add_overflow(all, bytes, &all), "a counter of a row overflowed");
+    sim::ensure(!__builtin_add_overflow(all, bytes, &all), "a counted figure overflowed");
   }
   parts.add_count("flow_memory", {"byte", "the database in the nodes' own memories, all together"},
                   only(memory, all));
@@ -52,9 +54,11 @@ void add_flow_figures(FigureParts& parts, const MachineConfig& machine, const Ma
 void add_build_figures(FigureParts& parts, const MachineResult& r) {
   const processors::BuildResult& build = r.build;
   const bool there = build.sharing != processors::Sharing::given;
-  parts.add("build_start_up", {"ps", "when the initial trees are there", Merge::one},
+  parts.add("build_start_up",
+            {"ps", "when the initial trees are there and the host begins; part of end", Merge::one},
             only(there, build.start_up));
-  parts.add("build_start_up_wait", {"ps", "waits of all nodes for it"}, only(there, build.start_up_wait));
+  parts.add("build_start_up_wait", {"ps", "waits of all nodes for it; part of time_dispatch_wait"},
+            only(there, build.start_up_wait));
   parts.add("build_databases", {"1", "copies of the initial tree", Merge::one}, only(there, build.databases));
   parts.add("build_trees", {"1", "copies of what is below it", Merge::one}, only(there, build.trees));
   parts.add("build_wasted_splits", {"1", "splits that another node of the database had made too"},
@@ -90,11 +94,13 @@ void add_asked_figures(FigureParts& parts, const MachineConfig& machine, const M
   const auto& sharing = r.counts.sharing;
   parts.add("sharing_fetches", {"1", "lines fetched"},
             sharing ? std::optional(sharing->fetches) : std::nullopt);
-  parts.add("sharing_distinct_lines", {"1", "lines that anybody of a cluster fetched"},
+  parts.add("sharing_distinct_lines",
+            {"1", "different lines that a cluster fetched", Merge::sum, Better::neither},
             sharing ? std::optional(sharing->distinct) : std::nullopt);
-  parts.add("sharing_lines_of_one", {"1", "of these, fetched by one node only"},
+  parts.add("sharing_lines_of_one", {"1", "of these, fetched by one node only", Merge::sum, Better::neither},
             sharing ? std::optional(sharing->by(1)) : std::nullopt);
-  parts.add("sharing_lines_of_all", {"1", "of these, fetched by every node of the cluster"},
+  parts.add("sharing_lines_of_all",
+            {"1", "of these, fetched by every node of the cluster", Merge::sum, Better::neither},
             sharing ? std::optional(sharing->by(machine.nodes)) : std::nullopt);
   const auto attributed = [&](const auto& of) {
     std::optional<processors::AttributionCounts> sum;

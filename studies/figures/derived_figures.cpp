@@ -15,27 +15,56 @@ namespace {
 Formula own(std::string_view name) { return Formula(name); }
 Formula base(std::string_view name) { return Formula(name, Whose::base); }
 
-// Times of all nodes, less those of the base, in frame times: so many nodes are lost.
-Formula lost(std::initializer_list<std::string_view> more,
-             std::initializer_list<std::string_view> less = {}) {
+// Which part of the lost speed-up an activity belongs to: its place in loss_names.
+std::size_t loss_of(processors::Activity activity) {
+  using processors::Activity;
+  switch (activity) {
+    case Activity::traversal:
+    case Activity::intersection:
+    case Activity::shading:
+    case Activity::cache_access:
+    case Activity::transfer:
+    case Activity::bank_access:
+      return 0;
+    case Activity::interconnect_wait:
+    case Activity::bank_wait:
+      return 1;
+    case Activity::message_wait:
+    case Activity::idle:
+      return 2;
+    case Activity::building:
+    case Activity::switching:
+    case Activity::messaging:
+    case Activity::lock_wait:
+    case Activity::queue_full_wait:
+    case Activity::dispatch_wait:
+      break;
+  }
+  return 3;
+}
+
+// The time that all nodes spend on this part more than the base, in frame times. The time of nodes without
+// work is no imbalance but a part of its own, the last one.
+Formula lost(std::size_t loss) {
+  const Formula idle_nodes = own("time_without_work") - base("time_without_work");
   std::optional<Formula> sum;
-  const auto add = [&sum](const Formula& part) { sum = sum ? *sum + part : part; };
-  for (const std::string_view time : more) {
-    add(own(time) - base(time));
+  for (std::size_t i = 0; i < processors::activities; ++i) {
+    if (loss_of(static_cast<processors::Activity>(i)) == loss) {
+      const std::string time = "time_" + std::string(processors::activity_names[i]);
+      const Formula more = own(time) - base(time);
+      sum = sum ? *sum + more : more;
+    }
   }
-  for (const std::string_view time : less) {
-    add(base(time) - own(time));
-  }
-  return *sum / own("end");
+  return (!sum ? idle_nodes : loss == 2 ? *sum - idle_nodes : *sum) / own("end");
 }
 
 void add_speed(std::vector<FigureEntry>& all) {
   const auto add = [&all](std::string_view name, std::string_view text, Better better,
                           const Formula& formula) {
-    all.push_back({std::string(name), "1", std::string(text), Merge::ratio, better, formula});
+    all.push_back({name, "1", text, Merge::ratio, better, formula});
   };
   add("speed_up", "how many times as fast as the base", Better::higher, base("end") / own("end"));
-  add("efficiency", "speed-up for each time that it has the nodes of the base", Better::higher,
+  add("efficiency", "speed-up, divided by how many times the base's nodes it has", Better::higher,
       base("end") * base("nodes") / (own("end") * own("nodes")));
   add("serial_fraction", "that would explain the speed-up by Amdahl's law (Karp and Flatt 1990)",
       Better::lower,
@@ -43,18 +72,14 @@ void add_speed(std::vector<FigureEntry>& all) {
           (base("end") * (own("nodes") - base("nodes"))));
   add("times_faster", "how many times as fast as the machine that all are compared with", Better::higher,
       Formula("end", Whose::compared) / own("end"));
-  add("lost_extra_misses", "nodes lost to more work: steps, and misses that meet no queue", Better::lower,
-      lost({"time_traversal", "time_intersection", "time_shading", "time_cache_access", "time_transfer",
-            "time_bank_access"}));
-  add("lost_contention", "nodes lost to waits for interconnect and banks", Better::lower,
-      lost({"time_interconnect_wait", "time_bank_wait"}));
-  add("lost_imbalance", "nodes lost to waits for work, of nodes that had some", Better::lower,
-      lost({"time_idle", "time_message_wait"}, {"time_without_work"}));
-  add("lost_overhead", "nodes lost to building, switching, messages, locks, full queues and dispatching",
-      Better::lower,
-      lost({"time_building", "time_switching", "time_messaging", "time_lock_wait", "time_queue_full_wait",
-            "time_dispatch_wait"}));
-  add("lost_idle", "nodes that never had work", Better::lower, lost({"time_without_work"}));
+  constexpr std::array<std::string_view, loss_names.size()> lost_to = {
+      "more work: steps, and misses that meet no queue", "waits for interconnect and banks",
+      "waits for work, of nodes that had some",
+      "building, switching, messages, locks, full queues and dispatching", "nodes that never had work"};
+  for (std::size_t i = 0; i < loss_names.size(); ++i) {
+    add("lost_" + std::string(loss_names[i]), "nodes lost to " + std::string(lost_to.at(i)), Better::lower,
+        lost(i));
+  }
 }
 
 void add_memory(std::vector<FigureEntry>& all) {
@@ -92,9 +117,8 @@ void add_memory(std::vector<FigureEntry>& all) {
   add("finish_balance", "1", "mean finish of the nodes by the latest", Better::higher,
       own("node_finish") / (own("nodes") * own("latest_finish")));
   for (const std::string_view activity : processors::activity_names) {
-    const bool computing = activity == "traversal" || activity == "intersection" || activity == "shading";
-    add("share_" + std::string(activity), "1", "share of the nodes' time in this activity",
-        computing ? Better::neither : Better::lower,
+    add("share_" + std::string(activity), "1",
+        "share of the nodes' time in this activity (model.md, Accounting)", Better::lower,
         own("time_" + std::string(activity)) / (own("nodes") * end));
   }
 }

@@ -13,8 +13,8 @@ namespace marti::studies {
 
 [[nodiscard]] std::span<const FigureEntry> derived_figures();
 
-/// Why n nodes together spend more time than the nodes of the base: the derived figures of these names, with
-/// "lost_" before them, add up to n less the speed-up (times the nodes of the base).
+/// The parts of the lost speed-up. The derived figures "lost_" + name add up to the number of nodes less
+/// speed_up times the nodes of the base: with one node as the base, to what is lost of the ideal speed-up.
 inline constexpr std::array<std::string_view, 5> loss_names = {"extra_misses", "contention", "imbalance",
                                                                "overhead", "idle"};
 

@@ -1,4 +1,4 @@
-// `marti report DIR`.
+// `marti report DIR` and `marti report DIR:N`.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 namespace marti::studies {
 
 struct ReportArguments {
-  std::string directory;  ///< of a run, a sweep or a study
-  std::string output;     ///< the page; empty: report.html in `directory`
+  std::string directory;  ///< of a run, a sweep or a study; "DIR:N" for point N of a sweep
+  std::string output;     ///< the page; empty: report.html, or point-N.html, in the directory
   std::string plots;      ///< directory for the charts as files; empty: none
   bool pdf = false;       ///< plots also as PDF
 };

@@ -8,8 +8,7 @@
 
 namespace marti::studies {
 
-/// The fields machine.speed_up_loss and machine.bounds, as docs/result-schema.md describes them.
-[[nodiscard]] nlohmann::ordered_json loss_json(const RunResult& result);
+/// The field machine.bounds, as docs/result-schema.md describes it.
 [[nodiscard]] nlohmann::ordered_json bounds_json(const RunResult& result);
 
 /// Lines of the summary. Those of the loss are empty on one node, or when the frame takes no time.

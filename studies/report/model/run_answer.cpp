@@ -24,18 +24,19 @@ std::string largest_loss(const RunJson& run) {
     const std::string name(loss);
     const std::optional<double> value =
         run.optional_number("figures.machine.lost_" + name, -most_figure, most_figure);
-    if (value) {
-      all += *value;
-      if (*value > largest.second) {
-        largest = {name, *value};
-      }
+    if (!value) {
+      return {};  // a store of an older format has not all of them
+    }
+    all += *value;
+    if (*value > largest.second) {
+      largest = {name, *value};
     }
   }
   if (largest.first.empty() || all <= 0.0) {
     return {};
   }
-  return fmt::format("Of the ideal speed-up {:.2f} are lost, most of it ({:.2f}) to {}.", all, largest.second,
-                     words(largest.first));
+  return fmt::format("As much as {:.2f} nodes could do is lost, most of it ({:.2f}) to {}.", all,
+                     largest.second, words(largest.first));
 }
 
 std::string bound_sentence(const RunJson& run) {

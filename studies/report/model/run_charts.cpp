@@ -64,12 +64,18 @@ Table loss_table(const RunJson& run) {
   Table table("run_loss", "Where the lost speed-up went",
               {{"part", ColumnType::text, "", "see docs/model.md, Speed-up"},
                {"lost", ColumnType::real, "1", "of the ideal speed-up; below 0: won"}});
-  if (run.count("figures.machine.nodes") > 1.0) {
-    for (const std::string_view loss : loss_names) {
-      if (const std::optional<double> lost = run.number("figures.machine.lost_" + std::string(loss))) {
-        table.add_row({std::string(loss), *lost});
-      }
+  if (run.count("figures.machine.nodes") <= 1.0) {
+    return table;
+  }
+  std::vector<double> parts;
+  for (const std::string_view loss : loss_names) {
+    if (const std::optional<double> lost = run.number("figures.machine.lost_" + std::string(loss))) {
+      parts.push_back(*lost);
     }
+  }
+  // A store of an older format has not all of them.
+  for (std::size_t i = 0; parts.size() == loss_names.size() && i < parts.size(); ++i) {
+    table.add_row({std::string(loss_names[i]), parts[i]});
   }
   return table;
 }
@@ -278,7 +284,8 @@ Table nodes_table(const RunJson& run) {
 
 void add_all(const RunJson& run, ReportData& report) {
   add(report, cycles_table(run), "All nodes' time from 0 to the end of the frame, without remainder.");
-  add(report, loss_table(run), "The parts add up to the number of nodes less the speed-up.");
+  add(report, loss_table(run),
+      "The parts add up to the number of nodes less the speed-up times the nodes of the base.");
   add(report, nodes_table(run), "Uneven bars are imbalance.");
   add(report, references_table(run));
   add_levels(run, report);
