@@ -50,7 +50,8 @@ std::optional<PointName> point_named(const std::string& name) {
     return std::nullopt;
   }
   std::error_code ignored;
-  return PointName{fs::is_directory(directory, ignored) ? directory / "results.sqlite" : directory, ordinal};
+  return PointName{name, fs::is_directory(directory, ignored) ? directory / "results.sqlite" : directory,
+                   ordinal};
 }
 
 }  // namespace marti::studies

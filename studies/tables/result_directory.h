@@ -20,6 +20,7 @@ namespace marti::studies {
 
 /// A point of a sweep as it is named on the command line.
 struct PointName {
+  std::string name;  ///< as typed
   std::filesystem::path store;
   std::int64_t ordinal = 0;
 };

@@ -55,7 +55,6 @@ constexpr std::string_view counters[] = {"end",
                                          "mean_bank_wait",
                                          "finish_balance"};
 
-constexpr std::string_view kinds[] = {"node", "list", "primitive", "material"};
 constexpr std::string_view waits[] = {"interconnect_wait", "bank_wait"};
 
 std::vector<std::string> wanted_figures(const SweepReader& reader) {
@@ -64,9 +63,8 @@ std::vector<std::string> wanted_figures(const SweepReader& reader) {
     wanted.insert("time_" + std::string(activity));
     wanted.insert("share_" + std::string(activity));
   }
-  for (const std::string_view kind : kinds) {
-    wanted.insert(std::string(kind) + "_hits");
-    wanted.insert(std::string(kind) + "_misses");
+  for (const std::string_view kind : memory::record_kind_names) {
+    wanted.insert("hit_ratio_" + std::string(kind));
   }
   // Figures that a store of another version lacks are left out.
   std::vector<std::string> names = reader.figures();
@@ -137,16 +135,6 @@ void check_places(const std::filesystem::path& store, const ReportPoints& sweep)
         refuse(store, point.ordinal,
                fmt::format("two values of axis {} are the same number, {}", axis.name, axis.texts[place]));
       }
-    }
-  }
-}
-
-void add_hit_ratios(ReportPoint& point) {
-  for (const std::string_view kind : kinds) {
-    const double hits = point.figure(std::string(kind) + "_hits");
-    const double all = hits + point.figure(std::string(kind) + "_misses");
-    if (all > 0.0) {
-      point.figures["hit_ratio_" + std::string(kind)] = hits / all;
     }
   }
 }
@@ -381,7 +369,6 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
         ": no point of the sweep has been timed yet; run `marti sweep` with the same -o first");
   }
   for (ReportPoint& point : sweep.points) {
-    add_hit_ratios(point);
     add_groups(point);
     if (const std::optional<SweepRow> row = reader.read_result(point.machine)) {
       add_percentiles(*row, point);

@@ -144,8 +144,7 @@ ReportData read_run_report(const fs::path& directory) {
 }
 
 ReportData read_point_report(const PointName& point) {
-  const std::string name = fmt::format("{}:{}", point.store.string(), point.ordinal);
-  const RunJson run(point_json(SweepReader(point.store), point.ordinal, name), point.store.string());
+  const RunJson run(point_json(SweepReader(point.store), point.ordinal, point.name), point.name);
   ReportData report = machine_report(run, "its base machine");
   report.title = fmt::format("Point {} of a sweep: {} on {}", point.ordinal, run.text("figures.frame.scene"),
                              machine_text(run));
