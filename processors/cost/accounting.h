@@ -89,8 +89,8 @@ static_assert(sim::declares_every_member<StepCounts>());
 
 /// The counter of each RayKind.
 inline constexpr std::array<std::int64_t StepCounts::*, ray_kinds> ray_counters = {
-    &StepCounts::camera_rays,     &StepCounts::shadow_rays, &StepCounts::reflection_rays,
-    &StepCounts::refraction_rays, sim::MergeRule::sum,      sim::Better::neither};
+    &StepCounts::camera_rays, &StepCounts::shadow_rays, &StepCounts::reflection_rays,
+    &StepCounts::refraction_rays};
 
 /// References are lines touched (without a cache: parts of at most one interleave unit each); one record may
 /// take several references.
