@@ -1,8 +1,9 @@
 // How often a verdict on what limits a machine is right: of the old rule (the largest share of the nodes'
 // time) and of the prediction for points of a sweep, against replays of machines with one resource made
 // better.
-//   bench_verdicts [SIZE [EVERY [MACHINES [CONFIG]]]]     default: 128, 10, 500, configs/sweep.toml
-// SIZE: of the image; EVERY: every so many points of the sweep are measured; MACHINES: random ones.
+//   bench_verdicts [SIZE [EVERY [MACHINES [CONFIG [wrong]]]]]     default: 128, 10, 500, configs/sweep.toml
+// SIZE: of the image; EVERY: one of so many points of the sweep is measured; MACHINES: random ones; with
+// `wrong` the wrong verdicts on the sweep are printed.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -10,6 +11,7 @@
 #include <cstdlib>
 #include <numeric>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/report.h"
@@ -256,7 +258,7 @@ std::size_t number(const char* text, std::size_t least) {
 int main(int argc, char** argv) {
   return bench::run_benchmark(
       "bench_verdicts", argc, argv, [](bench::Report& report, int count, char** values) {
-        const bool verbose = std::getenv("MARTI_VERBOSE") != nullptr;
+        const bool verbose = count > 5 && std::string_view(values[5]) == "wrong";
         score_sweep(report, count > 4 ? values[4] : "configs/sweep.toml", count > 1 ? values[1] : "128",
                     count > 2 ? number(values[2], 1) : 10, verbose);
         score_random(report, count > 3 ? number(values[3], 0) : 500);

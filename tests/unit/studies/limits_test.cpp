@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -14,12 +15,12 @@
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/sweep/plan/sweep_row.h"
 #include "tests/contract/random_cases.h"
+#include "tests/support/configuration_of.h"
 #include "tests/support/timed_sweep.h"
 
 namespace marti::studies {
 namespace {
 
-using processors::MachineConfig;
 using processors::MachineResult;
 
 TEST(PointFigures, AreThoseOfASweepsColumns) {
@@ -235,6 +236,34 @@ TEST(SweepLimits, OfAPipelineOnlyNeighboursSpeak) {
   EXPECT_EQ(find(limit, "node.clock")->basis, LimitBasis::interpolated);
   EXPECT_FALSE(limit.open().empty());
   EXPECT_NE(limit.sentence().find("; not known: "), std::string::npos);
+}
+
+// Whatever the machine, alone or beside another: no gain is invented, and all are possible.
+TEST(SweepLimits, SayNothingImpossibleOfMachinesOfEveryKind) {
+  using Maker = test::TimedCase (*)(test::Random&);
+  constexpr std::array<Maker, 5> makers = {test::image_case, test::contexts_case, test::building_case,
+                                           test::pipeline_case, test::space_case};
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    test::Random random(seed);
+    test::TimedCase made = makers[seed % makers.size()](random);
+    test::use_default_interleave(made.machine);
+    const sim::Config config = test::configuration_of(test::assignments_of(made.machine));
+    const PointFigures figures = figures_of(processors::replay(made.log, made.machine));
+    if (figures.end == 0.0) {
+      continue;
+    }
+    const SweepLimits limits({"machine.nodes", "cache.size"}, {{config, figures, figures}});
+    const PointLimit limit = limits.at(0);
+    EXPECT_FALSE(limit.sentence().empty());
+    const bool modelled = FrameModel::of(made.machine, figures).has_value();
+    for (const PredictedStep& step : limit.steps) {
+      EXPECT_TRUE(std::isfinite(step.saved)) << seed << " " << step.name;
+      EXPECT_LT(step.saved, 1.0) << seed << " " << step.name;
+      const bool unknown = step.basis == LimitBasis::unknown;
+      EXPECT_TRUE(unknown ? step.saved == 0.0 : !step.rests_on.empty()) << seed << " " << step.name;
+      EXPECT_TRUE(unknown || modelled || step.saved == 0.0) << seed << " " << step.name;
+    }
+  }
 }
 
 TEST(SweepLimits, AgreeWithReplays) {
