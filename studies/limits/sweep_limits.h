@@ -59,7 +59,7 @@ struct PointLimit {
 
 class SweepLimits {
  public:
-  /// `axes` are the keys in which the points differ.
+  /// `axes` are the keys in which the points differ. Throws UserError for a machine that cannot be read.
   SweepLimits(std::vector<std::string> axes, std::vector<LimitPoint> points,
               std::optional<Prices> prices = std::nullopt);
 

@@ -56,6 +56,16 @@ class TimedSweep {
     return config_.with(settings);
   }
 
+  /// The configuration made of the settings that a sweep's store keeps of the machine.
+  [[nodiscard]] sim::Config stored_config(std::size_t point) const {
+    std::vector<std::string> assignments;
+    for (const sim::EffectiveValue& value :
+         studies::all_of(plan_.machines[plan_.points[point].machine].settings)) {
+      assignments.push_back(value.key + "=" + value.value);
+    }
+    return sim::Config::from_text(config_.schema(), "", "store", assignments);
+  }
+
   [[nodiscard]] studies::SweepLimits limits(std::optional<studies::Prices> prices = std::nullopt) const {
     std::vector<studies::LimitPoint> timed;
     for (std::size_t i = 0; i < points(); ++i) {

@@ -298,6 +298,26 @@ TEST(SweepLimits, AgreeWithReplays) {
   EXPECT_GE(right * 10, sweep.points() * 9) << right << " of " << sweep.points();
 }
 
+// What a store keeps of a point is enough.
+TEST(SweepLimits, AreTheSameFromTheSettingsOfAStore) {
+  const test::TimedSweep sweep =
+      sweep_of("[sweep.axes]\nmachine.nodes = [2, 8]\ncache.size = [\"1 KiB\", \"4 KiB\"]\n");
+  std::vector<LimitPoint> points;
+  for (std::size_t i = 0; i < sweep.points(); ++i) {
+    points.push_back({sweep.stored_config(i), figures_of(sweep.result(i))});
+  }
+  const SweepLimits stored({"machine.nodes", "cache.size"}, points);
+  for (LimitPoint& point : points) {
+    point.config = sweep.config(static_cast<std::size_t>(&point - points.data()));
+  }
+  const SweepLimits given({"machine.nodes", "cache.size"}, points);
+  for (std::size_t i = 0; i < sweep.points(); ++i) {
+    EXPECT_EQ(stored.at(i).sentence(), given.at(i).sentence());
+    ASSERT_NE(stored.at(i).best(), nullptr);
+    EXPECT_EQ(stored.at(i).best()->saved, given.at(i).best()->saved);
+  }
+}
+
 // With prices a step that costs nothing comes before one that does.
 TEST(SweepLimits, RankByPriceWherePricesAreGiven) {
   const test::TimedSweep sweep =
