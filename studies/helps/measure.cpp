@@ -44,7 +44,7 @@ class Measurement {
         limited_(budget != unlimited_work),
         budget_(budget) {
     what_.end = result.end;
-    for (Resource& resource : resources_of(changer, machine, result)) {
+    for (Resource& resource : resources_of(changer, machine, facts_of(result))) {
       Case& made = cases_.emplace_back();
       made.help = {resource.name, resource.part, unmeasured(resource.step, resource),
                    unmeasured(resource.best, resource)};

@@ -18,27 +18,12 @@ using processors::Placement;
 using processors::Scheme;
 using processors::Sharing;
 
-// Whether no write has waited for room in its node's buffer: a longer one changes nothing then. A node with
-// several contexts may do something else while one of them waits.
-bool never_full(const MachineResult& result) {
-  return result.time()[static_cast<std::size_t>(processors::Activity::queue_full_wait)] == 0;
-}
-
-// Whether no access has waited for its bank: it changes nothing then how long a bank is busy.
-bool banks_always_free(const MachineResult& result) {
-  return std::all_of(
-      result.clusters.begin(), result.clusters.end(), [](const processors::ClusterResult& cluster) {
-        return std::all_of(cluster.banks.begin(), cluster.banks.end(),
-                           [](const memory::BankStatistics& bank) { return bank.waits.sum == 0; });
-      });
-}
-
-void add_nodes(const Changer& changer, const MachineConfig& machine, const MachineResult& result,
+void add_nodes(const Changer& changer, const MachineConfig& machine, const FrameFacts& facts,
                std::vector<Resource>& resources) {
   resources.push_back(faster_clock(changer, Part::nodes, "node.clock"));
   const bool image = machine.scheme == Scheme::image;
   // More nodes than packets have nothing to do. Nodes beside which rays move are of use without such a limit.
-  const auto packets = static_cast<std::int64_t>(result.packets / machine.clusters + 1);
+  const auto packets = static_cast<std::int64_t>(facts.packets / machine.clusters + 1);
   Resource nodes = more(changer, Part::nodes, "machine.nodes",
                         std::min<std::int64_t>(packets, processors::most_nodes / machine.clusters));
   if (!image) {
@@ -47,7 +32,9 @@ void add_nodes(const Changer& changer, const MachineConfig& machine, const Machi
   resources.push_back(std::move(nodes));
   if (image) {
     resources.push_back(more(changer, Part::queues, "node.write_buffer"));
-    resources.back().same_frame = machine.contexts == 1 && never_full(result);
+    // A longer buffer changes nothing then. A node with several contexts may do something else while one of
+    // them waits.
+    resources.back().same_frame = machine.contexts == 1 && !facts.writes_waited;
   }
   if (image) {
     for (const std::string_view side : {"packets.width", "packets.height"}) {
@@ -76,14 +63,14 @@ void add_local_memory(const Changer& changer, const MachineConfig& machine,
 
 // More banks than this have nothing to serve: as many as there are interleave units of the database and the
 // frame buffer, but no more than the key may have.
-std::int64_t most_banks(const Changer& changer, const MachineConfig& machine, const MachineResult& result) {
+std::int64_t most_banks(const Changer& changer, const MachineConfig& machine, const FrameFacts& facts) {
   const std::uint64_t pixel = machine.layout.pixel_bytes + machine.layout.record_alignment - 1;
-  const std::uint64_t bytes = result.database_bytes + result.pixels * pixel;
+  const std::uint64_t bytes = facts.database_bytes + facts.pixels * pixel;
   const auto most = std::get<std::int64_t>(*changer.key("memory.banks").maximum);
   return std::min(most, static_cast<std::int64_t>(bytes / machine.banks.interleave + 1));
 }
 
-void add_shared_memory(const Changer& changer, const MachineConfig& machine, const MachineResult& result,
+void add_shared_memory(const Changer& changer, const MachineConfig& machine, const FrameFacts& facts,
                        std::vector<Resource>& resources) {
   if (machine.scheme == Scheme::space || machine.placement == Placement::distributed) {
     return;
@@ -101,10 +88,11 @@ void add_shared_memory(const Changer& changer, const MachineConfig& machine, con
     return;
   }
   resources.push_back(faster_clock(changer, Part::banks, "memory.clock"));
-  resources.push_back(more(changer, Part::banks, "memory.banks", most_banks(changer, machine, result)));
+  resources.push_back(more(changer, Part::banks, "memory.banks", most_banks(changer, machine, facts)));
   resources.push_back(fewer(changer, Part::banks, "memory.access_cycles"));
   resources.push_back(fewer(changer, Part::banks, "memory.busy_cycles"));
-  resources.back().same_frame = banks_always_free(result);
+  // How long a bank is busy changes nothing where no access has waited for its bank.
+  resources.back().same_frame = !facts.waited_for_banks;
 }
 
 void add_host(const Changer& changer, const MachineConfig& machine, std::vector<Resource>& resources) {
@@ -145,13 +133,27 @@ void add_building(const Changer& changer, const MachineConfig& machine, std::vec
 
 }  // namespace
 
+FrameFacts facts_of(const MachineResult& result) {
+  FrameFacts facts;
+  facts.packets = result.packets;
+  facts.pixels = result.pixels;
+  facts.database_bytes = result.database_bytes;
+  facts.writes_waited = result.time()[static_cast<std::size_t>(processors::Activity::queue_full_wait)] > 0;
+  facts.waited_for_banks = std::any_of(
+      result.clusters.begin(), result.clusters.end(), [](const processors::ClusterResult& cluster) {
+        return std::any_of(cluster.banks.begin(), cluster.banks.end(),
+                           [](const memory::BankStatistics& bank) { return bank.waits.sum > 0; });
+      });
+  return facts;
+}
+
 std::vector<Resource> resources_of(const Changer& changer, const MachineConfig& machine,
-                                   const MachineResult& result) {
+                                   const FrameFacts& facts) {
   std::vector<Resource> resources;
-  add_nodes(changer, machine, result, resources);
-  add_caches(changer, machine, result.database_bytes, resources);
+  add_nodes(changer, machine, facts, resources);
+  add_caches(changer, machine, facts.database_bytes, resources);
   add_local_memory(changer, machine, resources);
-  add_shared_memory(changer, machine, result, resources);
+  add_shared_memory(changer, machine, facts, resources);
   add_flow(changer, machine, resources);
   add_host(changer, machine, resources);
   add_building(changer, machine, resources);

@@ -57,12 +57,16 @@ std::string nothing(const WhatHelps& what) {
 
 }  // namespace
 
-std::pair<int, double> worth(const Help& help) {
-  if (!named(help)) {
-    const bool replayed = help.step && help.step->saved;
-    return {replayed ? 0 : -1, saved(help)};
+std::pair<int, double> worth(double saved, double price) {
+  if (saved < worth_naming) {
+    return {0, saved};
   }
-  return price(help) > 0.0 ? std::pair(1, saved(help) / price(help)) : std::pair(2, saved(help));
+  return price > 0.0 ? std::pair(1, saved / price) : std::pair(2, saved);
+}
+
+std::pair<int, double> worth(const Help& help) {
+  const bool replayed = help.step && help.step->saved;
+  return replayed ? worth(saved(help), price(help)) : std::pair(-1, 0.0);
 }
 
 bool ties_with(const Help& first, const Help& help) {

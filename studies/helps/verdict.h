@@ -12,6 +12,9 @@ namespace marti::studies {
 /// is not; with prices a step that raises no price comes first, by the share it saves, and behind it those
 /// that do, by the share they save for each unit of the price.
 [[nodiscard]] std::pair<int, double> worth(const Help& help);
+/// This order, for a step that saves this share of the frame and raises the price by `price`, which is 0
+/// without prices.
+[[nodiscard]] std::pair<int, double> worth(double saved, double price);
 
 /// The share of all nodes' time, at most 1, that has to do with a part of the machine; of an interconnect and
 /// of banks the share of the frame in which they are busy, if that is more.
