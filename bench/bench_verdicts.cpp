@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "bench/report.h"
-#include "studies/figures/scaling.h"
+#include "studies/figures/find_limit.h"
 #include "studies/helps/verdict.h"
 #include "studies/helps/what_helps.h"
 #include "studies/keys/machine_keys.h"

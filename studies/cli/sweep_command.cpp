@@ -100,6 +100,7 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
           " neither a lower nor a higher value is better; `marti figures` says of which it is");
     }
   }
+  const std::optional<Prices> prices = read_given_prices(config);
   const SweepPlan plan = plan_sweep(config);
   if (arguments.plan_only) {
     print(describe(plan, look_ahead(plan, options)));
@@ -109,18 +110,18 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
     throw sim::UserError("-o DIR is missing: the directory of the sweep's results (--plan needs none)");
   }
   const SweepReport report =
-      run_sweep(plan, options, memory_of(config, options.ranks), [&](const std::string& text) {
+      run_sweep(plan, options, memory_of(config, options.ranks), prices, [&](const std::string& text) {
         if (!arguments.json) {
           print(text);
         }
       });
   if (arguments.json) {
     print(json_of(arguments.best.empty()
-                      ? points_table(*report.reader)
+                      ? report.limited->table
                       : best_points(*report.reader, arguments.best, arguments.within).front));
     return;
   }
-  std::string text = said(report);
+  std::string text = said(report) + report.limited->text;
   text += "wrote         " + report.store.string() + "\n";
   text += "wrote         " + report.points.string() + "\n";
   if (!arguments.best.empty()) {

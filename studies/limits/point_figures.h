@@ -1,10 +1,7 @@
 // The figures of a timed point that predictions rest on.
 #pragma once
 
-#include <functional>
-#include <string_view>
-
-#include "processors/replay/replay.h"
+#include "studies/figures/counted_figures.h"
 
 namespace marti::studies {
 
@@ -34,10 +31,6 @@ struct PointFigures {
   double bank_waits = 0.0;
 };
 
-[[nodiscard]] PointFigures figures_of(const processors::MachineResult& result);
-
-/// From the columns of a sweep (docs/sweep-store.md). `column` gives the value of a column, 0 for one that is
-/// NULL.
-[[nodiscard]] PointFigures figures_of_columns(const std::function<double(std::string_view)>& column);
+[[nodiscard]] PointFigures point_figures(const Counts& counts);
 
 }  // namespace marti::studies

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "studies/figures/find_limit.h"
 #include "studies/figures/flow_figures.h"
-#include "studies/figures/scaling.h"
 
 namespace marti::studies {
 

@@ -15,7 +15,6 @@
 #include "studies/host/signals_held.h"
 #include "studies/show/output.h"
 #include "studies/sweep/ranks/rank_sweep.h"
-#include "studies/sweep/store/points_table.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "studies/sweep/sweep_outlook.h"
 #include "studies/sweep/work/coordinator.h"
@@ -64,6 +63,7 @@ SweepOutlook look_ahead(const SweepPlan& plan, const SweepOptions& options) {
 }
 
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
+                      const std::optional<Prices>& prices,
                       const std::function<void(const std::string&)>& announce) {
   refuse_large_machines(plan, limit);
   prepare_output(options.directory);
@@ -118,7 +118,8 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
   store.close();
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report.reader = std::make_unique<const SweepReader>(report.store);
-  sim::write_file(report.points, csv_of(points_table(*report.reader)));
+  report.limited = limited_points(*report.reader, prices);
+  sim::write_file(report.points, csv_of(report.limited->table));
   return report;
 }
 

@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "sim/config.h"
+#include "studies/limits/limit_table.h"
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/sweep/store/sweep_reader.h"
 
@@ -35,12 +37,15 @@ struct SweepReport {
   std::filesystem::path store;
   std::filesystem::path points;               ///< the table as CSV
   std::unique_ptr<const SweepReader> reader;  ///< of the store as the sweep has left it
+  std::optional<LimitedPoints> limited;       ///< its points with what limits them
 };
 
 /// Runs the part of the plan that is not in the store yet. `announce` is called with the plan as text before
 /// anything is done. A program that is ended by a signal says what is saved and exits with 128 + signal.
 /// Throws UserError; what is done by then is saved.
+/// `prices` rank what limits points.
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
+                      const std::optional<Prices>& prices,
                       const std::function<void(const std::string&)>& announce);
 
 /// What a rank makes of the configuration.

@@ -69,10 +69,11 @@ class TimedSweep {
   [[nodiscard]] studies::SweepLimits limits(std::optional<studies::Prices> prices = std::nullopt) const {
     std::vector<studies::LimitPoint> timed;
     for (std::size_t i = 0; i < points(); ++i) {
-      timed.push_back({config(i), studies::figures_of(result(i))});
+      timed.push_back({config(i), studies::point_figures(studies::counts_of(machine(i), result(i)))});
       const std::size_t base = plan_.points[i].base;
       if (plan_.machines[base].config.all_nodes() == 1) {
-        timed.back().one_node = studies::figures_of(results_[base]);
+        timed.back().one_node =
+            studies::point_figures(studies::counts_of(plan_.machines[base].config, results_[base]));
       }
     }
     std::vector<std::string> keys;

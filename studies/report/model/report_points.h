@@ -9,10 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "memory/interconnect.h"
-#include "memory/network.h"
-#include "processors/machine/build_config.h"
-#include "processors/machine/machine_config.h"
 #include "studies/tables/table.h"
 
 namespace marti::studies {
@@ -31,14 +27,6 @@ struct ReportAxis {
   [[nodiscard]] double number(std::size_t value) const;  ///< of a numeric axis
 };
 
-/// What is needed, beside figures, to say where most of the time of an image machine goes.
-struct ImageMachine {
-  processors::Placement placement = processors::Placement::shared;
-  memory::InterconnectKind interconnect = memory::InterconnectKind::bus;
-  memory::NetworkKind network = memory::NetworkKind::ideal;
-  processors::Sharing sharing = processors::Sharing::given;
-};
-
 struct ReportPoint {
   std::int64_t ordinal = 0;
   std::int64_t machine = 0;
@@ -46,7 +34,7 @@ struct ReportPoint {
   std::vector<std::size_t> place;                      ///< for each axis the index of its value
   std::map<std::string, double, std::less<>> figures;  ///< those that the point has
   std::size_t frame = 0;                               ///< which of the sweep's frames it renders, from 0
-  std::optional<ImageMachine> image_machine;           ///< std::nullopt for another scheme
+  std::string limit;                                   ///< what would help it (studies/limits); may be empty
   bool links_are_queues = false;                       ///< its interconnect is a bus or a crossbar,
   bool banks_are_queues = false;                       ///< and it is not held while a bank works
 

@@ -7,8 +7,6 @@
 #include <map>
 #include <set>
 
-#include "processors/cost/accounting.h"
-#include "studies/figures/find_limit.h"
 #include "studies/report/model/answer_text.h"
 #include "studies/sweep/store/sweep_best.h"
 
@@ -108,40 +106,6 @@ std::string frame_text(const ReportPoints& sweep, std::size_t frame) {
   return text;
 }
 
-// Where most of the time of the point's nodes goes, by a machine with only the parts that find_limit() reads;
-// what it reads only as a sum is given to one node.
-std::optional<Finding> limit_of(const ReportPoint& point) {
-  constexpr double most_nodes = 65'536;  // each takes memory
-  const double nodes = point.figure("nodes");
-  const double clusters = std::max(1.0, point.figure("clusters"));
-  if (!point.image_machine || nodes < 1.0 || nodes > most_nodes) {
-    return std::nullopt;
-  }
-  const auto ticks = [&](std::string_view name) { return static_cast<sim::Ticks>(point.figure(name)); };
-  processors::MachineConfig machine;
-  machine.scheme = processors::Scheme::image;
-  machine.placement = point.image_machine->placement;
-  machine.interconnect.kind = point.image_machine->interconnect;
-  machine.network.kind = point.image_machine->network;
-  machine.build.sharing = point.image_machine->sharing;
-  processors::MachineResult result;
-  result.end = ticks("end");
-  result.nodes.resize(static_cast<std::size_t>(nodes));
-  bool timed = false;
-  for (std::size_t i = 0; i < processors::activities; ++i) {
-    const sim::Ticks time = ticks("time_" + std::string(processors::activity_names[i]));
-    result.nodes.front().time[i] = time;
-    timed = timed || time > 0;
-  }
-  result.build.start_up_wait = ticks("build_start_up_wait");
-  result.packets = static_cast<std::uint64_t>(point.figure("packets"));
-  processors::ClusterResult& busiest = result.clusters.emplace_back();
-  busiest.interconnect.busy = ticks("most_interconnect_busy");
-  busiest.interconnect.links = static_cast<std::int64_t>(point.figure("interconnect_links") / clusters);
-  busiest.banks.emplace_back().busy = ticks("most_bank_busy");
-  return timed ? std::optional(find_limit(machine, result)) : std::nullopt;
-}
-
 std::string speed_text(const ReportPoint& point) {
   if (!point.has("speed_up")) {
     return {};
@@ -182,11 +146,6 @@ std::string place_text(const ReportPoints& sweep, const ReportPoint& point) {
   return text.empty() ? "the only machine" : text;
 }
 
-std::string limit_sentence(const ReportPoint& point) {
-  const std::optional<Finding> finding = limit_of(point);
-  return finding ? finding->sentence : std::string();
-}
-
 std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chosen) {
   const ReportPoint& fastest = sweep.points[chosen.fastest];
   const ReportPoint& knee = sweep.points[chosen.knee];
@@ -196,8 +155,8 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
                     [&](const ReportPoint& point) { return point.frame == fastest.frame; }));
   std::vector<std::string> answer;
   const auto add_limit = [&](const char* begin, const ReportPoint& point) {
-    if (const std::string limit = limit_sentence(point); !limit.empty()) {
-      answer.push_back(fmt::format("{}: {}.", begin, limit));
+    if (!point.limit.empty()) {
+      answer.push_back(fmt::format("{}: {}.", begin, point.limit));
     }
   };
   answer.push_back(fmt::format("The fastest of {} machines takes {} a frame{} {} {:g}: {}.", compared,
@@ -209,7 +168,7 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
         "the shortest time are compared here{}.",
         sweep.frames, frame_text(sweep, fastest.frame)));
   }
-  add_limit("The largest part of its nodes' time", fastest);
+  add_limit("What would help it, predicted", fastest);
   if (chosen.knee != chosen.fastest) {
     const double time = knee.figure("end") / fastest.figure("end");
     const double price = price_of(knee) / price_of(fastest);  // dearer than the knee: above 0
@@ -219,7 +178,7 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
                     "{:.2f} times the time of the fastest for {:.1f} % of its price: {}.",
                     chosen.front.size(), time_text(knee.figure("end")), speed_text(knee), unit,
                     price_of(knee), time, 100.0 * price, place_text(sweep, knee)));
-    add_limit("The largest part of the nodes' time of that one", knee);
+    add_limit("What would help that one, predicted", knee);
   }
   if (const Advice steps = advice(sweep, knee); !steps.text.empty()) {
     answer.push_back(fmt::format("What to change there, one step at a time: {}.", steps.text));

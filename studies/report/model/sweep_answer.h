@@ -1,5 +1,5 @@
-// What a sweep says in sentences: the fastest machine, the one that is worth its price, where most of their
-// time goes, and which axis to turn.
+// What a sweep says in sentences: the fastest machine, the one that is worth its price, what would
+// help them, and which axis to turn.
 #pragma once
 
 #include <cstddef>
@@ -25,11 +25,6 @@ struct Chosen {
 
 /// "machine.nodes = 16, cache.size = 16 KiB".
 [[nodiscard]] std::string place_text(const ReportPoints& sweep, const ReportPoint& point);
-
-/// Where most of the time of a machine of the image scheme goes: the sentence of find_limit
-/// (studies/figures/find_limit.h). Empty for a machine of another scheme, because a store lacks how busy its
-/// stages and nodes are; for one of more than 65,536 nodes; and where the store has no times.
-[[nodiscard]] std::string limit_sentence(const ReportPoint& point);
 
 [[nodiscard]] std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chosen);
 

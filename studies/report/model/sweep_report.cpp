@@ -164,12 +164,12 @@ Table front_table(const ReportPoints& sweep, const Chosen& chosen) {
                {"ms", ColumnType::real, "ms", "frame time"},
                {"speed_up", ColumnType::real, "1", "over the base machine"},
                {"efficiency", ColumnType::real, "fraction", "speed-up by the number of nodes"},
-               {"limit", ColumnType::text, "", "what takes most of its nodes' time"}});
+               {"limit", ColumnType::text, "", "what would help it, predicted (docs/sweep.md)"}});
   for (const std::size_t i : chosen.front) {
     const ReportPoint& point = sweep.points[i];
     const auto cell = [&](const char* name) { return point.has(name) ? Cell(point.figure(name)) : Cell(); };
     table.add_row({point.ordinal, place_text(sweep, point), point.figure("price"), point.figure("end") * 1e-9,
-                   cell("speed_up"), cell("efficiency"), limit_sentence(point)});
+                   cell("speed_up"), cell("efficiency"), point.limit});
   }
   return table;
 }

@@ -9,7 +9,9 @@
 #include "processors/cost/accounting.h"
 #include "sim/error.h"
 #include "sim/schema.h"
+#include "studies/limits/stored_limits.h"
 #include "studies/report/model/cycle_groups.h"
+#include "studies/report/model/sweep_answer.h"
 #include "studies/report/read/axis_order.h"
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/sweep/store/sweep_reader.h"
@@ -170,23 +172,6 @@ void add_percentiles(const SweepRow& row, ReportPoint& point) {
   }
 }
 
-// The number of a setting's text among a choice's names; the first where the machine has no such setting.
-template <class Choice, std::size_t N>
-Choice choice_of(std::string text, const std::array<std::string_view, N>& names) {
-  std::erase(text, '"');
-  const auto* const at = std::find(names.begin(), names.end(), text);
-  return static_cast<Choice>(at == names.end() ? 0 : at - names.begin());
-}
-
-template <class Value>
-ImageMachine image_machine(const Value& value) {
-  constexpr std::array<std::string_view, 3> interconnects = {"ideal", "bus", "crossbar"};
-  return {choice_of<processors::Placement>(value("database.placement"), processors::placement_names),
-          choice_of<memory::InterconnectKind>(value("interconnect.kind"), interconnects),
-          choice_of<memory::NetworkKind>(value("network.kind"), memory::network_kind_names),
-          choice_of<processors::Sharing>(value("build.sharing"), processors::sharing_names)};
-}
-
 // Numbers frames by what was rendered. A tree that was built otherwise gives the same rays and pixels: its
 // machines can be compared.
 class Frames {
@@ -227,9 +212,6 @@ class Settings {
     };
     const bool bus = value("interconnect.kind") == "\"bus\"";
     const bool local = value("database.placement") != "\"shared\"";
-    if (value("machine.scheme") == "\"image\"") {
-      point.image_machine = image_machine(value);
-    }
     point.links_are_queues = !local && (bus || value("interconnect.kind") == "\"crossbar\"");
     point.banks_are_queues = point.links_are_queues && !(bus && value("interconnect.mode") == "\"held\"");
     if (!begun_) {
@@ -390,6 +372,12 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
   });
   for (ReportPoint& point : sweep.points) {
     point.figures["price"] = sweep.priced ? point.cost : point.figure("nodes");
+  }
+  const StoredLimits limits(reader);
+  for (const std::size_t i : choose(sweep).front) {
+    if (const std::optional<PointLimit> limit = limits.at(sweep.points[i].ordinal)) {
+      sweep.points[i].limit = limit->sentence();
+    }
   }
   sweep.provenance = {{"version of marti", sweep.version},
                       {"points", fmt::format("{} timed of {}", sweep.points.size(), sweep.planned)}};

@@ -23,48 +23,6 @@ namespace {
 
 using processors::MachineResult;
 
-TEST(PointFigures, AreThoseOfASweepsColumns) {
-  for (std::uint64_t seed = 0; seed < 30; ++seed) {
-    test::Random random(seed);
-    const test::TimedCase made =
-        seed % 3 == 0 ? test::image_case(random)
-                      : (seed % 3 == 1 ? test::building_case(random) : test::space_case(random));
-    const MachineResult result = processors::replay(made.log, made.machine, made.options);
-    const SweepRow row = sweep_row(made.machine, result);
-    std::map<std::string, double, std::less<>> columns;
-    for (std::size_t i = 0; i < row.counters.size(); ++i) {
-      columns[std::string(sweep_columns()[i].name)] = static_cast<double>(row.counters[i].value_or(0));
-    }
-    const PointFigures a = figures_of(result);
-    const PointFigures b =
-        figures_of_columns([&](std::string_view name) { return columns.find(name)->second; });
-    for (const auto member : {&PointFigures::end,
-                              &PointFigures::packets,
-                              &PointFigures::pixels,
-                              &PointFigures::database_bytes,
-                              &PointFigures::computing,
-                              &PointFigures::cache_access,
-                              &PointFigures::transfer,
-                              &PointFigures::bank_access,
-                              &PointFigures::delays,
-                              &PointFigures::queue_full_wait,
-                              &PointFigures::idle,
-                              &PointFigures::earliest_finish,
-                              &PointFigures::host_requests,
-                              &PointFigures::references,
-                              &PointFigures::misses,
-                              &PointFigures::reads,
-                              &PointFigures::writes,
-                              &PointFigures::interconnect_busy,
-                              &PointFigures::links,
-                              &PointFigures::bank_busy,
-                              &PointFigures::most_bank_busy,
-                              &PointFigures::bank_waits}) {
-      EXPECT_DOUBLE_EQ(a.*member, b.*member) << "seed " << seed;
-    }
-  }
-}
-
 // With exponential service, whose half mean square is the square of the mean, it is mean value analysis.
 TEST(QueueModel, IsMeanValueAnalysisForExponentialService) {
   test::Random random(3);
@@ -142,7 +100,8 @@ TEST(FrameModel, GivesTheFrameThatItWasFittedTo) {
     test::Random random(seed);
     const test::TimedCase made = test::image_case(random);
     const MachineResult result = processors::replay(made.log, made.machine);
-    const std::optional<FrameModel> model = FrameModel::of(made.machine, figures_of(result));
+    const std::optional<FrameModel> model =
+        FrameModel::of(made.machine, point_figures(counts_of(made.machine, result)));
     EXPECT_TRUE(!model || made.machine.placement == processors::Placement::shared);
     if (model) {
       ++described;
@@ -248,7 +207,8 @@ TEST(SweepLimits, SayNothingImpossibleOfMachinesOfEveryKind) {
     test::TimedCase made = makers[seed % makers.size()](random);
     test::use_default_interleave(made.machine);
     const sim::Config config = test::configuration_of(test::assignments_of(made.machine));
-    const PointFigures figures = figures_of(processors::replay(made.log, made.machine));
+    const PointFigures figures =
+        point_figures(counts_of(made.machine, processors::replay(made.log, made.machine)));
     if (figures.end == 0.0) {
       continue;
     }
@@ -304,7 +264,7 @@ TEST(SweepLimits, AreTheSameFromTheSettingsOfAStore) {
       sweep_of("[sweep.axes]\nmachine.nodes = [2, 8]\ncache.size = [\"1 KiB\", \"4 KiB\"]\n");
   std::vector<LimitPoint> points;
   for (std::size_t i = 0; i < sweep.points(); ++i) {
-    points.push_back({sweep.stored_config(i), figures_of(sweep.result(i))});
+    points.push_back({sweep.stored_config(i), point_figures(counts_of(sweep.machine(i), sweep.result(i)))});
   }
   const SweepLimits stored({"machine.nodes", "cache.size"}, points);
   for (LimitPoint& point : points) {

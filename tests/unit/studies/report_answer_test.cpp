@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "studies/figures/find_limit.h"
 #include "studies/report/model/answer_text.h"
 #include "studies/report/model/run_answer.h"
 #include "studies/report/model/sweep_answer.h"
@@ -43,63 +42,11 @@ std::string all_of(const ReportPoints& sweep) {
   return text;
 }
 
-// Its figures as a store has them; they must give the limit that find_limit gives for the machine itself.
-void expect_same_limit(const processors::MachineConfig& machine, const processors::MachineResult& result) {
-  ReportPoint point;
-  point.image_machine = {machine.placement, machine.interconnect.kind, machine.network.kind,
-                         machine.build.sharing};
-  point.figures = {{"end", static_cast<double>(result.end)},
-                   {"nodes", static_cast<double>(result.nodes.size())},
-                   {"clusters", 1.0},
-                   {"packets", static_cast<double>(result.packets)},
-                   {"interconnect_links", static_cast<double>(result.clusters[0].interconnect.links)},
-                   {"most_interconnect_busy", static_cast<double>(result.clusters[0].interconnect.busy)},
-                   {"most_bank_busy", static_cast<double>(result.clusters[0].banks[0].busy)},
-                   {"build_start_up_wait", static_cast<double>(result.build.start_up_wait)}};
-  const processors::TimeDivision time = result.time();
-  for (std::size_t i = 0; i < processors::activities; ++i) {
-    point.figures["time_" + std::string(processors::activity_names[i])] = static_cast<double>(time[i]);
-  }
-  EXPECT_EQ(limit_sentence(point), find_limit(machine, result).sentence);
-}
-
-TEST(LimitSentence, IsWhatTheRunSays) {
-  for (std::size_t activity = 0; activity < processors::activities; ++activity) {
-    for (const processors::Placement placement :
-         {processors::Placement::shared, processors::Placement::distributed}) {
-      processors::MachineConfig machine;
-      machine.placement = placement;
-      machine.build.sharing = processors::Sharing::none;
-      processors::MachineResult result;
-      result.end = 1000;
-      result.packets = 77;
-      result.nodes.resize(4);
-      for (processors::NodeStatistics& node : result.nodes) {
-        node.time[activity] = 700;
-        node.time[0] += 300;
-      }
-      result.clusters.resize(1);
-      result.clusters[0].interconnect.links = 2;
-      result.clusters[0].interconnect.busy = 1500;
-      result.clusters[0].banks.resize(1);
-      result.clusters[0].banks[0].busy = 600;
-      expect_same_limit(machine, result);
-      result.build.start_up_wait = 2600;
-      expect_same_limit(machine, result);
-    }
-  }
-}
-
-TEST(LimitSentence, SaysNothingOfWhatTheStoreLacks) {
-  ReportPoint point;
-  point.figures = {{"end", 1000.0}, {"nodes", 1.0}, {"time_idle", 1000.0}};
-  EXPECT_EQ(limit_sentence(point), "") << "no machine of the image scheme";
-  point.image_machine.emplace();
-  EXPECT_NE(limit_sentence(point), "");
-  point.figures["nodes"] = 1e12;
-  EXPECT_EQ(limit_sentence(point), "");
+TEST(AnswerOfSweep, SaysWhatWouldHelpWhereThatIsKnown) {
   ReportPoints sweep = line_of({{1, 100}, {2, 50}});
-  EXPECT_EQ(all_of(sweep).find("The largest part of its nodes' time"), std::string::npos);
+  EXPECT_EQ(all_of(sweep).find("What would help"), std::string::npos);
+  sweep.points[1].limit = "node.clock: some";
+  EXPECT_NE(all_of(sweep).find("What would help it, predicted: node.clock: some."), std::string::npos);
 }
 
 TEST(Choose, TakesTheFrontOfOneFrameOnly) {

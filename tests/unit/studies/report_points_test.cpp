@@ -73,24 +73,7 @@ TEST_F(ReadReportPoints, ReadsThemWithTheirFrames) {
   EXPECT_NE(sweep.points[0].frame, sweep.points[1].frame);
   EXPECT_EQ(sweep.points[1].figure("end"), 1010.0);
   EXPECT_EQ(sweep.points[1].figure("price"), 1.5);
-  EXPECT_FALSE(sweep.points[0].image_machine.has_value()) << "its settings do not name a scheme";
-}
-
-TEST_F(ReadReportPoints, KnowsWhatBearsOnALimit) {
-  const auto set = [](const std::string& section, const std::string& key, const std::string& value) {
-    return "UPDATE settings SET key = '" + key + "', value = '\"" + value + "\"' WHERE key = '" + section +
-           ".key1'";
-  };
-  make({set("machine", "machine.scheme", "image"), set("build", "build.sharing", "private"),
-        set("interconnect", "interconnect.kind", "crossbar"),
-        set("database", "database.placement", "replicated")});
-  const std::optional<ImageMachine> machine = read_report_points(file_).points[0].image_machine;
-  ASSERT_TRUE(machine.has_value());
-  EXPECT_EQ(machine->sharing, processors::Sharing::private_trees);
-  EXPECT_EQ(machine->interconnect, memory::InterconnectKind::crossbar);
-  EXPECT_EQ(machine->placement, processors::Placement::replicated);
-  make({set("machine", "machine.scheme", "pipeline")});
-  EXPECT_FALSE(read_report_points(file_).points[0].image_machine.has_value());
+  EXPECT_EQ(sweep.points[0].limit, "") << "its settings are not known";
 }
 
 TEST_F(ReadReportPoints, RefusesFrameTimesThatAreNone) {

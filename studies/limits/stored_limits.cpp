@@ -1,0 +1,95 @@
+#include "studies/limits/stored_limits.h"
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/error.h"
+#include "studies/sweep/plan/sweep_keys.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+sim::Config config_of(const sim::Schema& schema, const Settings& settings, const std::string& name) {
+  std::vector<std::string> assignments;
+  for (const auto& [key, value] : settings) {
+    assignments.push_back(key + "=" + value);
+  }
+  return sim::Config::from_text(schema, "", name, assignments);
+}
+
+// The keys that are not equal in all machines. What a machine does not use is not among its settings.
+class DifferingKeys {
+ public:
+  void add(const Settings& settings) {
+    if (!first_) {
+      first_ = std::map<std::string, std::string>(settings.begin(), settings.end());
+      return;
+    }
+    std::size_t known = 0;
+    for (const auto& [key, value] : settings) {
+      const auto at = first_->find(key);
+      known += at != first_->end() ? 1 : 0;
+      if (at == first_->end() || at->second != value) {
+        keys_.insert(key);
+      }
+    }
+    if (known < first_->size()) {
+      const std::map<std::string, std::string> here(settings.begin(), settings.end());
+      for (const auto& [key, value] : *first_) {
+        if (!here.contains(key)) {
+          keys_.insert(key);
+        }
+      }
+    }
+  }
+  [[nodiscard]] std::vector<std::string> keys() const { return {keys_.begin(), keys_.end()}; }
+
+ private:
+  std::optional<std::map<std::string, std::string>> first_;
+  std::set<std::string> keys_;
+};
+
+}  // namespace
+
+StoredLimits::StoredLimits(const SweepReader& sweep, const std::optional<Prices>& prices) {
+  const sim::Schema schema = sweep_schema();
+  DifferingKeys differing;
+  std::vector<LimitPoint> points;
+  for (const StoredPoint& point : sweep.points()) {
+    const std::optional<SweepRow> row = sweep.read_result(point.machine);
+    if (!row || count_of(row->counters, "end").value_or(0) <= 0) {
+      continue;
+    }
+    if (points.size() == most_limited_points) {
+      places_.clear();
+      return;
+    }
+    const Settings settings = sweep.settings(point.machine);
+    try {
+      points.push_back(
+          {config_of(schema, settings, sweep.file().string()), point_figures(row->counters), std::nullopt});
+    } catch (const sim::UserError&) {  // settings of another version of the program
+      places_.clear();
+      return;
+    }
+    differing.add(settings);
+    places_.emplace(point.ordinal, points.size() - 1);
+    const std::optional<SweepRow> base = sweep.read_result(point.base);
+    if (base && count_of(base->counters, "nodes") == 1) {
+      points.back().one_node = point_figures(base->counters);
+    }
+  }
+  limits_.emplace(differing.keys(), std::move(points), prices);
+}
+
+std::optional<PointLimit> StoredLimits::at(std::int64_t ordinal) const {
+  const auto place = places_.find(ordinal);
+  return place == places_.end() ? std::nullopt : std::optional(limits_->at(place->second));
+}
+
+}  // namespace marti::studies
