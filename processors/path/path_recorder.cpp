@@ -143,10 +143,12 @@ std::optional<PathTip> PathRecorder::ends_at(const std::vector<PathTip>& tips, s
 }
 
 void PathRecorder::granted(std::uint32_t node, std::uint32_t context, sim::Ticks asked, sim::Ticks start) {
-  const PathTip& asking = tip_at(node, asked);
   if (!asks_host_) {
     return;
   }
+  // When the frame begins all contexts ask, and the first of them may have gone on before the others do.
+  const PathTip& begin = nodes_[node].begin;
+  const PathTip& asking = begin.end() == asked ? begin : tip_at(node, asked);
   const PathOwner owner = {node, {}};
   const PathTip before = later_of(asking, host_);
   host_ = pieces_.append(before, host_occupancy_, owner, PathKind::dispatch);
@@ -161,6 +163,7 @@ void PathRecorder::began_frame(sim::Ticks start_up) {
     if (node.tip.end() != start_up) {
       node.tip = cause;
     }
+    node.begin = node.tip;
   }
 }
 

@@ -53,6 +53,7 @@ class PathRecorder final : public Observer, public CauseObserver {
 
  private:
   struct Node {
+    PathTip begin;            // up to the beginning of the frame
     PathTip tip;              // up to what the node has done, or to where its wait began
     LogPlace place;           // where it was then
     TimeDivision seen{};      // what it had counted when it worked last
