@@ -45,11 +45,8 @@ CriticalPath add_up(const PathPieces& pieces, const PathTip& tip, std::uint32_t 
     path.time[static_cast<std::size_t>(piece.kind)] += piece.to - piece.from;
     path.nodes[piece.owner.node] += piece.to - piece.from;
     add_levels(path, piece, levels);
-    const bool other = after && after->owner.node != piece.owner.node;
-    const bool goes_on = after && !other &&
-                         (after->kind == piece.kind || (is_own_work(after->kind) && is_own_work(piece.kind)));
-    path.node_changes += other ? 1 : 0;
-    path.pieces += goes_on ? 0 : 1;
+    path.node_changes += after && after->owner.node != piece.owner.node ? 1 : 0;
+    path.pieces += after && after->goes_on_from(piece) ? 0 : 1;
     after = piece;
   });
   sim::ensure(at == 0 && std::reduce(path.time.begin(), path.time.end()) == path.end,

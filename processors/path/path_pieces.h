@@ -53,6 +53,13 @@ struct PathPiece {
   sim::Ticks to = 0;
   PathOwner owner;
   PathKind kind = PathKind::traversal;
+
+  /// Whether this piece goes on with what `before`, the piece before it, does: for the same node, both the
+  /// node's own work or both of one kind.
+  [[nodiscard]] bool goes_on_from(const PathPiece& before) const {
+    return owner.node == before.owner.node &&
+           (kind == before.kind || (is_own_work(kind) && is_own_work(before.kind)));
+  }
 };
 
 class PathPieces;

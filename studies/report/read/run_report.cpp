@@ -7,6 +7,7 @@
 #include "sim/sha256.h"
 #include "studies/report/model/chart_library.h"
 #include "studies/report/model/helps_table.h"
+#include "studies/report/model/path_chart.h"
 #include "studies/report/model/run_answer.h"
 #include "studies/report/model/run_charts.h"
 #include "studies/report/read/read_report.h"
@@ -120,6 +121,7 @@ ReportData read_run_report(const fs::path& directory) {
   report.title = fmt::format("Run of {} on {}", run.text("scene.name"), machine_text(run));
   report.answer = answer_of(run);
   add_run_charts(run, report);
+  add_path_chart(run, report);
   add_files(directory, run, report);
   if (Table helps = helps_table(run); !helps.rows().empty()) {
     report.tables.push_back({std::move(helps), false});
