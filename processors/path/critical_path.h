@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "processors/path/log_levels.h"
 #include "processors/path/path_pieces.h"
 #include "sim/time.h"
 
@@ -13,24 +12,16 @@ namespace marti::processors {
 
 /// A chain of pieces of work from 0 to the end of the frame, each beginning when the one before it ends.
 struct CriticalPath {
-  /// Of a tree level: the traversal time of its nodes' visits, and the time of transfers, bank accesses and
-  /// hits of a shared cache that the steps at its nodes asked for.
-  struct Level {
-    sim::Ticks traversal = 0;
-    sim::Ticks reads = 0;
-  };
-
   sim::Ticks end = 0;                         ///< the frame time; the sum of `time`, and of `nodes`
   std::array<sim::Ticks, path_kinds> time{};  ///< by PathKind
   std::vector<sim::Ticks> nodes;              ///< by the node for which the work was done
-  std::vector<Level> levels;  ///< level 1, the root's, is first; steps at no tree node are left out
+  std::vector<PathLevel> levels;  ///< level 1, the root's, is first; steps at no tree node are left out
   /// Stretches in which one node does its own work, or one kind of resource works for one node.
   std::int64_t pieces = 0;
   std::int64_t node_changes = 0;  ///< how often a piece is another node's than the one before it
 };
 
-/// Adds up the chain that ends with `tip`. Throws InternalError unless its pieces follow each other without
-/// gap from 0 to its end.
+/// Adds up the chain that ends with `tip`. Throws InternalError unless its pieces add up to its end.
 [[nodiscard]] CriticalPath add_up(const PathPieces& pieces, const PathTip& tip, std::uint32_t nodes,
                                   LogLevels& levels);
 

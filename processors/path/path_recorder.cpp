@@ -47,7 +47,8 @@ void PathRecorder::begin(const ReplayInput& input) {
   budget_.require(nodes * (sizeof(Node) + (ports_ + write_buffer_ + workers) * sizeof(PathTip)),
                   "what leads to the end of the frame takes", "leave record.critical_path off");
   ticks_ = step_ticks(config, input.log);
-  log_ = &input.log;
+  levels_.emplace(input.log, ticks_);
+  pieces_.set_levels(*levels_);
   nodes_.resize(nodes);
   due_.resize(nodes * ports_);
   writes_.resize(nodes * write_buffer_);
@@ -57,7 +58,7 @@ void PathRecorder::begin(const ReplayInput& input) {
 void PathRecorder::worked(std::uint32_t node, const NodeStatistics& statistics, LogPlace place) {
   Node& n = nodes_[node];
   n.counted = statistics.time;
-  add_counted_time(*ticks_, statistics.steps, statistics.references.all_hits(), n.counted);
+  add_counted_time(ticks_, statistics.steps, statistics.references.all_hits(), n.counted);
   n.place = place;
 }
 
@@ -204,9 +205,8 @@ PathTip PathRecorder::first_that_ends_at(sim::Ticks time) const {
 
 void PathRecorder::end(sim::Ticks time) {
   last_ = first_that_ends_at(time);
-  LogLevels levels(*log_, *ticks_);
-  path_ = add_up(pieces_, last_, static_cast<std::uint32_t>(nodes_.size()), levels);
-  log_ = nullptr;
+  path_ = add_up(pieces_, last_, static_cast<std::uint32_t>(nodes_.size()), *levels_);
+  levels_.reset();
   host_ = {};
   for (std::vector<PathTip>* const tips : {&due_, &writes_, &releases_}) {
     tips->clear();

@@ -22,8 +22,9 @@ void check_critical_path(const MachineConfig& config);
 /// One object records one replay. The observer of the replay must be this object or pass all calls on to it.
 class PathRecorder final : public Observer, public CauseObserver {
  public:
-  /// What does not fit the budget ends the replay with a KeyError.
-  explicit PathRecorder(const sim::MemoryBudget& budget) : budget_(budget), pieces_(budget) {}
+  /// What does not fit the budget ends the replay with a KeyError. `fold_from`: as PathPieces.
+  explicit PathRecorder(const sim::MemoryBudget& budget, std::uint32_t fold_from = PathPieces::usual_fold)
+      : budget_(budget), pieces_(budget, fold_from) {}
 
   void begin(const ReplayInput& input) override;
   void spent(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to, PixelPlace pixel) override;
@@ -45,7 +46,8 @@ class PathRecorder final : public Observer, public CauseObserver {
 
   /// After the replay.
   [[nodiscard]] const CriticalPath& path() const { return path_; }
-  /// After the replay: calls visit(piece) for the pieces of the path, the last one first.
+  /// After the replay, with PathPieces::no_fold: calls visit(piece) for the pieces of the path, the last one
+  /// first.
   template <class Visit>
   void each_from_the_end(const Visit& visit) const {
     pieces_.each_from_the_end(last_, visit);
@@ -81,7 +83,7 @@ class PathRecorder final : public Observer, public CauseObserver {
 
   sim::MemoryBudget budget_;
   PathPieces pieces_;
-  std::optional<StepTicks> ticks_;
+  StepTicks ticks_;
   bool builds_ = false;
   bool asks_host_ = false;
   std::size_t contexts_ = 1;
@@ -89,7 +91,7 @@ class PathRecorder final : public Observer, public CauseObserver {
   std::size_t write_buffer_ = 1;
   sim::Ticks host_latency_ = 0;
   sim::Ticks host_occupancy_ = 0;
-  const WorkLog* log_ = nullptr;  // during the replay
+  std::optional<LogLevels> levels_;  // during the replay
   std::vector<Node> nodes_;
   std::vector<PathTip> due_;       // by port: the last read, or grant of a packet to a context
   std::vector<PathTip> writes_;    // node by node: the writes in its write buffer

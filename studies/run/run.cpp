@@ -68,7 +68,9 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
   Observers observers;
   std::optional<processors::PathRecorder> path;
   if (record.critical_path) {
-    observers.add(path.emplace(memory_beside(result)));
+    // A timeline shows the pieces of the path; else only their sums are wanted.
+    observers.add(path.emplace(memory_beside(result), record.timeline ? processors::PathPieces::no_fold
+                                                                      : processors::PathPieces::usual_fold));
   }
   if (record.timeline) {
     result.timeline = std::make_unique<Timeline>(directory / "timeline.json", record.timeline_options);

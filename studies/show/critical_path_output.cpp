@@ -45,7 +45,7 @@ void add_critical_path(const RunResult& result, bool nodes, Json& machine) {
     time[std::string(processors::path_kind_names[kind])] = path.time[kind];
   }
   Json levels = Json::array();
-  for (const CriticalPath::Level& level : path.levels) {
+  for (const processors::PathLevel& level : path.levels) {
     levels.push_back({{"traversal_ps", level.traversal}, {"reads_ps", level.reads}});
   }
   machine["critical_path"] = {{"time_ps", time},

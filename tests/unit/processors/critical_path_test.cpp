@@ -75,7 +75,7 @@ TEST(CriticalPath, ItsPiecesFollowEachOtherFromZeroToTheEnd) {
     SCOPED_TRACE(seed);
     test::Random random(seed);
     const Case c = random_case(random);
-    PathRecorder recorder(unlimited);
+    PathRecorder recorder(unlimited, PathPieces::no_fold);
     Watched watched(recorder);
     const MachineResult result = replay(c.log, c.machine, {.observer = &watched, .path = &recorder});
     test::expect_equal(result, replay(c.log, c.machine));
@@ -97,7 +97,7 @@ TEST(CriticalPath, ItsPiecesFollowEachOtherFromZeroToTheEnd) {
     });
     EXPECT_EQ(at, 0);
     sim::Ticks traversal = 0;
-    for (const CriticalPath::Level& level : path.levels) {
+    for (const PathLevel& level : path.levels) {
       traversal += level.traversal;
     }
     EXPECT_LE(traversal, of(path, PathKind::traversal));
@@ -115,7 +115,7 @@ TEST(CriticalPath, OfOneNodeOnAnIdealInterconnectIsHowItsTimeDivides) {
     machine.placement = Placement::shared;
     machine.interconnect.kind = memory::InterconnectKind::ideal;
     machine.write_buffer = 200;
-    PathRecorder recorder(unlimited);
+    PathRecorder recorder(unlimited, PathPieces::no_fold);
     const MachineResult result = replay(log, machine, {.observer = &recorder, .path = &recorder});
     const TimeDivision& time = result.nodes[0].time;
     const CriticalPath& path = recorder.path();
@@ -140,7 +140,7 @@ TEST(CriticalPath, OfABusThatIsAlwaysBusyIsItsTransfers) {
   machine.host.assignment = Assignment::interleaved;
   machine.packets.width = 1;
   machine.packets.height = 1;
-  PathRecorder recorder(unlimited);
+  PathRecorder recorder(unlimited, PathPieces::no_fold);
   const MachineResult result = replay(log, machine, {.observer = &recorder, .path = &recorder});
   EXPECT_GT(of(recorder.path(), PathKind::transfer), result.end - result.end / 100);
   EXPECT_GT(recorder.path().node_changes, 1000);
@@ -153,7 +153,7 @@ TEST(CriticalPath, ASecondWayToFindItFindsTheSame) {
     const WorkLog log = test::small_log(random, 8);
     MachineConfig machine = test::random_machine(random, 8);
     test::make_plain(random, machine);
-    PathRecorder recorder(unlimited);
+    PathRecorder recorder(unlimited, PathPieces::no_fold);
     test::NaivePath naive(recorder, machine);
     const MachineResult result = replay(log, machine, {.observer = &naive, .path = &recorder});
     std::vector<test::NaivePiece> path;
@@ -192,7 +192,7 @@ TEST(CriticalPath, GoesOverTheNodesInTheOrderInWhichTheBusServesThem) {
   machine.host.assignment = Assignment::interleaved;
   machine.cache.organisation = CacheOrganisation::none;
   machine.interconnect.mode = memory::BusMode::held;
-  PathRecorder recorder(unlimited);
+  PathRecorder recorder(unlimited, PathPieces::no_fold);
   const MachineResult result = replay(log, machine, {.observer = &recorder, .path = &recorder});
   std::vector<std::uint32_t> nodes;
   recorder.each_from_the_end([&](const PathPiece& piece) {
@@ -208,20 +208,49 @@ TEST(CriticalPath, GoesOverTheNodesInTheOrderInWhichTheBusServesThem) {
   EXPECT_GT(recorder.path().levels[0].traversal, 0);
 }
 
-TEST(CriticalPath, KeepsOnlyWhatMayBecomeThePath) {
-  // The chains of nodes that wait for one bus have nearly all of their pieces in common.
-  test::Random random(5);
-  const WorkLog log = test::random_log(random, 64, 64);
-  MachineConfig machine;
-  machine.nodes = 16;
-  machine.cache.organisation = CacheOrganisation::none;
-  machine.interconnect.cycles_per_beat = 400;
-  PathRecorder recorder(unlimited);
-  const MachineResult result = replay(log, machine, {.observer = &recorder, .path = &recorder});
-  std::uint64_t pieces = 0;
-  recorder.each_from_the_end([&](const PathPiece&) { ++pieces; });
-  EXPECT_LT(recorder.pieces().most_kept(), pieces + pieces / 10);
-  EXPECT_GT(static_cast<std::uint64_t>(result.references().all_misses()), pieces / 3);
+TEST(CriticalPath, FoldingPiecesChangesNoSum) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE(seed);
+    test::Random random(seed);
+    const Case c = random_case(random);
+    PathRecorder whole(unlimited, PathPieces::no_fold);
+    PathRecorder folded(unlimited, static_cast<std::uint32_t>(test::pick(random, 0, 200)));
+    (void)replay(c.log, c.machine, {.observer = &whole, .path = &whole});
+    (void)replay(c.log, c.machine, {.observer = &folded, .path = &folded});
+    const CriticalPath& a = whole.path();
+    const CriticalPath& b = folded.path();
+    EXPECT_EQ(a.end, b.end);
+    EXPECT_EQ(a.time, b.time);
+    EXPECT_EQ(a.nodes, b.nodes);
+    EXPECT_EQ(a.pieces, b.pieces);
+    EXPECT_EQ(a.node_changes, b.node_changes);
+    ASSERT_EQ(a.levels.size(), b.levels.size());
+    for (std::size_t level = 0; level < a.levels.size(); ++level) {
+      EXPECT_EQ(a.levels[level].traversal, b.levels[level].traversal);
+      EXPECT_EQ(a.levels[level].reads, b.levels[level].reads);
+    }
+    ASSERT_FALSE(::testing::Test::HasFailure());
+  }
+}
+
+TEST(CriticalPath, WhatIsKeptDoesNotGrowWithTheFrame) {
+  for (const memory::InterconnectKind kind :
+       {memory::InterconnectKind::ideal, memory::InterconnectKind::bus, memory::InterconnectKind::crossbar}) {
+    std::uint64_t kept = 0;
+    for (const std::uint32_t size : {16U, 64U}) {
+      test::Random random(5);
+      const WorkLog log = test::random_log(random, size, size);
+      MachineConfig machine;
+      machine.nodes = 16;
+      machine.cache.organisation = CacheOrganisation::none;
+      machine.interconnect.kind = kind;
+      PathRecorder recorder(unlimited, 1000);
+      (void)replay(log, machine, {.observer = &recorder, .path = &recorder});
+      EXPECT_GT(recorder.path().pieces, 2000);
+      kept = size == 16 ? recorder.pieces().most_kept() : recorder.pieces().most_kept() - kept;
+    }
+    EXPECT_LT(kept, 100U);
+  }
 }
 
 TEST(CriticalPath, IsRefusedWhereItDoesNotFitOrIsNotDefined) {
