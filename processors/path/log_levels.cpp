@@ -6,30 +6,36 @@
 namespace marti::processors {
 
 std::uint32_t LogLevels::level_at(LogPlace place) {
-  if (place.pixel == LogPlace::nowhere) {
-    return 0;
-  }
-  const std::size_t steps = read(place);
-  return steps == 0 ? 0 : steps_[steps - 1].level;
+  const std::span<const LoggedStep> steps = steps_to(place);
+  return steps.empty() ? 0 : steps.back().level;
 }
 
-std::size_t LogLevels::read(LogPlace place) {
-  if (place.pixel != pixel_) {
-    pixel_ = place.pixel;
-    steps_.clear();
-    const std::span<const std::uint32_t> words = log_.pixel(pixel_ % log_.width, pixel_ / log_.width);
-    for (std::size_t at = 0; at < words.size();) {
-      const std::uint32_t word = words[at];
-      at += step_words(&words[at]);
-      const std::uint32_t level =
-          visits_node(step_of(word)) ? log_.topology.nodes[operand_of(word)].level : 0;
-      steps_.push_back({static_cast<std::uint32_t>(at), level, traversal_of(word)});
-    }
+std::span<const LogLevels::LoggedStep> LogLevels::steps_to(LogPlace place) {
+  if (place.pixel == LogPlace::nowhere) {
+    return {};
+  }
+  constexpr std::uint32_t golden = 2654435769U;  // Fibonacci hashing: Knuth, TAOCP 3, section 6.4
+  Pixel& pixel = pixels_[(place.pixel * golden >> 16U) % remembered];
+  if (pixel.number != place.pixel) {
+    pixel.number = place.pixel;
+    read(pixel);
   }
   const auto end =
-      std::upper_bound(steps_.begin(), steps_.end(), place.word,
+      std::upper_bound(pixel.steps.begin(), pixel.steps.end(), place.word,
                        [](std::uint32_t word, const LoggedStep& step) { return word < step.end; });
-  return static_cast<std::size_t>(end - steps_.begin());
+  return {pixel.steps.begin(), end};
+}
+
+void LogLevels::read(Pixel& pixel) const {
+  pixel.steps.clear();
+  const std::span<const std::uint32_t> words =
+      log_.pixel(pixel.number % log_.width, pixel.number / log_.width);
+  for (std::size_t at = 0; at < words.size();) {
+    const std::uint32_t word = words[at];
+    at += step_words(&words[at]);
+    const std::uint32_t level = visits_node(step_of(word)) ? log_.topology.nodes[operand_of(word)].level : 0;
+    pixel.steps.push_back({static_cast<std::uint32_t>(at), level, traversal_of(word)});
+  }
 }
 
 sim::Ticks LogLevels::traversal_of(std::uint32_t word) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "processors/cost/step_time.h"
@@ -15,7 +16,7 @@ namespace marti::processors {
 /// Log and topology must outlive it. Level 1 is the root's; 0 stands for steps that visit no tree node.
 class LogLevels {
  public:
-  LogLevels(const WorkLog& log, const StepTicks& ticks) : log_(log), ticks_(ticks) {}
+  LogLevels(const WorkLog& log, const StepTicks& ticks) : log_(log), ticks_(ticks), pixels_(remembered) {}
 
   /// The level of the step that the place ends with; 0 for a place in no pixel or before the first step.
   [[nodiscard]] std::uint32_t level_at(LogPlace place);
@@ -32,22 +33,30 @@ class LogLevels {
     sim::Ticks traversal = 0;
   };
 
-  // Makes steps_ those of the pixel; returns the number of them that end at or before the word.
-  std::size_t read(LogPlace place);
+  struct Pixel {
+    std::uint32_t number = LogPlace::nowhere;
+    std::vector<LoggedStep> steps;
+  };
+  // Pieces of several nodes, which are at different pixels, take turns on a path.
+  static constexpr std::size_t remembered = 64;
+
+  // The steps of the place's pixel that end at or before its word.
+  std::span<const LoggedStep> steps_to(LogPlace place);
+  void read(Pixel& pixel) const;
   [[nodiscard]] sim::Ticks traversal_of(std::uint32_t word) const;
 
   const WorkLog& log_;
   StepTicks ticks_;
-  std::uint32_t pixel_ = LogPlace::nowhere;
-  std::vector<LoggedStep> steps_;  // of pixel_
+  std::vector<Pixel> pixels_;  // those asked for last
 };
 
 template <class Add>
 void LogLevels::divide(LogPlace place, sim::Ticks traversal, const Add& add) {
-  for (std::size_t step = place.pixel == LogPlace::nowhere ? 0 : read(place); step > 0 && traversal > 0;) {
+  const std::span<const LoggedStep> steps = steps_to(place);
+  for (std::size_t step = steps.size(); step > 0 && traversal > 0;) {
     --step;
-    add(steps_[step].level, steps_[step].traversal);
-    traversal -= steps_[step].traversal;
+    add(steps[step].level, steps[step].traversal);
+    traversal -= steps[step].traversal;
   }
   sim::ensure(traversal == 0, "the steps of a piece of a path do not add up to its length");
 }

@@ -8,6 +8,13 @@
 
 namespace marti::processors {
 
+namespace {
+
+constexpr const char* what = "the pieces of work that may lead to the end of the frame take";
+constexpr const char* remedy = "leave record.critical_path off, or make the image smaller";
+
+}  // namespace
+
 PathTip::PathTip(const PathTip& other) : pieces_(other.pieces_), end_(other.end_), last_(other.last_) {
   if (pieces_ != nullptr) {
     ++pieces_->at(last_).uses;
@@ -104,6 +111,11 @@ void PathPieces::fold() {
     }
     sums_[at(last).sum] = std::move(sum);
   }
+  std::uint64_t bytes = blocks_.size() * block * sizeof(Kept);
+  for (const PathSum& sum : sums_) {
+    bytes += sum.bytes();
+  }
+  budget_.require(bytes, what, remedy);
   fold_at_ = std::max(fold_from_, in_use_ > no_fold / 2 ? no_fold : 2 * in_use_);
 }
 
@@ -127,8 +139,6 @@ std::uint32_t PathPieces::take_place() {
     return std::exchange(free_, at(free_).before);
   }
   if (made_ % block == 0) {
-    constexpr const char* what = "the pieces of work that may lead to the end of the frame take";
-    constexpr const char* remedy = "leave record.critical_path off, or make the image smaller";
     budget_.require((blocks_.size() + 1) * block * sizeof(Kept), what, remedy);
     if (made_ == none - block + 1) {
       throw sim::KeyError("record.critical_path",
