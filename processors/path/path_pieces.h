@@ -53,7 +53,7 @@ class PathTip {
 /// All pieces. It must outlive their tips.
 class PathPieces {
  public:
-  static constexpr std::uint32_t usual_fold = 1U << 18U;
+  static constexpr std::uint32_t usual_fold = 1U << 14U;
   static constexpr std::uint32_t no_fold = 0xffffffffU;
 
   /// More pieces than fit the budget are refused with a KeyError. Pieces are folded whenever so many are
@@ -87,7 +87,7 @@ class PathPieces {
     std::uint32_t sum = none;  // of the pieces that were folded into this one
     PathKind kind = PathKind::traversal;
   };
-  static constexpr unsigned block_bits = 15;
+  static constexpr unsigned block_bits = 14;
   static constexpr std::uint32_t block = 1U << block_bits;
 
   [[nodiscard]] Kept& at(std::uint32_t index) { return blocks_[index >> block_bits][index & (block - 1)]; }

@@ -67,6 +67,9 @@ Case random_case(test::Random& random) {
   if (random() % 2 == 0) {
     test::add_random_contexts(random, c.log.traversal < accel::Traversal::grid, c.machine);
   }
+  if (random() % 4 == 0) {
+    c.machine.count.attribution = true;  // nodes that count are another class
+  }
   return c;
 }
 
