@@ -17,8 +17,8 @@ struct RecordConfig {
 
 void declare_record_keys(sim::Schema& schema);
 
-/// Throws UserError naming file, line and key, also when a file is to be recorded and there is no output directory to
-/// record it in.
+/// Throws UserError naming file, line and key, also when a file is to be recorded and there is no output
+/// directory to record it in.
 [[nodiscard]] RecordConfig read_record(sim::Config& config, bool has_directory);
 
 }  // namespace marti::studies

@@ -152,8 +152,8 @@ std::string flow_lines(const MachineConfig& machine, const MachineResult& result
       waits.max = std::max(waits.max, network.waits.max);
     }
     fmt::format_to(out, ", links {:.1f} % busy, {:.1f} hops a message, mean wait {}, longest {}",
-                   100.0 * *figures.network, figures.hops_a_message, short_time(ratio(waits.sum, waits.count)),
-                   short_time(static_cast<double>(waits.max)));
+                   100.0 * *figures.network, figures.hops_a_message,
+                   short_time(ratio(waits.sum, waits.count)), short_time(static_cast<double>(waits.max)));
   }
   text += "\n";
   return text;
