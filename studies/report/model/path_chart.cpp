@@ -14,13 +14,16 @@ void add_path_chart(const RunJson& run, ReportData& report) {
                {"ps", ColumnType::integer, "ps", "time of it on the path"},
                {"share", ColumnType::real, "fraction", "of the frame time"}});
   const RunJson times(run.find("machine.critical_path.time_ps"), run.file());
-  const double end = run.count("machine.frame_time_ps");
-  if (!times.json().is_object() || end <= 0.0) {
+  if (!times.json().is_object()) {
     return;
+  }
+  double all = 0.0;
+  for (const auto& [name, value] : times.json().items()) {
+    all += times.count(name);
   }
   for (const auto& [name, value] : times.json().items()) {
     if (const std::int64_t ps = whole(times, name); ps > 0) {
-      table.add_row({name, ps, static_cast<double>(ps) / end});
+      table.add_row({name, ps, static_cast<double>(ps) / all});
     }
   }
   if (!table.rows().empty()) {
