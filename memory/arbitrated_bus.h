@@ -29,6 +29,8 @@ class ArbitratedBus final : public Interconnect {
     return banks_.cache_statistics();
   }
   [[nodiscard]] sim::Ticks unloaded_read(std::uint32_t bytes) const override;
+  /// The port that the bus was granted to last; at first the highest.
+  [[nodiscard]] std::uint32_t last_granted() const { return last_; }
 
  private:
   struct Request {

@@ -120,6 +120,9 @@ class BuildingNodes : public Base {
 
   void begin_frame() {
     begun_ = true;
+    if (input_.causes != nullptr) {
+      input_.causes->began_frame(start_up_);
+    }
     for (const std::uint32_t node : order_) {
       const sim::Ticks wait = start_up_ - cursors_[node].time;
       spend(node, Activity::dispatch_wait, wait);
@@ -260,6 +263,9 @@ class BuildingNodes : public Base {
     for (std::uint32_t waiter = std::exchange(lock_waits_[worker].first_waiter, none); waiter != none;) {
       const std::uint32_t next = std::exchange(lock_waits_[waiter].next_waiter, none);
       lock_waits_[waiter].published = last_write_done_;
+      if (input_.causes != nullptr) {
+        input_.causes->published(node, waiter);
+      }
       derived().go_on(waiter);
       waiter = next;
     }

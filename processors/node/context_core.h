@@ -176,6 +176,9 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
       context.wait = Wait::host;
       context.ready = grant->start;
       context.packet = grant->packet;
+      if (input_.causes != nullptr) {
+        input_.causes->granted(node, number, now, grant->start);
+      }
     }
     if (core.waiting) {
       expect(node, context.ready);
@@ -423,6 +426,9 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
   }
   void tell(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to, PixelPlace place) {
     if (input_.observer != nullptr && from != to) {
+      if (state == NodeState::working) {
+        Base::watch_work(node, false);
+      }
       input_.observer->spent(node, state, from, to, place);
     }
   }

@@ -54,7 +54,7 @@ class DynamicWalker {
         local_base_(input.config.placement == Placement::replicated ? 0
                     : private_()                                    ? plan_.lower_base()
                                                                     : ~memory::Address{0}) {
-    if (plans && !input.step_by_step) {
+    if (plans && !input.step_by_step && input.causes == nullptr) {
       visits_ = plan_initial_visits(plan_, input.log, layout_, unit_shift_, ticks_);
       planned_limit_ = visits_.empty() ? 0 : 2U << operand_bits;
     }

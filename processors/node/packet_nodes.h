@@ -12,6 +12,7 @@
 #include "memory/bus.h"
 #include "processors/machine/machine_config.h"
 #include "processors/node/node_array.h"
+#include "processors/walk/cause_observer.h"
 #include "processors/walk/observer.h"
 #include "sim/large_pages.h"
 
@@ -99,10 +100,28 @@ class PacketNodes : public NodeArray {
   }
   // Tells the observer, if there is one, that the node was in `state` from `from` to its present time.
   void watch(std::uint32_t node, NodeState state, sim::Ticks from, bool for_pixel = true) {
-    if (input_.observer != nullptr && from != cursors_[node].time) {
-      input_.observer->spent(node, state, from, cursors_[node].time,
-                             for_pixel ? place_of(node) : PixelPlace{});
+    if (input_.observer != nullptr) {
+      if (state == NodeState::working) {
+        watch_work(node, for_pixel);
+      }
+      if (from != cursors_[node].time) {
+        input_.observer->spent(node, state, from, cursors_[node].time,
+                               for_pixel ? place_of(node) : PixelPlace{});
+      }
     }
+  }
+  // Tells who asks for causes how far the node has come.
+  void watch_work(std::uint32_t node, bool for_pixel) {
+    if (input_.causes == nullptr) {
+      return;
+    }
+    LogPlace place;
+    if (for_pixel) {
+      const Cursor& cursor = cursors_[node];
+      place.pixel = cursor.y * input_.log.width + cursor.x;
+      place.word = static_cast<std::uint32_t>(cursor.word - input_.log.pixel(cursor.x, cursor.y).data());
+    }
+    input_.causes->worked(node, statistics_[node], place);
   }
   // Tells the observer of a read that is done and was asked for at the node's present time.
   void watch_read(std::uint32_t node, const memory::Service& service, bool for_pixel = true) {
@@ -162,6 +181,9 @@ class PacketNodes : public NodeArray {
     ++statistics_[node].packets;
     const sim::Ticks asked = std::exchange(cursor.time, grant->start);
     if (input_.observer != nullptr) {
+      if (input_.causes != nullptr) {
+        input_.causes->granted(node, 0, asked, grant->start);
+      }
       watch(node, NodeState::dispatch_wait, asked, false);
       input_.observer->began_packet(node, grant->packet, grant->start);
     }

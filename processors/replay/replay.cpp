@@ -5,6 +5,7 @@
 
 #include "processors/machine/packets.h"
 #include "processors/node/node_array.h"
+#include "processors/path/path_recorder.h"
 #include "processors/replay/bounds.h"
 #include "processors/replay/pipeline.h"
 #include "processors/replay/replay_parts.h"
@@ -141,18 +142,21 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
                        options.with_contexts,
                        options.sample,
                        &all_packets};
+  input.causes = options.path;
   const LeftOut left_out = leave_out(options, input);
   if (options.stripped != nullptr) {
     sim::ensure(options.stripped->fits(log) && !options.step_by_step && !options.with_contexts &&
                     options.stripped->suits(config),
                 "a stripped log is walked by a machine that it was not made for");
   }
+  sim::ensure(options.path == nullptr || (options.observer != nullptr && options.quantum <= 1),
+              "a critical path is recorded of exact replays that are observed");
   if (options.observer != nullptr) {
     options.observer->begin(input);
   }
   const std::unique_ptr<NodeArray> nodes = make_node_array(input, engine, host);
   const Interconnects interconnects =
-      connect_memory(config, engine, static_cast<std::uint8_t>(EventClass::memory), *nodes);
+      connect_memory(config, engine, static_cast<std::uint8_t>(EventClass::memory), *nodes, options.path);
   for (const EventClass c : {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read,
                              EventClass::write, EventClass::memory}) {
     engine.attach(static_cast<std::uint8_t>(c), *nodes);

@@ -23,6 +23,7 @@
 namespace marti::processors {
 
 class Observer;
+class PathRecorder;
 class StrippedLog;
 
 /// What a cluster's distributed memory counted in addition to the counts of every interconnect.
@@ -90,6 +91,9 @@ struct ReplayOptions {
   sim::Ticks quantum = 0;
   bool with_contexts = false;  ///< nodes that can hold several contexts and prefetch, even for one context;
                                ///< same result
+  /// Records the critical path; `observer` must be it or pass all calls on to it. Same result. Not with
+  /// `stripped`, `sample` or `quantum`.
+  PathRecorder* path = nullptr;
 };
 
 /// Times `config` on `log`. Deterministic, single-threaded; many replays may share one log. Before it

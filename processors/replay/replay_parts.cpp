@@ -1,18 +1,24 @@
 #include "processors/replay/replay_parts.h"
 
 #include "processors/node/memory_system.h"
+#include "processors/path/watched_memory.h"
 
 namespace marti::processors {
 
 Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine, std::uint8_t memory_class,
-                             NodeArray& nodes) {
+                             NodeArray& nodes, PathRecorder* path) {
   Interconnects interconnects;
   std::vector<memory::Interconnect*> links;
   const std::uint32_t ports = config.nodes * config.ports_of_node();
   for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
-    interconnects.push_back(make_memory_system(
-        config, {engine, nodes.client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * ports,
-                 ports, memory_class}));
+    const memory::InterconnectSite site = {
+        engine, nodes.client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * ports,
+        ports,  memory_class};
+    if (path != nullptr) {
+      interconnects.push_back(std::make_unique<WatchedMemory>(config, site, *path));
+    } else {
+      interconnects.push_back(make_memory_system(config, site));
+    }
     links.push_back(interconnects.back().get());
   }
   nodes.connect(links);

@@ -17,9 +17,10 @@ namespace marti::processors {
 using Interconnects = std::vector<std::unique_ptr<memory::Interconnect>>;
 
 /// Builds the memory systems of all clusters and connects the nodes to them. `memory_class` is the class of
-/// the memory systems' own events.
+/// the memory systems' own events. `path`: null, or what watches the memory systems.
 [[nodiscard]] Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine,
-                                           std::uint8_t memory_class, NodeArray& nodes);
+                                           std::uint8_t memory_class, NodeArray& nodes,
+                                           PathRecorder* path = nullptr);
 
 /// The part of the result that all schemes have: nodes after NodeArray::finish(), memory, database.
 [[nodiscard]] MachineResult common_result(const MachineConfig& config, const sim::Engine& engine,

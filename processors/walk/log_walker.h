@@ -45,7 +45,7 @@ class LogWalker {
         ticks_(step_ticks(input.config, input.log)),
         behind_(input),
         passes_misses_on_(!behind_.only_reads()) {
-    if (Caches::present && !counted && !guarded && !input.step_by_step) {
+    if (Caches::present && !counted && !guarded && !input.step_by_step && input.causes == nullptr) {
       plan_ = plan != nullptr ? std::move(plan) : visits_of(input);
       plan_limit_ = plan_->empty() ? 0 : 2U << operand_bits;
     }

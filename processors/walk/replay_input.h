@@ -15,6 +15,7 @@
 
 namespace marti::processors {
 
+class CauseObserver;
 class Observer;
 class StrippedLog;
 
@@ -37,6 +38,8 @@ struct ReplayInput {
   std::uint64_t line_set = 0;
   /// The time of every read, so that nodes read without events; std::nullopt: they ask the interconnect.
   std::optional<sim::Ticks> own_reads{};
+  /// Null: nobody asks for causes. Else there is an observer, too.
+  CauseObserver* causes = nullptr;
 };
 
 }  // namespace marti::processors

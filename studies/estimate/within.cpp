@@ -165,8 +165,10 @@ std::string run_within(sim::Config& config, double tolerance, bool json, RunOpti
   refuse_several_frames(config, frame.frames);
   const processors::MachineConfig machine = read_machine(config);
   const RecordConfig record = read_record(config, true);
-  if (record.heat_maps || record.timeline) {
-    config.fail(record.timeline ? "record.timeline" : "record.heat_maps",
+  if (record.heat_maps || record.timeline || record.critical_path) {
+    config.fail(record.timeline    ? "record.timeline"
+                : record.heat_maps ? "record.heat_maps"
+                                   : "record.critical_path",
                 "an estimate does nothing that could be recorded; leave --within out");
   }
   config.refuse_unused();

@@ -21,12 +21,17 @@ void declare_record_keys(sim::Schema& schema) {
       "record.heat_maps", false,
       "write what each pixel cost: heat.exr and three maps in false colours, of cycles, misses and "
       "waits");
+  schema.boolean(
+      "record.critical_path", false,
+      "find the chain of computing, transfers, bank accesses and dispatches that sets the end of the "
+      "frame (docs/model.md); image scheme only");
 }
 
 RecordConfig read_record(sim::Config& config, bool has_directory) {
   RecordConfig record;
   record.timeline = config.boolean("record.timeline");
   record.heat_maps = config.boolean("record.heat_maps");
+  record.critical_path = config.boolean("record.critical_path");
   for (const char* key : {"record.timeline", "record.heat_maps"}) {
     if (!has_directory && config.boolean(key)) {
       config.fail(key, "there is no directory to write to; give one with -o");

@@ -7,16 +7,17 @@
 
 namespace marti::studies {
 
-/// What is recorded; all of it goes to files in the output directory.
+/// What is recorded; all but the critical path goes to files in the output directory.
 struct RecordConfig {
   bool timeline = false;
   TimelineOptions timeline_options;
   bool heat_maps = false;
+  bool critical_path = false;
 };
 
 void declare_record_keys(sim::Schema& schema);
 
-/// Throws UserError naming file, line and key, also when something is to be recorded and there is no output
+/// Throws UserError naming file, line and key, also when a file is to be recorded and there is no output
 /// directory to record it in.
 [[nodiscard]] RecordConfig read_record(sim::Config& config, bool has_directory);
 

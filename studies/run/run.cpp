@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "processors/path/path_recorder.h"
 #include "processors/replay/host_bytes.h"
 #include "processors/walk/stripped_log.h"
 #include "sim/config_errors.h"
@@ -52,12 +54,27 @@ void refuse_maps_beyond_memory(const sim::Config& config, const RecordConfig& re
   }
 }
 
+// The memory that is left beside the work log and the machine.
+sim::MemoryBudget memory_beside(const RunResult& result) {
+  sim::MemoryBudget budget = result.frame_config.memory;
+  budget.take(result.functional.totals.bytes + processors::host_bytes(result.machine),
+              "the work log and the machine take", "make the image smaller");
+  return budget;
+}
+
 // Times the machine with the observers that are asked for, then evaluates what they have seen.
 processors::MachineResult watched_replay(const RecordConfig& record, const std::filesystem::path& directory,
                                          const processors::StrippedLog* stripped, RunResult& result) {
   Observers observers;
+  std::optional<processors::PathRecorder> path;
+  if (record.critical_path) {
+    // A timeline shows the pieces of the path; else only their sums are wanted.
+    observers.add(path.emplace(memory_beside(result), record.timeline ? processors::PathPieces::no_fold
+                                                                      : processors::PathPieces::usual_fold));
+  }
   if (record.timeline) {
     result.timeline = std::make_unique<Timeline>(directory / "timeline.json", record.timeline_options);
+    result.timeline->mark(path ? &*path : nullptr);
     observers.add(*result.timeline);
   }
   if (record.heat_maps) {
@@ -70,7 +87,8 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
   }
   processors::ReplayOptions options;
   options.observer = observers.empty() ? nullptr : &observers;
-  options.stripped = stripped;
+  options.stripped = path ? nullptr : stripped;  // a critical path needs every step
+  options.path = path ? &*path : nullptr;
   const KeptItems& kept = result.frame_config.keep;
   keep(kept, options);
   const processors::WorkLog& log = *result.functional.frame.log;
@@ -78,6 +96,9 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
   processors::MachineResult timed = processors::replay(log, result.machine, options);
   count_machine_plan(timed, entries);
   add_entries(result.plan, std::move(entries));
+  if (path) {
+    result.critical_path = path->path();
+  }
   if (result.machine.count.working_set) {
     result.working_set = processors::working_set(packets_of_nodes);
     processors::check_working_set(*result.working_set, result.machine, timed);
@@ -180,6 +201,9 @@ RunResult run(sim::Config& config, RunOptions options) {
   config.refuse_unused();
   refuse_beyond_memory(config, result.frame_config, result.machine);
   refuse_maps_beyond_memory(config, record, result.frame_config);
+  if (record.critical_path) {
+    sim::with_places(config, [&] { processors::check_critical_path(result.machine); });
+  }
   result.values = config.effective_values();
   sim::with_places(config, [&] {
     result.functional =

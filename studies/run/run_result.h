@@ -10,6 +10,7 @@
 
 #include "processors/machine/machine_config.h"
 #include "processors/passes/working_set.h"
+#include "processors/path/critical_path.h"
 #include "processors/replay/bounds.h"
 #include "processors/replay/replay.h"
 #include "sim/config.h"
@@ -36,7 +37,8 @@ struct RunResult {
   std::optional<WhatHelps> helps;  ///< empty: not asked for
   processors::FrameBounds bounds;
   std::optional<processors::Prediction> prediction;
-  std::optional<processors::WorkingSet> working_set;  ///< of the timed machine; empty: not asked for
+  std::optional<processors::WorkingSet> working_set;      ///< of the timed machine; empty: not asked for
+  std::optional<processors::CriticalPath> critical_path;  ///< of the timed machine; empty: not asked for
   std::unique_ptr<Timeline> timeline;  ///< written, but not under its own name yet; null: not asked for
   std::unique_ptr<HeatMap> heat_map;   ///< null: not asked for
 

@@ -49,7 +49,7 @@ Json networks_json(const processors::FlowResult& flow) {
   return networks;
 }
 
-std::string seconds(double ticks) {
+std::string short_time(double ticks) {
   const double s = ticks / static_cast<double>(sim::ticks_per_second);
   return s >= 1e-3 ? fmt::format("{:.3f} ms", s * 1e3) : fmt::format("{:.3f} us", s * 1e6);
 }
@@ -104,7 +104,7 @@ std::string flow_lines(const MachineConfig& machine, const MachineResult& result
   fmt::format_to(out, "  messages    {}, {:.1f} a ray, {} ({:.0f} B a ray)\n", figures.messages,
                  ratio(figures.messages, rays), bytes(static_cast<double>(figures.bytes)),
                  ratio(figures.bytes, rays));
-  fmt::format_to(out, "  queues      mean wait {}\n", seconds(ratio(counts.queued, counts.taken)));
+  fmt::format_to(out, "  queues      mean wait {}\n", short_time(ratio(counts.queued, counts.taken)));
   for (const StageLoad& stage : figures.stages) {
     load_line(out, stage);
   }
@@ -121,7 +121,7 @@ std::string flow_lines(const MachineConfig& machine, const MachineResult& result
                    flow.regions, flow.top_nodes, flow.duplicated_primitives);
     if (machine.space.policy == processors::RegionPolicy::sampled) {
       fmt::format_to(out, "  pre-pass    {} of one node's computing before the frame\n",
-                     seconds(static_cast<double>(flow.sampling_work)));
+                     short_time(static_cast<double>(flow.sampling_work)));
     }
   }
   fmt::format_to(out, "network       {}",
@@ -134,8 +134,8 @@ std::string flow_lines(const MachineConfig& machine, const MachineResult& result
       waits.max = std::max(waits.max, network.waits.max);
     }
     fmt::format_to(out, ", links {:.1f} % busy, {:.1f} hops a message, mean wait {}, longest {}",
-                   100.0 * *figures.network, figures.hops_a_message, seconds(ratio(waits.sum, waits.count)),
-                   seconds(static_cast<double>(waits.max)));
+                   100.0 * *figures.network, figures.hops_a_message,
+                   short_time(ratio(waits.sum, waits.count)), short_time(static_cast<double>(waits.max)));
   }
   text += "\n";
   return text;

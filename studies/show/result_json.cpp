@@ -10,6 +10,7 @@
 #include "studies/show/cache_output.h"
 #include "studies/show/context_output.h"
 #include "studies/show/count_output.h"
+#include "studies/show/critical_path_output.h"
 #include "studies/show/flow_output.h"
 #include "studies/show/helps_output.h"
 #include "studies/show/json_parts.h"
@@ -207,6 +208,7 @@ std::string json_of(const RunResult& r, const std::map<std::string, std::string>
   if (r.working_set) {
     machine["working_set"] = working_set_json(*r.working_set);
   }
+  add_critical_path(r, timed.nodes.size() <= most_listed, machine);
   if (!timed.contexts.nodes.empty()) {
     machine["contexts"] = context_json(r.machine, timed.contexts, timed.nodes.size() <= most_listed);
   }

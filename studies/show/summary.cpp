@@ -13,6 +13,7 @@
 #include "studies/show/cache_output.h"
 #include "studies/show/context_output.h"
 #include "studies/show/count_output.h"
+#include "studies/show/critical_path_output.h"
 #include "studies/show/flow_output.h"
 #include "studies/show/helps_output.h"
 #include "studies/show/scaling_output.h"
@@ -236,6 +237,7 @@ std::string summary_of(const RunResult& r) {
   if (r.working_set) {
     text += working_set_lines(*r.working_set);
   }
+  text += critical_path_lines(r);
   text += context_lines(r.machine, r.timed.contexts);
   text += build_lines(r.timed);
   text += flow_lines(r.machine, r.timed);

@@ -26,10 +26,11 @@ room(processors/theory)
 room(processors/cost machine program)
 room(processors/walk cost machine program)
 room(processors/node cost machine program walk)
+room(processors/path cost machine node program walk)
 room(processors/flow machine node program walk)
 room(processors/flow/pipeline flow machine program walk)
 room(processors/flow/space cost flow machine program walk)
-room(processors/replay cost flow flow/pipeline flow/space machine node program theory walk)
+room(processors/replay cost flow flow/pipeline flow/space machine node path program theory walk)
 room(processors/passes cost machine program replay walk)
 room(studies/host)
 room(studies/figures)
@@ -96,7 +97,7 @@ set(world_files
   "^processors/program/"
   "^processors/([^pc]|pa|cost/([^o]|o[^p]))")
 set(world_headers
-  "^(memory/|processors/(machine|cost|walk|node|flow|replay|passes|theory)/)"
+  "^(memory/|processors/(machine|cost|walk|node|path|flow|replay|passes|theory)/)"
   "^processors/program/(render|tracer|shading|recorder)[.]h$")
 set(world_reasons
   "the ray-tracing program must not know the machine"

@@ -72,6 +72,41 @@ TEST(ObserveCommand, RecordingChangesNoResultAndNeedsADirectory) {
                  "must lie before");
 }
 
+TEST(ObserveCommand, ACriticalPathAddsUpToTheFrameAndChangesNothingElse) {
+  const TemporaryDirectory directory;
+  const std::string path = observed_run + " --set record.critical_path=true";
+  for (const std::string& machine :
+       {std::string(), std::string(" --set node.contexts=2"),
+        std::string(" --set interconnect.kind=crossbar"),
+        std::string(" --set database.placement=distributed"), std::string(" --set build.sharing=shared")}) {
+    const fs::path plain = directory.path() / "plain";
+    const fs::path watched = directory.path() / "watched";
+    ASSERT_EQ(marti("run " + observed_run + machine + " -o " + quoted(plain)).status, 0);
+    const Outcome outcome = marti("run " + path + machine + " -o " + quoted(watched));
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_NE(outcome.output.find("critical path "), std::string::npos) << outcome.output;
+    const auto a = nlohmann::json::parse(read(plain / "result.json"));
+    auto b = nlohmann::json::parse(read(watched / "result.json"));
+    const nlohmann::json found = b["machine"]["critical_path"];
+    for (const char* parts : {"time_ps", "nodes_ps"}) {
+      std::int64_t sum = 0;
+      for (const auto& part : found[parts]) {
+        sum += part.get<std::int64_t>();
+      }
+      EXPECT_EQ(sum, b["figures"]["machine"]["end"]) << parts << machine;
+    }
+    b["machine"].erase("critical_path");
+    b["config"] = a["config"];
+    EXPECT_EQ(a, b) << machine;
+  }
+  // Nothing is written, so no directory is needed.
+  EXPECT_EQ(marti("run " + path).status, 0);
+  expect_refused("run " + quoted(fs::path(MARTI_SOURCE) / "configs" / "pipeline.toml") + small_teapot +
+                     " --set record.critical_path=true",
+                 "record.critical_path=true: it is recorded with machine.scheme = \"image\" only");
+  expect_refused("run " + path + " --within 2%", "record.critical_path");
+}
+
 struct Counts {
   std::int64_t hits = 0;
   std::int64_t misses = 0;

@@ -8,6 +8,7 @@
 #include "sim/sha256.h"
 #include "studies/report/model/chart_library.h"
 #include "studies/report/model/helps_table.h"
+#include "studies/report/model/path_chart.h"
 #include "studies/report/model/run_answer.h"
 #include "studies/report/model/run_charts.h"
 #include "studies/report/read/read_report.h"
@@ -133,6 +134,7 @@ ReportData read_run_report(const fs::path& directory) {
       {"config.keys", "figures.frame", "figures.machine", "scene", "structure", "plan", "machine"});
   ReportData report = machine_report(run, "one node");
   report.title = fmt::format("Run of {} on {}", run.text("figures.frame.scene"), machine_text(run));
+  add_path_chart(run, report);
   add_files(directory, run, report);
   if (Table helps = helps_table(run); !helps.rows().empty()) {
     report.tables.push_back({std::move(helps), false});

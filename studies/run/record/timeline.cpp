@@ -55,6 +55,9 @@ void Timeline::end(sim::Ticks /*time*/) {
   for (std::uint32_t node = 0; node < tracks_.size(); ++node) {
     put(node);
   }
+  if (path_ != nullptr) {
+    put_path();
+  }
   std::string tail = "\n]";
   if (cut_at_) {
     tail += fmt::format(
@@ -94,18 +97,63 @@ void Timeline::name(std::uint32_t node) {
   }
   tracks_[node].named = true;
   const std::uint32_t cluster = node / nodes_a_cluster_;
-  const auto meta = [&](std::string_view what, const std::string& arguments) {
-    stream_.write(fmt::format("{}\n{{\"ph\":\"M\",\"pid\":{},\"tid\":{},\"name\":\"{}\",\"args\":{{{}}}}}",
-                              first_ ? "" : ",", cluster + 1, node + 1, what, arguments));
-    first_ = false;
-  };
+  const std::size_t process = std::size_t{cluster} + 1;
+  const std::size_t track = std::size_t{node} + 1;
   if (!cluster_named_[cluster]) {
     cluster_named_[cluster] = true;
-    meta("process_name", fmt::format("\"name\":\"cluster {}\"", cluster));
-    meta("process_sort_index", fmt::format("\"sort_index\":{}", cluster));
+    name_part("process_name", process, track, fmt::format("\"name\":\"cluster {}\"", cluster));
+    name_part("process_sort_index", process, track, fmt::format("\"sort_index\":{}", cluster));
   }
-  meta("thread_name", fmt::format("\"name\":\"node {}\"", node));
-  meta("thread_sort_index", fmt::format("\"sort_index\":{}", node));
+  name_part("thread_name", process, track, fmt::format("\"name\":\"node {}\"", node));
+  name_part("thread_sort_index", process, track, fmt::format("\"sort_index\":{}", node));
+}
+
+void Timeline::name_part(std::string_view what, std::size_t process, std::size_t track,
+                         const std::string& arguments) {
+  stream_.write(fmt::format("{}\n{{\"ph\":\"M\",\"pid\":{},\"tid\":{},\"name\":\"{}\",\"args\":{{{}}}}}",
+                            first_ ? "" : ",", process, track, what, arguments));
+  first_ = false;
+}
+
+// The critical path as slices of one track, the last one first; pieces that a node works on by itself one
+// after the other are one slice.
+void Timeline::put_path() {
+  name_part("process_name", cluster_named_.size() + 1, tracks_.size() + 1, "\"name\":\"critical path\"");
+  name_part("process_sort_index", cluster_named_.size() + 1, tracks_.size() + 1,
+            fmt::format("\"sort_index\":{}", cluster_named_.size()));
+  name_part("thread_name", cluster_named_.size() + 1, tracks_.size() + 1, "\"name\":\"critical path\"");
+  std::optional<processors::PathPiece> slice;
+  path_->each_from_the_end([&](const processors::PathPiece& piece) {
+    if (slice && slice->goes_on_from(piece)) {
+      slice->from = piece.from;
+      return;
+    }
+    if (slice) {
+      put_path_slice(*slice);
+    }
+    slice = piece;
+  });
+  if (slice) {
+    put_path_slice(*slice);
+  }
+}
+
+void Timeline::put_path_slice(const processors::PathPiece& piece) {
+  const sim::Ticks from = std::max(piece.from, options_.from);
+  const sim::Ticks to = std::min(piece.to, options_.to);
+  if (from >= to) {
+    return;
+  }
+  if (events_ == options_.most_events) {
+    cut_at_ = std::min(cut_at_.value_or(from), from);
+    return;
+  }
+  ++events_;
+  stream_.write(fmt::format(
+      ",\n{{\"ph\":\"X\",\"pid\":{},\"tid\":{},\"ts\":{},\"dur\":{},\"name\":\"node {}: {}\"}}",
+      cluster_named_.size() + 1, tracks_.size() + 1, microseconds(from), microseconds(to - from),
+      piece.owner.node,
+      is_own_work(piece.kind) ? "work" : processors::path_kind_names[static_cast<std::size_t>(piece.kind)]));
 }
 
 }  // namespace marti::studies

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "processors/path/path_recorder.h"
 #include "processors/walk/observer.h"
 #include "studies/run/record/text_stream.h"
 
@@ -23,10 +24,15 @@ struct TimelineOptions {
 /// Writes while it watches. One track a node (tid is the node's number plus 1), one process a cluster (pid is
 /// its number plus 1). A slice is a node's time in one state for one pixel without a break; its name is that
 /// of the NodeState. Slices of a node follow each other, those of different nodes come in any order. Times
-/// are in microseconds with six digits, which is exact.
+/// are in microseconds with six digits, which is exact. A critical path is one more process, behind the
+/// clusters', with one track.
 class Timeline final : public processors::Observer {
  public:
   Timeline(const std::filesystem::path& file, const TimelineOptions& options);
+
+  /// Shows the path that `path` records, too; its end() must have been called before this object's. Null: no
+  /// path.
+  void mark(const processors::PathRecorder* path) { path_ = path; }
 
   void begin(const processors::ReplayInput& input) override;
   void spent(std::uint32_t node, processors::NodeState state, sim::Ticks from, sim::Ticks to,
@@ -60,7 +66,11 @@ class Timeline final : public processors::Observer {
   };
 
   void put(std::uint32_t node);
+  void put_path();
+  void put_path_slice(const processors::PathPiece& piece);
   void name(std::uint32_t node);
+  // Names a process or a track.
+  void name_part(std::string_view what, std::size_t process, std::size_t track, const std::string& arguments);
 
   TimelineOptions options_;
   TextStream stream_;
@@ -70,6 +80,7 @@ class Timeline final : public processors::Observer {
   std::int64_t events_ = 0;
   std::optional<sim::Ticks> cut_at_;
   bool first_ = true;
+  const processors::PathRecorder* path_ = nullptr;
 };
 
 }  // namespace marti::studies

@@ -24,7 +24,7 @@ sim::Schema sweep_schema() {
 }
 
 void refuse_records(sim::Config& config) {
-  for (const std::string_view key : {"record.timeline", "record.heat_maps"}) {
+  for (const std::string_view key : {"record.timeline", "record.heat_maps", "record.critical_path"}) {
     if (config.boolean(key)) {
       config.fail(key, "a sweep records nothing beside its counters; leave it out, or use `marti run`");
     }

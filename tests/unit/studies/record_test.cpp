@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "processors/path/path_recorder.h"
 #include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "studies/run/record/colour_scale.h"
@@ -123,6 +124,36 @@ TEST(Timelines, HoldTheWholeFrameNodeByNode) {
       EXPECT_TRUE(result.end == 0 || slices.names.contains("node " + std::to_string(node)));
     }
   }
+}
+
+TEST(Timelines, ShowTheCriticalPathInATrackOfItsOwn) {
+  const test::TemporaryDirectory directory;
+  test::Random random(7);
+  const processors::WorkLog log = test::small_log(random);
+  MachineConfig machine = test::random_machine(random);
+  const std::filesystem::path file = directory.path() / "timeline.json";
+  Timeline timeline(file, {});
+  processors::PathRecorder path({}, processors::PathPieces::no_fold);
+  timeline.mark(&path);
+  Observers all;
+  all.add(path);
+  all.add(timeline);
+  processors::ReplayOptions options;
+  options.observer = &all;
+  options.path = &path;
+  const MachineResult result = processors::replay(log, machine, options);
+  timeline.commit();
+  Slices slices = read_timeline(file);
+  EXPECT_EQ(slices.events, timeline.events());
+  EXPECT_TRUE(slices.names.contains("critical path"));
+  auto& track = slices.tracks[static_cast<int>(machine.all_nodes()) + 1];
+  EXPECT_EQ(static_cast<std::int64_t>(track.size()), path.path().pieces);
+  sim::Ticks end = result.end;
+  for (const auto& [from, to] : track) {
+    EXPECT_EQ(to, end);
+    end = from;
+  }
+  EXPECT_EQ(end, 0);
 }
 
 TEST(Timelines, KeepToTheirWindow) {

@@ -1,0 +1,217 @@
+#include "processors/path/path_recorder.h"
+
+#include <utility>
+
+#include "sim/error.h"
+#include "sim/key_error.h"
+
+namespace marti::processors {
+
+namespace {
+
+constexpr const char* key = "record.critical_path";
+
+sim::Ticks of(const TimeDivision& time, Activity activity) {
+  return time[static_cast<std::size_t>(activity)];
+}
+
+sim::Ticks of_memory(const TimeDivision& time) {
+  return of(time, Activity::transfer) + of(time, Activity::bank_access);
+}
+
+}  // namespace
+
+void check_critical_path(const MachineConfig& config) {
+  if (config.scheme != Scheme::image) {
+    throw sim::KeyError(
+        key,
+        "it is recorded with machine.scheme = \"image\" only: where rays move, a node waits for other "
+        "nodes' rays, and which ray it was that it waited for is not recorded");
+  }
+}
+
+void PathRecorder::begin(const ReplayInput& input) {
+  const MachineConfig& config = input.config;
+  check_critical_path(config);
+  sim::ensure(input.causes == this && input.stripped == nullptr && input.sample == nullptr,
+              "a critical path is recorded of whole frames only, step by step");
+  builds_ = input.tree != nullptr;
+  asks_host_ = config.host.assignment == Assignment::dynamic;
+  contexts_ = config.contexts;
+  ports_ = config.ports_of_node();
+  write_buffer_ = config.write_buffer;
+  host_latency_ = config.host.clock.cycles(config.host.latency_cycles);
+  host_occupancy_ = config.host.clock.cycles(config.host.occupancy_cycles);
+  const std::size_t nodes = config.all_nodes();
+  const std::size_t workers = builds_ ? contexts_ : 0;
+  budget_.require(nodes * (sizeof(Node) + (ports_ + write_buffer_ + workers) * sizeof(PathTip)),
+                  "what leads to the end of the frame takes", "leave record.critical_path off");
+  ticks_ = step_ticks(config, input.log);
+  levels_.emplace(input.log, ticks_);
+  pieces_.set_levels(*levels_);
+  nodes_.resize(nodes);
+  due_.resize(nodes * ports_);
+  writes_.resize(nodes * write_buffer_);
+  releases_.resize(nodes * workers);
+}
+
+void PathRecorder::worked(std::uint32_t node, const NodeStatistics& statistics, LogPlace place) {
+  Node& n = nodes_[node];
+  n.counted = statistics.time;
+  add_counted_time(ticks_, statistics.steps, statistics.references.all_hits(), n.counted);
+  n.place = place;
+}
+
+void PathRecorder::spent(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to,
+                         PixelPlace /*pixel*/) {
+  Node& n = nodes_[node];
+  switch (state) {
+    case NodeState::idle:
+      return;
+    case NodeState::working:
+      add_work(node, from, to);
+      return;
+    case NodeState::transfer:
+    case NodeState::bank_access:
+      n.waited += to - from;
+      break;
+    case NodeState::interconnect_wait:
+    case NodeState::bank_wait:
+      break;
+    default:
+      if (n.tip.end() < from) {
+        (void)tip_at(node, from);
+      }
+  }
+  n.wait = state;
+  n.wait_end = to;
+}
+
+void PathRecorder::add_work(std::uint32_t node, sim::Ticks from, sim::Ticks to) {
+  (void)tip_at(node, from);
+  Node& n = nodes_[node];
+  const PathOwner owner = {node, n.place};
+  std::array<sim::Ticks, path_kinds> parts{};
+  sim::Ticks rest = to - from;
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(Activity::messaging); ++i) {
+    parts[i] = n.counted[i] - n.seen[i];
+    rest -= parts[i];
+  }
+  sim::Ticks& own = parts[static_cast<std::size_t>(PathKind::own_memory)];
+  own = of_memory(n.counted) - of_memory(n.seen) - n.waited;
+  rest -= own;
+  // Building is counted by its steps, which are not those in which its time is spent; it is what is left.
+  sim::ensure(builds_ ? rest >= 0 : rest == 0, "a node has counted other work than it has spent time on");
+  parts[static_cast<std::size_t>(PathKind::building)] += rest;
+  for (std::size_t kind = 0; kind < path_kinds; ++kind) {
+    n.tip = pieces_.append(n.tip, parts[kind], owner, static_cast<PathKind>(kind));
+  }
+  n.seen = n.counted;
+  n.waited = 0;
+}
+
+const PathTip& PathRecorder::tip_at(std::uint32_t node, sim::Ticks now) {
+  Node& n = nodes_[node];
+  if (n.tip.end() != now) {
+    sim::ensure(n.wait_end == now, "a node goes on before its wait has ended");
+    n.tip = end_of_wait(node);
+  }
+  return n.tip;
+}
+
+PathTip PathRecorder::end_of_wait(std::uint32_t node) const {
+  const Node& n = nodes_[node];
+  std::optional<PathTip> cause;
+  if (n.wait == NodeState::queue_full_wait) {
+    cause = ends_at(writes_, node * write_buffer_ + n.writes % write_buffer_, 1, n.wait_end);
+  } else if (n.wait == NodeState::lock_wait) {
+    cause = ends_at(releases_, node * contexts_, contexts_, n.wait_end);
+  } else {
+    cause = ends_at(due_, node * ports_, ports_, n.wait_end);
+  }
+  sim::ensure(cause.has_value(), "a node's wait has ended for no known cause");
+  return *std::move(cause);
+}
+
+std::optional<PathTip> PathRecorder::ends_at(const std::vector<PathTip>& tips, std::size_t begin,
+                                             std::size_t count, sim::Ticks time) {
+  for (std::size_t i = begin; i < begin + count; ++i) {
+    if (tips[i].end() == time) {
+      return tips[i];
+    }
+  }
+  return std::nullopt;
+}
+
+void PathRecorder::granted(std::uint32_t node, std::uint32_t context, sim::Ticks asked, sim::Ticks start) {
+  if (!asks_host_) {
+    return;
+  }
+  // When the frame begins all contexts ask, and the first of them may have gone on before the others do.
+  const PathTip& begin = nodes_[node].begin;
+  const PathTip& asking = begin.end() == asked ? begin : tip_at(node, asked);
+  const PathOwner owner = {node, {}};
+  const PathTip before = later_of(asking, host_);
+  host_ = pieces_.append(before, host_occupancy_, owner, PathKind::dispatch);
+  PathTip grant = pieces_.append(before, host_latency_, owner, PathKind::dispatch);
+  sim::ensure(grant.end() == start, "the host has granted a packet at another time than it was free");
+  due_[node * ports_ + context] = std::move(grant);
+}
+
+void PathRecorder::began_frame(sim::Ticks start_up) {
+  const PathTip cause = first_that_ends_at(start_up);
+  for (Node& node : nodes_) {
+    if (node.tip.end() != start_up) {
+      node.tip = cause;
+    }
+    node.begin = node.tip;
+  }
+}
+
+void PathRecorder::published(std::uint32_t builder, std::uint32_t waiter) {
+  releases_[waiter] = write_of(builder, nodes_[builder].writes - 1);
+}
+
+PathRequest PathRecorder::request(std::uint32_t port, const memory::Transaction& transaction, bool write,
+                                  sim::Ticks now) {
+  const auto node = static_cast<std::uint32_t>(port / ports_);
+  const PathTip& tip = tip_at(node, now);
+  if (write) {
+    ++nodes_[node].writes;
+  }
+  return {transaction, tip, {node, write ? LogPlace{} : nodes_[node].place}, write};
+}
+
+void PathRecorder::read_done(std::uint32_t port, PathTip done) { due_[port] = std::move(done); }
+
+void PathRecorder::write_done(std::uint32_t port, PathTip done) {
+  const auto node = static_cast<std::uint32_t>(port / ports_);
+  write_of(node, nodes_[node].writes_done++) = std::move(done);
+}
+
+PathTip PathRecorder::first_that_ends_at(sim::Ticks time) const {
+  for (const Node& node : nodes_) {
+    if (node.tip.end() == time) {
+      return node.tip;
+    }
+  }
+  for (const std::vector<PathTip>* const tips : {&writes_, &due_}) {
+    if (const std::optional<PathTip> tip = ends_at(*tips, 0, tips->size(), time)) {
+      return *tip;
+    }
+  }
+  throw sim::InternalError("nothing is known to end at the end of the frame");
+}
+
+void PathRecorder::end(sim::Ticks time) {
+  last_ = first_that_ends_at(time);
+  path_ = add_up(pieces_, last_, static_cast<std::uint32_t>(nodes_.size()), *levels_);
+  levels_.reset();
+  host_ = {};
+  for (std::vector<PathTip>* const tips : {&due_, &writes_, &releases_}) {
+    tips->clear();
+  }
+  nodes_.clear();
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,38 @@
+// What a recorder of causes is told beside what every observer is told: why a wait of a node ended.
+#pragma once
+
+#include <cstdint>
+
+#include "processors/cost/accounting.h"
+#include "sim/time.h"
+
+namespace marti::processors {
+
+/// How far a node has come in the log: so many words of a pixel's have been taken. The step that they end
+/// with is the one that the node is at.
+struct LogPlace {
+  static constexpr std::uint32_t nowhere = 0xffffffffU;
+  std::uint32_t pixel = nowhere;  ///< y * width + x; `nowhere`: the work is for no pixel
+  std::uint32_t word = 0;
+};
+
+/// Called by the nodes of the image scheme, which then take every step record by record, so that what they
+/// have counted is what they have spent. Calls come in the order of what happens at each node.
+class CauseObserver {
+ public:
+  virtual ~CauseObserver() = default;
+
+  /// The node has worked until it needs something shared, perhaps for no time. Called before
+  /// Observer::spent for that work. `statistics`: all that it has counted so far.
+  virtual void worked(std::uint32_t node, const NodeStatistics& statistics, LogPlace place) = 0;
+  /// A context of the node asked the host for a packet at `asked` and may begin it at `start`. Called in the
+  /// order in which the host serves the requests, before Observer::spent for the wait.
+  virtual void granted(std::uint32_t node, std::uint32_t context, sim::Ticks asked, sim::Ticks start) = 0;
+  /// All nodes begin the frame at `start_up`, when the tree has been built.
+  virtual void began_frame(sim::Ticks start_up) = 0;
+  /// Worker `waiter` (node * contexts + context) can go on when the last write that `builder` has posted is
+  /// done.
+  virtual void published(std::uint32_t builder, std::uint32_t waiter) = 0;
+};
+
+}  // namespace marti::processors

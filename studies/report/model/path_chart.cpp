@@ -1,0 +1,36 @@
+#include "studies/report/model/path_chart.h"
+
+#include <cstdint>
+
+#include "studies/report/model/chart_library.h"
+#include "studies/report/model/run_charts.h"
+#include "studies/tables/table.h"
+
+namespace marti::studies {
+
+void add_path_chart(const RunJson& run, ReportData& report) {
+  Table table("run_path", "The critical path",
+              {{"what", ColumnType::text, "", "what is done, see docs/model.md, The critical path"},
+               {"ps", ColumnType::integer, "ps", "time of it on the path"},
+               {"share", ColumnType::real, "fraction", "of the frame time"}});
+  const RunJson times(run.find("machine.critical_path.time_ps"), run.file());
+  if (!times.json().is_object()) {
+    return;
+  }
+  double all = 0.0;
+  for (const auto& [name, value] : times.json().items()) {
+    all += times.count(name);
+  }
+  for (const auto& [name, value] : times.json().items()) {
+    if (const std::int64_t ps = whole(times, name); ps > 0) {
+      table.add_row({name, ps, static_cast<double>(ps) / all});
+    }
+  }
+  if (!table.rows().empty()) {
+    report.charts.push_back(
+        make_chart(table.name(), table,
+                   "The chain of work that sets the end of the frame; the parts add up to the frame."));
+  }
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,274 @@
+// The critical path: laws on random machines of every kind, and a second way to find it on plain ones.
+#include "processors/path/critical_path.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "processors/path/path_recorder.h"
+#include "processors/replay/replay.h"
+#include "sim/key_error.h"
+#include "tests/support/equal_results.h"
+#include "tests/support/random_machine.h"
+#include "tests/unit/processors/naive_path.h"
+
+namespace marti::processors {
+namespace {
+
+const sim::MemoryBudget unlimited;
+
+sim::Ticks of(const CriticalPath& path, PathKind kind) { return path.time[static_cast<std::size_t>(kind)]; }
+
+// Passes everything on to a recorder, and keeps what each node did when.
+class Watched final : public Observer {
+ public:
+  explicit Watched(PathRecorder& recorder) : recorder_(recorder) {}
+  void begin(const ReplayInput& input) override { recorder_.begin(input); }
+  void spent(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to, PixelPlace pixel) override {
+    recorder_.spent(node, state, from, to, pixel);
+    if (state == NodeState::working) {
+      work.push_back({node, from, to});
+    }
+  }
+  void end(sim::Ticks time) override { recorder_.end(time); }
+
+  struct Work {
+    std::uint32_t node;
+    sim::Ticks from, to;
+  };
+  std::vector<Work> work;
+
+ private:
+  PathRecorder& recorder_;
+};
+
+struct Case {
+  WorkLog log;
+  MachineConfig machine;
+};
+
+// A random machine of the image scheme, with a tree to be built or given, contexts, prefetching, second
+// levels.
+Case random_case(test::Random& random) {
+  const bool builds = random() % 2 == 0;
+  Case c;
+  c.log = builds ? test::random_tree_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 8)),
+                                         static_cast<std::uint32_t>(test::pick(random, 1, 8)))
+                 : test::small_log(random, 8);
+  c.machine = test::random_machine(random, 8);
+  if (builds) {
+    test::add_random_build(random, c.machine);
+  } else {
+    test::add_random_second_level(random, c.machine);
+  }
+  if (random() % 2 == 0) {
+    test::add_random_contexts(random, c.log.traversal < accel::Traversal::grid, c.machine);
+  }
+  if (random() % 4 == 0) {
+    c.machine.count.attribution = true;  // nodes that count are another class
+  }
+  return c;
+}
+
+TEST(CriticalPath, ItsPiecesFollowEachOtherFromZeroToTheEnd) {
+  for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+    SCOPED_TRACE(seed);
+    test::Random random(seed);
+    const Case c = random_case(random);
+    PathRecorder recorder(unlimited, PathPieces::no_fold);
+    Watched watched(recorder);
+    const MachineResult result = replay(c.log, c.machine, {.observer = &watched, .path = &recorder});
+    test::expect_equal(result, replay(c.log, c.machine));
+    const CriticalPath& path = recorder.path();
+    EXPECT_EQ(path.end, result.end);
+    EXPECT_EQ(std::reduce(path.time.begin(), path.time.end()), result.end);
+    EXPECT_EQ(std::reduce(path.nodes.begin(), path.nodes.end()), result.end);
+    EXPECT_EQ(path.nodes.size(), result.nodes.size());
+    sim::Ticks at = result.end;
+    recorder.each_from_the_end([&](const PathPiece& piece) {
+      ASSERT_EQ(piece.to, at);
+      ASSERT_LT(piece.from, piece.to);
+      at = piece.from;
+      // What a node does by itself lies within the time in which it worked.
+      ASSERT_TRUE(!is_own_work(piece.kind) ||
+                  std::any_of(watched.work.begin(), watched.work.end(), [&](const Watched::Work& work) {
+                    return work.node == piece.owner.node && work.from <= piece.from && piece.to <= work.to;
+                  }));
+    });
+    EXPECT_EQ(at, 0);
+    sim::Ticks traversal = 0;
+    for (const PathLevel& level : path.levels) {
+      traversal += level.traversal;
+    }
+    EXPECT_LE(traversal, of(path, PathKind::traversal));
+    ASSERT_FALSE(::testing::Test::HasFailure());
+  }
+}
+
+TEST(CriticalPath, OfOneNodeOnAnIdealInterconnectIsHowItsTimeDivides) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    test::Random random(seed);
+    const WorkLog log = test::small_log(random, 8);
+    MachineConfig machine = test::random_machine(random, 1);
+    machine.clusters = 1;
+    machine.placement = Placement::shared;
+    machine.interconnect.kind = memory::InterconnectKind::ideal;
+    machine.write_buffer = 200;
+    PathRecorder recorder(unlimited, PathPieces::no_fold);
+    const MachineResult result = replay(log, machine, {.observer = &recorder, .path = &recorder});
+    const TimeDivision& time = result.nodes[0].time;
+    const CriticalPath& path = recorder.path();
+    // The frame may end with the last posted write, for which the node idles.
+    const auto idle = time[static_cast<std::size_t>(Activity::idle)];
+    for (std::size_t kind = 0; kind <= static_cast<std::size_t>(Activity::messaging); ++kind) {
+      EXPECT_EQ(path.time[kind], time[kind]) << activity_names[kind];
+    }
+    EXPECT_EQ(of(path, PathKind::transfer), time[static_cast<std::size_t>(Activity::transfer)] + idle);
+    EXPECT_EQ(of(path, PathKind::dispatch), time[static_cast<std::size_t>(Activity::dispatch_wait)]);
+    ASSERT_FALSE(::testing::Test::HasFailure());
+  }
+}
+
+TEST(CriticalPath, OfABusThatIsAlwaysBusyIsItsTransfers) {
+  test::Random random(3);
+  const WorkLog log = test::random_log(random, 24, 24);
+  MachineConfig machine;
+  machine.nodes = 12;
+  machine.cache.organisation = CacheOrganisation::none;
+  machine.interconnect.cycles_per_beat = 4000;
+  machine.host.assignment = Assignment::interleaved;
+  machine.packets.width = 1;
+  machine.packets.height = 1;
+  PathRecorder recorder(unlimited, PathPieces::no_fold);
+  const MachineResult result = replay(log, machine, {.observer = &recorder, .path = &recorder});
+  EXPECT_GT(of(recorder.path(), PathKind::transfer), result.end - result.end / 100);
+  EXPECT_GT(recorder.path().node_changes, 1000);
+}
+
+TEST(CriticalPath, ASecondWayToFindItFindsTheSame) {
+  for (std::uint64_t seed = 0; seed < 120; ++seed) {
+    SCOPED_TRACE(seed);
+    test::Random random(seed);
+    const WorkLog log = test::small_log(random, 8);
+    MachineConfig machine = test::random_machine(random, 8);
+    test::make_plain(random, machine);
+    PathRecorder recorder(unlimited, PathPieces::no_fold);
+    test::NaivePath naive(recorder, machine);
+    const MachineResult result = replay(log, machine, {.observer = &naive, .path = &recorder});
+    std::vector<test::NaivePiece> path;
+    recorder.each_from_the_end([&](const PathPiece& piece) {
+      test::add_piece(path, {piece.from, piece.to, piece.owner.node, piece.kind == PathKind::transfer});
+    });
+    EXPECT_EQ(path, naive.path(result.end));
+    ASSERT_FALSE(::testing::Test::HasFailure());
+  }
+}
+
+// A frame of one row whose pixels are one ray and one visit of the root each.
+WorkLog row_of_visits(std::uint32_t pixels) {
+  WorkLog log;
+  log.width = pixels;
+  log.height = 1;
+  log.primitives = 1;
+  log.texture_begin = {0};
+  log.topology.nodes.push_back({0, 0, 1, true});
+  log.rows.resize(1);
+  for (std::uint32_t x = 0; x < pixels; ++x) {
+    log.rows[0].begin.push_back(static_cast<std::uint32_t>(log.rows[0].words.size()));
+    log.rows[0].words.push_back(camera_ray);
+    log.rows[0].words.push_back(make_word(Step::leaf, 0));
+  }
+  log.rows[0].begin.push_back(static_cast<std::uint32_t>(log.rows[0].words.size()));
+  return log;
+}
+
+TEST(CriticalPath, GoesOverTheNodesInTheOrderInWhichTheBusServesThem) {
+  // Three nodes miss at the same time: the lowest is served first, and all others behind it.
+  const WorkLog log = row_of_visits(3);
+  MachineConfig machine;
+  machine.nodes = 3;
+  machine.packets = {1, 1, PacketOrder::scanline};
+  machine.host.assignment = Assignment::interleaved;
+  machine.cache.organisation = CacheOrganisation::none;
+  machine.interconnect.mode = memory::BusMode::held;
+  PathRecorder recorder(unlimited, PathPieces::no_fold);
+  const MachineResult result = replay(log, machine, {.observer = &recorder, .path = &recorder});
+  std::vector<std::uint32_t> nodes;
+  recorder.each_from_the_end([&](const PathPiece& piece) {
+    if (nodes.empty() || nodes.back() != piece.owner.node) {
+      nodes.push_back(piece.owner.node);
+    }
+  });
+  EXPECT_EQ(nodes, (std::vector<std::uint32_t>{2, 1, 0}));
+  EXPECT_EQ(recorder.path().node_changes, 2);
+  EXPECT_EQ(recorder.path().end, result.end);
+  ASSERT_EQ(recorder.path().levels.size(), 1U);
+  EXPECT_GT(recorder.path().levels[0].reads, 0);
+  EXPECT_GT(recorder.path().levels[0].traversal, 0);
+}
+
+TEST(CriticalPath, FoldingPiecesChangesNoSum) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE(seed);
+    test::Random random(seed);
+    const Case c = random_case(random);
+    PathRecorder whole(unlimited, PathPieces::no_fold);
+    PathRecorder folded(unlimited, static_cast<std::uint32_t>(test::pick(random, 0, 200)));
+    (void)replay(c.log, c.machine, {.observer = &whole, .path = &whole});
+    (void)replay(c.log, c.machine, {.observer = &folded, .path = &folded});
+    const CriticalPath& a = whole.path();
+    const CriticalPath& b = folded.path();
+    EXPECT_EQ(a.end, b.end);
+    EXPECT_EQ(a.time, b.time);
+    EXPECT_EQ(a.nodes, b.nodes);
+    EXPECT_EQ(a.pieces, b.pieces);
+    EXPECT_EQ(a.node_changes, b.node_changes);
+    ASSERT_EQ(a.levels.size(), b.levels.size());
+    for (std::size_t level = 0; level < a.levels.size(); ++level) {
+      EXPECT_EQ(a.levels[level].traversal, b.levels[level].traversal);
+      EXPECT_EQ(a.levels[level].reads, b.levels[level].reads);
+    }
+    ASSERT_FALSE(::testing::Test::HasFailure());
+  }
+}
+
+TEST(CriticalPath, WhatIsKeptDoesNotGrowWithTheFrame) {
+  for (const memory::InterconnectKind kind :
+       {memory::InterconnectKind::ideal, memory::InterconnectKind::bus, memory::InterconnectKind::crossbar}) {
+    std::uint64_t kept = 0;
+    for (const std::uint32_t size : {16U, 64U}) {
+      test::Random random(5);
+      const WorkLog log = test::random_log(random, size, size);
+      MachineConfig machine;
+      machine.nodes = 16;
+      machine.cache.organisation = CacheOrganisation::none;
+      machine.interconnect.kind = kind;
+      PathRecorder recorder(unlimited, 1000);
+      (void)replay(log, machine, {.observer = &recorder, .path = &recorder});
+      EXPECT_GT(recorder.path().pieces, 2000);
+      kept = size == 16 ? recorder.pieces().most_kept() : recorder.pieces().most_kept() - kept;
+    }
+    EXPECT_LT(kept, 100U);
+  }
+}
+
+TEST(CriticalPath, IsRefusedWhereItDoesNotFitOrIsNotDefined) {
+  const WorkLog log = row_of_visits(4);
+  MachineConfig machine;
+  PathRecorder small(sim::MemoryBudget(1 << 16U, true));
+  try {
+    (void)replay(log, machine, {.observer = &small, .path = &small});
+    FAIL();
+  } catch (const sim::KeyError& error) {
+    EXPECT_NE(std::string(error.what()).find("record.critical_path"), std::string::npos) << error.what();
+  }
+  machine.scheme = Scheme::pipeline;
+  EXPECT_THROW(check_critical_path(machine), sim::KeyError);
+}
+
+}  // namespace
+}  // namespace marti::processors
