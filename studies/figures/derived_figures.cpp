@@ -59,7 +59,7 @@ Formula lost(std::size_t loss) {
 }
 
 void add_speed(std::vector<FigureEntry>& all) {
-  const auto add = [&all](std::string_view name, std::string_view text, Better better,
+  const auto add = [&all](const std::string& name, const std::string& text, Better better,
                           const Formula& formula) {
     all.push_back({name, "1", text, Merge::ratio, better, formula});
   };
