@@ -75,7 +75,8 @@ void add_speed(std::vector<FigureEntry>& all) {
   constexpr std::array<std::string_view, loss_names.size()> lost_to = {
       "more work: steps, and misses that meet no queue", "waits for interconnect and banks",
       "waits for work, of nodes that had some",
-      "building, switching, messages, locks, full queues and dispatching", "nodes that never had work"};
+      "building, switching, messages, locks, full queues and dispatching",
+      "a lack of packets or rays: of nodes that never had work"};
   for (std::size_t i = 0; i < loss_names.size(); ++i) {
     add("lost_" + std::string(loss_names[i]), "nodes lost to " + std::string(lost_to.at(i)), Better::lower,
         lost(i));

@@ -107,10 +107,16 @@ TEST_F(SweepCommand, PointsAsCsvAreThoseOfJson) {
     std::string line;
     std::getline(csv, line, '\r');  // lines end as RFC 4180 has them
     csv.get();
-    std::vector<std::string> all;
-    std::istringstream in(line + ",");
-    for (std::string cell; std::getline(in, cell, ',');) {
-      all.push_back(cell);
+    std::vector<std::string> all(1);
+    bool quoted_text = false;
+    for (const char c : line) {
+      if (c == '"') {
+        quoted_text = !quoted_text;
+      } else if (c == ',' && !quoted_text) {
+        all.emplace_back();
+      } else {
+        all.back() += c;
+      }
     }
     return all;
   };
@@ -123,6 +129,8 @@ TEST_F(SweepCommand, PointsAsCsvAreThoseOfJson) {
       const json value = point.value(names[i], json());  // fields without a value are missing
       if (value.is_null()) {
         EXPECT_EQ(row[i], "") << names[i];
+      } else if (value.is_string()) {
+        EXPECT_EQ(row[i], value.get<std::string>()) << names[i];
       } else {
         EXPECT_EQ(std::stod(row[i]), value.get<double>()) << names[i];
       }

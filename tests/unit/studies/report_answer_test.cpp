@@ -102,6 +102,7 @@ TEST(TimeText, KeepsWithin64Bits) {
 
 const char* const whole_run =
     R"({"figures": {"machine": {"end": 2000000, "speed_up": 3, "efficiency": 0.75, "lost_contention": 1.0,
+  "lost_extra_misses": 0, "lost_imbalance": 0, "lost_overhead": 0, "lost_idle": 0,
   "nodes": 4, "clusters": 1}},
   "machine": {"bounds": {"frame_time_at_least_ps": 1000000, "by": "computing",
   "prediction": {"saturation_nodes": 11.0, "mean_value_error": -0.125}}}})";
