@@ -252,7 +252,11 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
     }
     cache.prefetch(kind, line, slot, engine_.now());
     if (const std::optional<sim::Ticks> hit = walker.second_level_hit(node, line)) {
-      arrived(node, slot, cache_access_until(sim::add_ticks(engine_.now(), *hit)));
+      const sim::Ticks done = sim::add_ticks(engine_.now(), *hit);
+      if (input_.causes != nullptr) {
+        input_.causes->prefetched(node, slot, engine_.now(), done);
+      }
+      arrived(node, slot, cache_access_until(done));
     } else {
       const std::uint32_t bytes = input_.config.cache.cache.line;
       issue(node, slot, memory::Address{line} * bytes, bytes);
@@ -330,6 +334,9 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
     }
     const std::uint32_t next = next_ready(node, now);
     const Context& context = context_of(node, next);
+    if (input_.causes != nullptr) {
+      input_.causes->wait_ended(node, next, context.wait == Wait::host ? next : context.slot);
+    }
     if (context.wait == Wait::host) {
       spend(node, Activity::dispatch_wait, now - core.since);
       tell(node, NodeState::dispatch_wait, core.since, now, {});

@@ -110,8 +110,9 @@ class PacketNodes : public NodeArray {
       }
     }
   }
-  // Tells who asks for causes how far the node has come.
-  void watch_work(std::uint32_t node, bool for_pixel) {
+  // Tells who asks for causes how far the node has come. Not inlined: few replays need it, and the functions
+  // that call it are those in which all replays spend their time.
+  [[gnu::noinline]] void watch_work(std::uint32_t node, bool for_pixel) {
     if (input_.causes == nullptr) {
       return;
     }

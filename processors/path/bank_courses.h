@@ -37,7 +37,8 @@ class BankCourses {
   std::uint32_t line_ = 1;         // of the cache
   std::int64_t hits_ = 0;          // of the cache so far
   std::vector<PathTip> banks_;     // what each bank did last, until it can begin its next access
-  std::unordered_map<memory::Address, PathTip> coming_;  // lines brought in lately; past ones are removed
+  std::unordered_map<memory::Address, PathTip>
+      coming_;  // lines brought in; those that have arrived are removed now and then
   std::size_t most_coming_ = 64;
 };
 

@@ -1,7 +1,7 @@
-#include <deque>
 #include <vector>
 
 #include "processors/node/memory_system.h"
+#include "processors/path/fifo.h"
 #include "processors/path/memory_course.h"
 #include "processors/path/network_course.h"
 #include "sim/error.h"
@@ -67,10 +67,8 @@ class DistributedCourse final : public MemoryCourse {
   PathTip write_done(std::uint32_t number) override {
     Port& port = ports_[number];
     sim::ensure(!port.writes.empty() && port.writes.front().served, "a write is done that is not served");
-    PathTip done = port.writes.front().request.asking;
-    port.writes.pop_front();
     port.first = (port.first + 1) % write_numbers;
-    return done;
+    return port.writes.pop_front().request.asking;
   }
 
  private:
@@ -83,8 +81,8 @@ class DistributedCourse final : public MemoryCourse {
   };
   struct Port {
     Transfer read;
-    std::deque<Transfer> writes;  // oldest first
-    std::uint32_t first = 0;      // number of the oldest
+    Fifo<Transfer> writes;
+    std::uint32_t first = 0;  // number of the oldest
   };
 
   [[nodiscard]] std::uint32_t home_of(memory::Address address) const {

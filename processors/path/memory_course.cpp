@@ -1,13 +1,14 @@
 #include "processors/path/memory_course.h"
 
-#include <deque>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "memory/arbitrated_bus.h"
 #include "memory/link.h"
+#include "memory/network.h"
 #include "processors/path/bank_courses.h"
+#include "processors/path/fifo.h"
 #include "processors/walk/second_level.h"
 #include "sim/error.h"
 
@@ -125,7 +126,7 @@ class BusCourse final : public MemoryCourse {
   static constexpr std::uint32_t of_event = nobody - 1;
 
   struct Port {
-    std::deque<PathRequest> requests;      // oldest first
+    Fifo<PathRequest> requests;
     std::optional<PathRequest> under_way;  // a read whose address is sent; asking: up to its data
   };
 
@@ -133,9 +134,7 @@ class BusCourse final : public MemoryCourse {
     Port& from = ports_[port];
     sim::ensure(!from.requests.empty() && from.requests.front().write == write,
                 "a bus has granted what was not asked for");
-    PathRequest request = std::move(from.requests.front());
-    from.requests.pop_front();
-    return request;
+    return from.requests.pop_front();
   }
 
   void send_address(std::uint32_t port) {
@@ -173,6 +172,19 @@ std::unique_ptr<MemoryCourse> make_memory_course(const MachineConfig& config,
       break;
   }
   return std::make_unique<BusCourse>(config, memory, pieces);
+}
+
+std::uint64_t course_bytes(const MachineConfig& config) {
+  constexpr std::uint64_t bytes_a_request = sizeof(PathRequest) + 16;  // with its home and how far it is
+  // An entry of a Fifo may take the place of four: half of them may be taken out, and its vector half full.
+  constexpr std::uint64_t bytes_a_write = 4 * bytes_a_request;
+  constexpr std::uint64_t bytes_a_port = 2 * bytes_a_request + bytes_a_write;
+  const std::uint64_t links = memory::network_bytes(config.network, config.nodes) / sizeof(Ticks);
+  const std::uint64_t places = config.placement == Placement::distributed
+                                   ? config.nodes + links
+                                   : 2 * std::uint64_t{banks_of(config).count};
+  return config.all_nodes() * (config.ports_of_node() * bytes_a_port + config.write_buffer * bytes_a_write) +
+         config.clusters * places * sizeof(PathTip);
 }
 
 }  // namespace marti::processors

@@ -43,7 +43,10 @@ class MemoryCourse {
 [[nodiscard]] std::unique_ptr<MemoryCourse> make_memory_course(const MachineConfig& config,
                                                                const memory::Interconnect& memory,
                                                                PathPieces& pieces);
-/// The same where the memory is spread over the nodes.
+/// At most so many bytes of the host are taken by the courses of all clusters, without pieces and lines that
+/// a shared cache brings in.
+[[nodiscard]] std::uint64_t course_bytes(const MachineConfig& config);
+/// As make_memory_course() where the memory is spread over the nodes.
 [[nodiscard]] std::unique_ptr<MemoryCourse> make_distributed_course(const MachineConfig& config,
                                                                     PathPieces& pieces);
 

@@ -12,6 +12,9 @@ namespace {
 
 constexpr const char* what = "the pieces of work that may lead to the end of the frame take";
 constexpr const char* remedy = "leave record.critical_path off, or make the image smaller";
+// Where nothing is folded because a timeline is to show the pieces.
+constexpr const char* remedy_of_timelines =
+    "leave record.timeline off, for which every piece is kept, or make the image smaller";
 
 }  // namespace
 
@@ -101,27 +104,40 @@ void PathPieces::fold() {
       before = next;
     }
     at(last).before = before;
-    if (at(last).sum == none) {
-      if (free_sums_.empty()) {
-        free_sums_.push_back(static_cast<std::uint32_t>(sums_.size()));
-        sums_.emplace_back();
-      }
-      at(last).sum = free_sums_.back();
-      free_sums_.pop_back();
-    }
-    sums_[at(last).sum] = std::move(sum);
+    keep_sum(at(last), std::move(sum));
   }
-  std::uint64_t bytes = blocks_.size() * block * sizeof(Kept);
-  for (const PathSum& sum : sums_) {
-    bytes += sum.bytes();
-  }
-  budget_.require(bytes, what, remedy);
   fold_at_ = std::max(fold_from_, in_use_ > no_fold / 2 ? no_fold : 2 * in_use_);
+}
+
+void PathPieces::keep_sum(Kept& piece, PathSum sum) {
+  if (piece.sum == none) {
+    if (free_sums_.empty()) {
+      sums_.emplace_back();
+      free_sums_.reserve(sums_.capacity());
+      free_sums_.push_back(static_cast<std::uint32_t>(sums_.size() - 1));
+    }
+    piece.sum = free_sums_.back();
+    free_sums_.pop_back();
+  }
+  sum_bytes_ = sum_bytes_ + sum.bytes() - sums_[piece.sum].bytes();
+  sums_[piece.sum] = std::move(sum);
+  require(blocks_.size());
+}
+
+void PathPieces::require(std::size_t blocks) const {
+  const std::uint64_t of_sums = sum_bytes_ + sums_.capacity() * (sizeof(PathSum) + sizeof(std::uint32_t));
+  budget_.require(blocks * block * sizeof(Kept) + of_sums, what,
+                  fold_from_ == no_fold ? remedy_of_timelines : remedy);
+}
+
+void PathPieces::take(std::uint64_t bytes) {
+  budget_.take(bytes, "what leads to the end of the frame takes", "leave record.critical_path off");
 }
 
 void PathPieces::free_place(std::uint32_t index) {
   Kept& piece = at(index);
   if (piece.sum != none) {
+    sum_bytes_ -= sums_[piece.sum].bytes();
     sums_[piece.sum] = {};
     free_sums_.push_back(piece.sum);
   }
@@ -139,7 +155,7 @@ std::uint32_t PathPieces::take_place() {
     return std::exchange(free_, at(free_).before);
   }
   if (made_ % block == 0) {
-    budget_.require((blocks_.size() + 1) * block * sizeof(Kept), what, remedy);
+    require(blocks_.size() + 1);
     if (made_ == none - block + 1) {
       throw sim::KeyError("record.critical_path",
                           "there are too many pieces of work; make the image smaller");

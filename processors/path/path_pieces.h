@@ -66,6 +66,8 @@ class PathPieces {
   /// The chain with a further piece of `length`, at least 0; without length it is the same chain.
   [[nodiscard]] PathTip append(const PathTip& before, sim::Ticks length, const PathOwner& owner,
                                PathKind kind);
+  /// Takes from the budget what the things that are going on take; refused like too many pieces.
+  void take(std::uint64_t bytes);
   /// Needed to fold; it must outlive the last call of append().
   void set_levels(LogLevels& levels) { levels_ = &levels; }
   /// Calls visit(piece) for the pieces of a chain, the last one first. Only where pieces are never folded.
@@ -73,7 +75,8 @@ class PathPieces {
   void each_from_the_end(const PathTip& tip, const Visit& visit) const;
   /// The sum of the pieces of a chain.
   [[nodiscard]] PathSum sum_of(const PathTip& tip, LogLevels& levels) const;
-  /// The largest number of pieces and sums that were kept at the same time.
+  /// The largest number of pieces that were kept at the same time; those that are folded into one count as
+  /// one.
   [[nodiscard]] std::uint64_t most_kept() const { return made_; }
 
  private:
@@ -98,6 +101,10 @@ class PathPieces {
   void prepend_to(PathSum& sum, std::uint32_t index, LogLevels& levels) const;
   std::uint32_t take_place();
   void free_place(std::uint32_t index);
+  // Makes `sum` that of the piece.
+  void keep_sum(Kept& piece, PathSum sum);
+  // Refuses so many blocks if they do not fit the budget beside the sums.
+  void require(std::size_t blocks) const;
   // Folds each run of pieces of which each is needed only by the one behind it.
   void fold();
   // One user of the piece less; removes those that have no user left.
@@ -112,6 +119,9 @@ class PathPieces {
   std::uint32_t fold_at_;
   LogLevels* levels_ = nullptr;
   std::vector<PathSum> sums_;
+  std::uint64_t sum_bytes_ = 0;  // that are allocated for what is in sums_
+  // Entries of sums_ that are not in use. It has room for all of them, because a tip's destructor may add to
+  // it and must not throw.
   std::vector<std::uint32_t> free_sums_;
 };
 

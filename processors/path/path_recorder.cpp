@@ -1,5 +1,6 @@
 #include "processors/path/path_recorder.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "sim/error.h"
@@ -44,8 +45,8 @@ void PathRecorder::begin(const ReplayInput& input) {
   host_occupancy_ = config.host.clock.cycles(config.host.occupancy_cycles);
   const std::size_t nodes = config.all_nodes();
   const std::size_t workers = builds_ ? contexts_ : 0;
-  budget_.require(nodes * (sizeof(Node) + (ports_ + write_buffer_ + workers) * sizeof(PathTip)),
-                  "what leads to the end of the frame takes", "leave record.critical_path off");
+  pieces_.take(nodes * (sizeof(Node) + (ports_ + write_buffer_ + workers) * sizeof(PathTip)) +
+               course_bytes(config));
   ticks_ = step_ticks(config, input.log);
   levels_.emplace(input.log, ticks_);
   pieces_.set_levels(*levels_);
@@ -75,13 +76,8 @@ void PathRecorder::spent(std::uint32_t node, NodeState state, sim::Ticks from, s
     case NodeState::bank_access:
       n.waited += to - from;
       break;
-    case NodeState::interconnect_wait:
-    case NodeState::bank_wait:
-      break;
     default:
-      if (n.tip.end() < from) {
-        (void)tip_at(node, from);
-      }
+      break;
   }
   n.wait = state;
   n.wait_end = to;
@@ -115,32 +111,18 @@ const PathTip& PathRecorder::tip_at(std::uint32_t node, sim::Ticks now) {
   if (n.tip.end() != now) {
     sim::ensure(n.wait_end == now, "a node goes on before its wait has ended");
     n.tip = end_of_wait(node);
+    sim::ensure(n.tip.end() == now, "a node's wait has ended for no known cause");
   }
   return n.tip;
 }
 
-PathTip PathRecorder::end_of_wait(std::uint32_t node) const {
+const PathTip& PathRecorder::end_of_wait(std::uint32_t node) const {
   const Node& n = nodes_[node];
-  std::optional<PathTip> cause;
   if (n.wait == NodeState::queue_full_wait) {
-    cause = ends_at(writes_, node * write_buffer_ + n.writes % write_buffer_, 1, n.wait_end);
-  } else if (n.wait == NodeState::lock_wait) {
-    cause = ends_at(releases_, node * contexts_, contexts_, n.wait_end);
-  } else {
-    cause = ends_at(due_, node * ports_, ports_, n.wait_end);
+    return writes_[entry_of(node, n.writes)];  // the oldest: its entry is the next one to be used
   }
-  sim::ensure(cause.has_value(), "a node's wait has ended for no known cause");
-  return *std::move(cause);
-}
-
-std::optional<PathTip> PathRecorder::ends_at(const std::vector<PathTip>& tips, std::size_t begin,
-                                             std::size_t count, sim::Ticks time) {
-  for (std::size_t i = begin; i < begin + count; ++i) {
-    if (tips[i].end() == time) {
-      return tips[i];
-    }
-  }
-  return std::nullopt;
+  return n.wait == NodeState::lock_wait ? releases_[node * contexts_ + n.context]
+                                        : due_[node * ports_ + n.slot];
 }
 
 void PathRecorder::granted(std::uint32_t node, std::uint32_t context, sim::Ticks asked, sim::Ticks start) {
@@ -158,6 +140,22 @@ void PathRecorder::granted(std::uint32_t node, std::uint32_t context, sim::Ticks
   due_[node * ports_ + context] = std::move(grant);
 }
 
+void PathRecorder::prefetched(std::uint32_t node, std::uint32_t slot, sim::Ticks from, sim::Ticks to) {
+  const PathTip& tip = tip_at(node, from);
+  due_[node * ports_ + slot] =
+      pieces_.append(tip, to - from, {node, nodes_[node].place}, PathKind::cache_access);
+}
+
+void PathRecorder::wait_ended(std::uint32_t node, std::uint32_t context, std::uint32_t slot) {
+  Node& n = nodes_[node];
+  // After its last wait the node may have begun this one without any work or transaction.
+  if (n.tip.end() < n.wait_end) {
+    (void)tip_at(node, n.wait_end);
+  }
+  n.context = context;
+  n.slot = slot;
+}
+
 void PathRecorder::began_frame(sim::Ticks start_up) {
   const PathTip cause = first_that_ends_at(start_up);
   for (Node& node : nodes_) {
@@ -169,7 +167,7 @@ void PathRecorder::began_frame(sim::Ticks start_up) {
 }
 
 void PathRecorder::published(std::uint32_t builder, std::uint32_t waiter) {
-  releases_[waiter] = write_of(builder, nodes_[builder].writes - 1);
+  releases_[waiter] = writes_[entry_of(builder, nodes_[builder].writes - 1)];
 }
 
 PathRequest PathRecorder::request(std::uint32_t port, const memory::Transaction& transaction, bool write,
@@ -186,7 +184,7 @@ void PathRecorder::read_done(std::uint32_t port, PathTip done) { due_[port] = st
 
 void PathRecorder::write_done(std::uint32_t port, PathTip done) {
   const auto node = static_cast<std::uint32_t>(port / ports_);
-  write_of(node, nodes_[node].writes_done++) = std::move(done);
+  writes_[entry_of(node, nodes_[node].writes_done++)] = std::move(done);
 }
 
 PathTip PathRecorder::first_that_ends_at(sim::Ticks time) const {
@@ -196,7 +194,9 @@ PathTip PathRecorder::first_that_ends_at(sim::Ticks time) const {
     }
   }
   for (const std::vector<PathTip>* const tips : {&writes_, &due_}) {
-    if (const std::optional<PathTip> tip = ends_at(*tips, 0, tips->size(), time)) {
+    const auto tip =
+        std::find_if(tips->begin(), tips->end(), [&](const PathTip& t) { return t.end() == time; });
+    if (tip != tips->end()) {
       return *tip;
     }
   }

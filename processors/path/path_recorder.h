@@ -24,7 +24,7 @@ class PathRecorder final : public Observer, public CauseObserver {
  public:
   /// What does not fit the budget ends the replay with a KeyError. `fold_from`: as PathPieces.
   explicit PathRecorder(const sim::MemoryBudget& budget, std::uint32_t fold_from = PathPieces::usual_fold)
-      : budget_(budget), pieces_(budget, fold_from) {}
+      : pieces_(budget, fold_from) {}
 
   void begin(const ReplayInput& input) override;
   void spent(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to, PixelPlace pixel) override;
@@ -32,6 +32,8 @@ class PathRecorder final : public Observer, public CauseObserver {
 
   void worked(std::uint32_t node, const NodeStatistics& statistics, LogPlace place) override;
   void granted(std::uint32_t node, std::uint32_t context, sim::Ticks asked, sim::Ticks start) override;
+  void prefetched(std::uint32_t node, std::uint32_t slot, sim::Ticks from, sim::Ticks to) override;
+  void wait_ended(std::uint32_t node, std::uint32_t context, std::uint32_t slot) override;
   void began_frame(sim::Ticks start_up) override;
   void published(std::uint32_t builder, std::uint32_t waiter) override;
 
@@ -63,25 +65,24 @@ class PathRecorder final : public Observer, public CauseObserver {
     sim::Ticks waited = 0;    // transfers and bank accesses that it has waited for since it worked last
     sim::Ticks wait_end = 0;  // of its last wait
     NodeState wait = NodeState::idle;  // what it waited for last
+    std::uint32_t context = 0;         // that could go on when its last wait ended
+    std::uint32_t slot = 0;            // the port that this context had waited for
     std::uint64_t writes = 0;          // that it has made
     std::uint64_t writes_done = 0;     // of these, that are known to be done
   };
 
   // The chain of `node` up to `now`: when it has waited until then, that of what ended the wait.
   const PathTip& tip_at(std::uint32_t node, sim::Ticks now);
-  [[nodiscard]] PathTip end_of_wait(std::uint32_t node) const;
-  // The first of `tips` that ends at `time`; std::nullopt if none does.
-  [[nodiscard]] static std::optional<PathTip> ends_at(const std::vector<PathTip>& tips, std::size_t begin,
-                                                      std::size_t count, sim::Ticks time);
+  // The chain of what ended the node's last wait.
+  [[nodiscard]] const PathTip& end_of_wait(std::uint32_t node) const;
   void add_work(std::uint32_t node, sim::Ticks from, sim::Ticks to);
   // The first chain that ends at `time`: a node's work, then a write, then a read that no node waits for; of
   // these that of the lowest node.
   [[nodiscard]] PathTip first_that_ends_at(sim::Ticks time) const;
-  [[nodiscard]] PathTip& write_of(std::uint32_t node, std::uint64_t number) {
-    return writes_[node * write_buffer_ + number % write_buffer_];
+  [[nodiscard]] std::size_t entry_of(std::uint32_t node, std::uint64_t write) const {
+    return node * write_buffer_ + write % write_buffer_;
   }
 
-  sim::MemoryBudget budget_;
   PathPieces pieces_;
   StepTicks ticks_;
   bool builds_ = false;
@@ -93,7 +94,7 @@ class PathRecorder final : public Observer, public CauseObserver {
   sim::Ticks host_occupancy_ = 0;
   std::optional<LogLevels> levels_;  // during the replay
   std::vector<Node> nodes_;
-  std::vector<PathTip> due_;       // by port: the last read, or grant of a packet to a context
+  std::vector<PathTip> due_;       // by port: the last read or prefetch, or grant of a packet to a context
   std::vector<PathTip> writes_;    // node by node: the writes in its write buffer
   std::vector<PathTip> releases_;  // by worker: the write that published the branch it waited for last
   PathTip host_;                   // the request that the host has served last

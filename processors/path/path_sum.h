@@ -33,8 +33,9 @@ class PathSum {
   /// Stretches as PathPiece::goes_on_from() divides them.
   [[nodiscard]] std::int64_t pieces() const { return pieces_; }
   [[nodiscard]] std::int64_t node_changes() const { return node_changes_; }
+  /// Host bytes that it has allocated.
   [[nodiscard]] std::size_t bytes() const {
-    return sizeof(PathSum) + nodes_.capacity() * sizeof(nodes_[0]) + levels_.capacity() * sizeof(PathLevel);
+    return nodes_.capacity() * sizeof(nodes_[0]) + levels_.capacity() * sizeof(PathLevel);
   }
 
  private:

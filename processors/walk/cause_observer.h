@@ -28,6 +28,13 @@ class CauseObserver {
   /// A context of the node asked the host for a packet at `asked` and may begin it at `start`. Called in the
   /// order in which the host serves the requests, before Observer::spent for the wait.
   virtual void granted(std::uint32_t node, std::uint32_t context, sim::Ticks asked, sim::Ticks start) = 0;
+  /// The node prefetches a line from its own second level, which takes until `to`; `slot` is the port that is
+  /// in use until then.
+  virtual void prefetched(std::uint32_t node, std::uint32_t slot, sim::Ticks from, sim::Ticks to) = 0;
+  /// The node's wait ends now because this context can go on; called before Observer::spent for the wait.
+  /// `slot`: the port whose read the context has waited for; the context's number if it was a grant. Nodes
+  /// with one port do not call it: there both are 0.
+  virtual void wait_ended(std::uint32_t node, std::uint32_t context, std::uint32_t slot) = 0;
   /// All nodes begin the frame at `start_up`, when the tree has been built.
   virtual void began_frame(sim::Ticks start_up) = 0;
   /// Worker `waiter` (node * contexts + context) can go on when the last write that `builder` has posted is

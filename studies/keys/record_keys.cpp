@@ -15,8 +15,10 @@ void declare_record_keys(sim::Schema& schema) {
                   "timeline: simulated time from which it shows the nodes");
   schema.duration("record.timeline_to", "0 ps", {"0 ps", std::nullopt},
                   "timeline: simulated time up to which it shows them; 0: to the end of the frame");
-  schema.integer("record.timeline_events", 1'000'000, {1, 1'000'000'000}, "slices",
-                 "timeline: slices written at most, of about 120 bytes each; the rest is left out");
+  schema.integer(
+      "record.timeline_events", 1'000'000, {1, 1'000'000'000}, "slices",
+      "timeline: slices of nodes written at most, of about 120 bytes each, and as many of the critical "
+      "path; the rest is left out");
   schema.boolean(
       "record.heat_maps", false,
       "write what each pixel cost: heat.exr and three maps in false colours, of cycles, misses and "

@@ -45,19 +45,28 @@ void declare_sweep_sections(sim::Schema& schema) {
                       "run` says would help");
 }
 
+std::uint64_t map_bytes(const FrameConfig& frame) {
+  return HeatMap::host_bytes(std::uint64_t{frame.render.width} * frame.render.height);
+}
+
 void refuse_maps_beyond_memory(const sim::Config& config, const RecordConfig& record,
                                const FrameConfig& frame) {
-  const std::string excess =
-      frame.memory.excess(HeatMap::host_bytes(std::uint64_t{frame.render.width} * frame.render.height));
+  const std::string excess = frame.memory.excess(map_bytes(frame));
   if (record.heat_maps && !excess.empty()) {
     config.fail("record.heat_maps", "maps of this image take" + excess);
   }
 }
 
-// The memory that is left beside the work log and the machine.
-sim::MemoryBudget memory_beside(const RunResult& result) {
+std::uint64_t bytes_of(const processors::StrippedLog* stripped) {
+  return stripped == nullptr ? 0 : stripped->bytes_of_words();
+}
+
+// The memory that is left beside the work logs, the machine and heat maps.
+sim::MemoryBudget memory_beside(const RunResult& result, const RecordConfig& record,
+                                const processors::StrippedLog* stripped) {
   sim::MemoryBudget budget = result.frame_config.memory;
-  budget.take(result.functional.totals.bytes + processors::host_bytes(result.machine),
+  budget.take(result.functional.totals.bytes + bytes_of(stripped) + processors::host_bytes(result.machine) +
+                  (record.heat_maps ? map_bytes(result.frame_config) : 0),
               "the work log and the machine take", "make the image smaller");
   return budget;
 }
@@ -69,8 +78,9 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
   std::optional<processors::PathRecorder> path;
   if (record.critical_path) {
     // A timeline shows the pieces of the path; else only their sums are wanted.
-    observers.add(path.emplace(memory_beside(result), record.timeline ? processors::PathPieces::no_fold
-                                                                      : processors::PathPieces::usual_fold));
+    observers.add(
+        path.emplace(memory_beside(result, record, stripped),
+                     record.timeline ? processors::PathPieces::no_fold : processors::PathPieces::usual_fold));
   }
   if (record.timeline) {
     result.timeline = std::make_unique<Timeline>(directory / "timeline.json", record.timeline_options);
@@ -118,8 +128,7 @@ std::shared_ptr<const processors::StrippedLog> strip_for_both(const FrameConfig&
   const bool pays = StrippedLog::ways_of(machine) != 0 &&
                     StrippedLog::ways_of(machine) == StrippedLog::ways_of(other) &&
                     StrippedLog::key_of(machine) == StrippedLog::key_of(other);
-  const std::uint64_t taken = log_bytes + processors::host_bytes(machine) +
-                              HeatMap::host_bytes(std::uint64_t{frame.render.width} * frame.render.height);
+  const std::uint64_t taken = log_bytes + processors::host_bytes(machine) + map_bytes(frame);
   const std::uint64_t left = frame.memory.left();
   return pays && taken < left ? StrippedLog::make(log, machine, (left - taken) / 2) : nullptr;
 }
@@ -161,8 +170,7 @@ WhatHelps measure_help(const sim::Config& config, const RunOptions& run,
   const Work budget = run.what_helps == Measuring::all ? unlimited_work : of_the_scene + of_the_run;
   SharedLog shared{*result.functional.frame.log, std::move(stripped), {}, result.frame_config.memory};
   keep(result.frame_config.keep, shared.options);
-  const std::uint64_t taken =
-      result.functional.totals.bytes + (shared.stripped != nullptr ? shared.stripped->bytes_of_words() : 0);
+  const std::uint64_t taken = result.functional.totals.bytes + bytes_of(shared.stripped.get());
   shared.memory = sim::MemoryBudget(shared.memory.left() - std::min(taken, shared.memory.left()));
   return what_helps(config, run.prices, result.machine, result.timed, shared, budget);
 }

@@ -79,7 +79,9 @@ std::string difference_of_frames(const FunctionalRun& planned, const FunctionalR
 
 std::string machine_of(const RunResult& result) {
   nlohmann::ordered_json machine = nlohmann::ordered_json::parse(json_of(result))["machine"];
-  machine.erase("what_helps");  // it is measured once, and on other machines
+  // Both are found once, not by the runs that are compared with the first.
+  machine.erase("what_helps");
+  machine.erase("critical_path");
   return machine.dump();
 }
 

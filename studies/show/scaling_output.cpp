@@ -127,6 +127,9 @@ std::string record_lines(const RunResult& r) {
           "record.timeline_from and record.timeline_to",
           seconds(*cut));
     }
+    if (const std::optional<sim::Ticks> cut = r.timeline->path_cut_at()) {
+      text += fmt::format(", of the critical path what is before {} is missing", seconds(*cut));
+    }
     text += "\n";
   }
   return text;

@@ -72,6 +72,13 @@ TEST_F(PlanCommand, ProvesItself) {
   EXPECT_NE(outcome.output.find("all kept: same image, same hits, same work log"), std::string::npos)
       << outcome.output;
   EXPECT_EQ(outcome.output.find("DIFFERS"), std::string::npos);
+  // Only the first of the runs that are compared records its critical path.
+  const Outcome path =
+      run("--verify-plan --set scene.source=teapot:2 --set structure.max_level=5"
+          " --set record.critical_path=true");
+  EXPECT_EQ(path.status, 0) << path.output;
+  EXPECT_NE(path.output.find("every figure of the machine is the same"), std::string::npos) << path.output;
+  EXPECT_EQ(path.output.find("DIFFERS"), std::string::npos) << path.output;
   // The plan of an animated file proves itself too.
   const Outcome swing =
       run("--verify-plan --set scene.source=" + quoted(fs::path(MARTI_SOURCE) / "configs/scenes/swing.glb"));

@@ -57,14 +57,24 @@ void Timeline::end(sim::Ticks /*time*/) {
   }
   if (path_ != nullptr) {
     put_path();
+    path_ = nullptr;
   }
-  std::string tail = "\n]";
-  if (cut_at_) {
-    tail += fmt::format(
-        ",\"otherData\":{{\"note\":\"cut after {} slices: slices that end later are missing\"}}", events_);
-  }
-  stream_.write(tail + "}\n");
+  const std::string missing = note();
+  stream_.write(missing.empty() ? "\n]}\n"
+                                : fmt::format("\n],\"otherData\":{{\"note\":\"{}\"}}}}\n", missing));
   stream_.close();
+}
+
+std::string Timeline::note() const {
+  std::string text;
+  if (cut_at_) {
+    text = fmt::format("cut after {} slices: slices of nodes that end later are missing", events_);
+  }
+  if (path_cut_at_) {
+    text += fmt::format("{}of the critical path, what is before {} us is missing", text.empty() ? "" : "; ",
+                        microseconds(*path_cut_at_));
+  }
+  return text;
 }
 
 // Writes the node's last slice.
@@ -144,11 +154,12 @@ void Timeline::put_path_slice(const processors::PathPiece& piece) {
   if (from >= to) {
     return;
   }
-  if (events_ == options_.most_events) {
-    cut_at_ = std::min(cut_at_.value_or(from), from);
+  if (path_events_ == options_.most_events) {
+    path_cut_at_ = path_from_;
     return;
   }
-  ++events_;
+  ++path_events_;
+  path_from_ = from;
   stream_.write(fmt::format(
       ",\n{{\"ph\":\"X\",\"pid\":{},\"tid\":{},\"ts\":{},\"dur\":{},\"name\":\"node {}: {}\"}}",
       cluster_named_.size() + 1, tracks_.size() + 1, microseconds(from), microseconds(to - from),

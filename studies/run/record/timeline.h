@@ -18,7 +18,7 @@ namespace marti::studies {
 struct TimelineOptions {
   sim::Ticks from = 0;                                     ///< earlier slices are left out
   sim::Ticks to = std::numeric_limits<sim::Ticks>::max();  ///< slices from here on are left out
-  std::int64_t most_events = 1'000'000;                    ///< slices written at most
+  std::int64_t most_events = 1'000'000;  ///< slices of nodes written at most; of a path as many again
 };
 
 /// Writes while it watches. One track a node (tid is the node's number plus 1), one process a cluster (pid is
@@ -30,8 +30,8 @@ class Timeline final : public processors::Observer {
  public:
   Timeline(const std::filesystem::path& file, const TimelineOptions& options);
 
-  /// Shows the path that `path` records, too; its end() must have been called before this object's. Null: no
-  /// path.
+  /// Shows the path that `path` records, too; its end() must have been called before this object's, after
+  /// which it is not needed any more. Null: no path.
   void mark(const processors::PathRecorder* path) { path_ = path; }
 
   void begin(const processors::ReplayInput& input) override;
@@ -44,10 +44,12 @@ class Timeline final : public processors::Observer {
   [[nodiscard]] const std::filesystem::path& temporary() const { return stream_.temporary(); }
   void commit() { stream_.commit(); }
 
-  [[nodiscard]] std::int64_t events() const { return events_; }
-  /// The begin of the earliest slice left out because there were too many; std::nullopt if there was room for
-  /// all.
+  [[nodiscard]] std::int64_t events() const { return events_ + path_events_; }
+  /// The begin of the earliest slice of a node left out because there were too many; std::nullopt if there
+  /// was room for all.
   [[nodiscard]] std::optional<sim::Ticks> cut_at() const { return cut_at_; }
+  /// The begin of the path's earliest slice, if there was no room for those before it.
+  [[nodiscard]] std::optional<sim::Ticks> path_cut_at() const { return path_cut_at_; }
 
  private:
   static constexpr std::uint64_t no_packet = ~std::uint64_t{0};
@@ -68,6 +70,8 @@ class Timeline final : public processors::Observer {
   void put(std::uint32_t node);
   void put_path();
   void put_path_slice(const processors::PathPiece& piece);
+  // What is missing, for other programs to show; empty if nothing is.
+  [[nodiscard]] std::string note() const;
   void name(std::uint32_t node);
   // Names a process or a track.
   void name_part(std::string_view what, std::size_t process, std::size_t track, const std::string& arguments);
@@ -77,8 +81,11 @@ class Timeline final : public processors::Observer {
   std::vector<Track> tracks_;
   std::vector<bool> cluster_named_;
   std::uint32_t nodes_a_cluster_ = 1;
-  std::int64_t events_ = 0;
+  std::int64_t events_ = 0;       // of nodes
+  std::int64_t path_events_ = 0;  // of the path
   std::optional<sim::Ticks> cut_at_;
+  std::optional<sim::Ticks> path_cut_at_;
+  sim::Ticks path_from_ = 0;  // begin of the path's slice written last
   bool first_ = true;
   const processors::PathRecorder* path_ = nullptr;
 };

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "processors/path/path_recorder.h"
@@ -31,6 +34,8 @@ class Watched final : public Observer {
     recorder_.spent(node, state, from, to, pixel);
     if (state == NodeState::working) {
       work.push_back({node, from, to});
+    } else if (state == NodeState::lock_wait || state == NodeState::dispatch_wait) {
+      let_go.emplace(node, to);
     }
   }
   void end(sim::Ticks time) override { recorder_.end(time); }
@@ -40,6 +45,7 @@ class Watched final : public Observer {
     sim::Ticks from, to;
   };
   std::vector<Work> work;
+  std::set<std::pair<std::uint32_t, sim::Ticks>> let_go;  // when other nodes or the host ended a node's wait
 
  private:
   PathRecorder& recorder_;
@@ -73,32 +79,91 @@ Case random_case(test::Random& random) {
   return c;
 }
 
+// A random machine that prefetches into its caches from private second levels which take long to answer, so
+// that a prefetch may end the frame.
+Case slow_second_level(test::Random& random) {
+  Case c;
+  c.log = test::random_tree_log(random, 4, 4);
+  c.machine = test::random_machine(random, 6);
+  if (random() % 2 == 0) {
+    c.machine.build = test::random_build(random);
+    test::share_in_order(c.machine);
+  }
+  if (c.machine.placement == Placement::replicated) {
+    c.machine.placement = Placement::shared;
+  }
+  if (c.machine.cache.organisation == CacheOrganisation::none) {
+    c.machine.cache.organisation = CacheOrganisation::unified;
+    c.machine.distribution.interleave = c.machine.cache.cache.line;
+  }
+  test::add_random_contexts(random, c.log.traversal < accel::Traversal::grid, c.machine);
+  c.machine.l2.sharing = SecondLevel::private_caches;
+  c.machine.l2.hit_cycles = test::pick(random, 200, 1000);
+  c.machine.l2.cache.line = c.machine.cache.cache.line;
+  c.machine.l2.cache.replacement = memory::Replacement::lru;
+  c.machine.l2.cache.ways = 2;
+  c.machine.l2.cache.size = std::uint64_t{c.machine.cache.cache.line} * 64;
+  c.machine.prefetch.next_line = true;
+  return c;
+}
+
+// Whether each transaction ends with a piece of its own. Else it may end with what kept it waiting.
+bool every_transaction_takes_time(const MachineConfig& machine) {
+  return machine.interconnect.cycles_per_beat > 0 && machine.interconnect.latency_cycles > 0 &&
+         machine.banks.access_cycles > 0 && machine.local.access_cycles > 0 &&
+         machine.network.cycles_per_beat > 0 && machine.network.hop_cycles > 0 &&
+         machine.host.latency_cycles > 0;
+}
+
 TEST(CriticalPath, ItsPiecesFollowEachOtherFromZeroToTheEnd) {
-  for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+  for (std::uint64_t seed = 0; seed < 1800; ++seed) {
     SCOPED_TRACE(seed);
     test::Random random(seed);
-    const Case c = random_case(random);
+    const Case c = seed < 1500 ? random_case(random) : slow_second_level(random);
     PathRecorder recorder(unlimited, PathPieces::no_fold);
     Watched watched(recorder);
     const MachineResult result = replay(c.log, c.machine, {.observer = &watched, .path = &recorder});
     test::expect_equal(result, replay(c.log, c.machine));
     const CriticalPath& path = recorder.path();
+    const sim::Ticks latency = c.machine.host.clock.cycles(c.machine.host.latency_cycles);
+    const sim::Ticks occupancy = c.machine.host.clock.cycles(c.machine.host.occupancy_cycles);
+    const bool takes_time = every_transaction_takes_time(c.machine);
     EXPECT_EQ(path.end, result.end);
     EXPECT_EQ(std::reduce(path.time.begin(), path.time.end()), result.end);
     EXPECT_EQ(std::reduce(path.nodes.begin(), path.nodes.end()), result.end);
     EXPECT_EQ(path.nodes.size(), result.nodes.size());
     sim::Ticks at = result.end;
+    std::optional<PathPiece> next;  // the piece behind
     recorder.each_from_the_end([&](const PathPiece& piece) {
       ASSERT_EQ(piece.to, at);
       ASSERT_LT(piece.from, piece.to);
       at = piece.from;
-      // What a node does by itself lies within the time in which it worked.
-      ASSERT_TRUE(!is_own_work(piece.kind) ||
+      if (piece.kind == PathKind::dispatch) {
+        const sim::Ticks length = piece.to - piece.from;
+        ASSERT_TRUE(length == latency || length == occupancy);
+      }
+      // A node goes on after what it did or asked for itself, unless another node has let it go on.
+      if (takes_time && next && is_own_work(next->kind) && piece.owner.node != next->owner.node) {
+        ASSERT_TRUE(watched.let_go.contains({next->owner.node, next->from}));
+      }
+      // What a node does by itself lies within the time in which it worked, unless it is a prefetch from its
+      // second level, which ends the frame.
+      const bool prefetch = !next && piece.kind == PathKind::cache_access;
+      next = piece;
+      ASSERT_TRUE(!is_own_work(piece.kind) || prefetch ||
                   std::any_of(watched.work.begin(), watched.work.end(), [&](const Watched::Work& work) {
                     return work.node == piece.owner.node && work.from <= piece.from && piece.to <= work.to;
                   }));
     });
     EXPECT_EQ(at, 0);
+    if (c.machine.placement == Placement::shared &&
+        c.machine.interconnect.kind == memory::InterconnectKind::bus) {
+      sim::Ticks busy = 0;
+      for (const ClusterResult& cluster : result.clusters) {
+        busy += cluster.interconnect.busy;
+      }
+      EXPECT_LE(of(path, PathKind::transfer), busy);
+    }
     sim::Ticks traversal = 0;
     for (const PathLevel& level : path.levels) {
       traversal += level.traversal;
@@ -265,6 +330,14 @@ TEST(CriticalPath, IsRefusedWhereItDoesNotFitOrIsNotDefined) {
     FAIL();
   } catch (const sim::KeyError& error) {
     EXPECT_NE(std::string(error.what()).find("record.critical_path"), std::string::npos) << error.what();
+  }
+  // A timeline needs every piece, so leaving it out may be enough.
+  PathRecorder unfolded(sim::MemoryBudget(1 << 16U, true), PathPieces::no_fold);
+  try {
+    (void)replay(log, machine, {.observer = &unfolded, .path = &unfolded});
+    FAIL();
+  } catch (const sim::KeyError& error) {
+    EXPECT_NE(std::string(error.what()).find("record.timeline"), std::string::npos) << error.what();
   }
   machine.scheme = Scheme::pipeline;
   EXPECT_THROW(check_critical_path(machine), sim::KeyError);

@@ -156,6 +156,49 @@ TEST(Timelines, ShowTheCriticalPathInATrackOfItsOwn) {
   EXPECT_EQ(end, 0);
 }
 
+TEST(Timelines, CutNodesAndCriticalPathEachForItself) {
+  const test::TemporaryDirectory directory;
+  const Machine machine(7);
+  const std::filesystem::path file = directory.path() / "timeline.json";
+  const int path_track = static_cast<int>(machine.config.all_nodes()) + 1;
+  const auto record = [&](std::int64_t limit) {
+    auto timeline = std::make_unique<Timeline>(file, TimelineOptions{.most_events = limit});
+    processors::PathRecorder path({}, processors::PathPieces::no_fold);
+    timeline->mark(&path);
+    Observers all;
+    all.add(path);
+    all.add(*timeline);
+    processors::ReplayOptions options;
+    options.observer = &all;
+    options.path = &path;
+    (void)processors::replay(machine.log, machine.config, options);
+    timeline->commit();
+    return timeline;
+  };
+  (void)record(1'000'000);
+  const Slices whole = read_timeline(file);
+  EXPECT_FALSE(whole.note);
+  const auto& path = whole.tracks.at(path_track);
+  const auto length = static_cast<std::int64_t>(path.size());
+  const std::int64_t of_nodes = whole.events - length;
+  ASSERT_GT(length, 10);
+  for (const std::int64_t limit : {std::int64_t{1}, std::int64_t{10}, length - 1, length, of_nodes - 1}) {
+    const auto timeline = record(limit);
+    Timeline nodes_only(directory.path() / "nodes.json", {.most_events = limit});
+    (void)watched(machine.log, machine.config, nodes_only);
+    const Slices slices = read_timeline(file);
+    const std::int64_t shown = std::min(limit, length);
+    EXPECT_EQ(slices.events, timeline->events());
+    EXPECT_EQ(slices.events, std::min(limit, of_nodes) + shown);
+    EXPECT_TRUE(std::equal(path.begin(), path.begin() + shown, slices.tracks.at(path_track).begin(),
+                           slices.tracks.at(path_track).end()));
+    EXPECT_EQ(timeline->cut_at(), nodes_only.cut_at());
+    EXPECT_EQ(timeline->path_cut_at(),
+              limit < length ? std::optional(path[static_cast<std::size_t>(shown) - 1].first) : std::nullopt);
+    EXPECT_EQ(slices.note, timeline->cut_at() || timeline->path_cut_at());
+  }
+}
+
 TEST(Timelines, KeepToTheirWindow) {
   const test::TemporaryDirectory directory;
   const Machine machine(7);
