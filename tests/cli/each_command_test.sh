@@ -19,7 +19,8 @@ marti() {
 }
 small=(--set scene.source=tetra:3 --set image.width=16 --set image.height=12)
 
-marti run -- "$source/configs/marti.toml" "${small[@]}" --set record.timeline=true --set record.heat_maps=true -o run
+marti run -- "$source/configs/marti.toml" "${small[@]}" --set record.timeline=true --set record.heat_maps=true \
+  --set record.critical_path=true -o run
 marti run -- "$source/configs/pipeline.toml" "${small[@]}" -o other
 marti run -- "$source/configs/space.toml" "${small[@]}" --json
 marti run -- "$source/configs/marti.toml" "${small[@]}" --within 10%
@@ -27,6 +28,7 @@ marti compare -- run other
 marti trace -- "$source/configs/marti.toml" "${small[@]}" --set machine.nodes=2 -o traces
 marti sweep -- "$source/configs/sweep-small.toml" "${small[@]}" -o sweep
 marti sweep -- "$source/configs/sweep-small.toml" "${small[@]}" -o sweep --plan
+marti report -- sweep:3
 marti report -- run
 marti report -- sweep
 marti study operations -- "${small[@]}"
@@ -47,6 +49,7 @@ marti scene list --
 marti scene info -- tetra:3
 marti scene export -- tetra:3 tetra.glb
 marti config --
+marti figures --
 marti completion bash --
 marti completion zsh --
 marti man --
