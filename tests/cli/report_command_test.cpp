@@ -287,10 +287,12 @@ TEST_F(ReportCommand, ReportsAPointOfASweepAsARun) {
   for (const json& row : data["charts"][0]["spec"]["data"]["values"]) {
     shown += row["ps"].get<std::int64_t>();
   }
-  const Outcome rows = marti("sweep " + quoted(place("sweep.toml")) + " -o " + quoted(sweep) + " --json 2> /dev/null");
+  const Outcome rows =
+      marti("sweep " + quoted(place("sweep.toml")) + " -o " + quoted(sweep) + " --json 2> /dev/null");
   const json point = json::parse(rows.output)["rows"][3];
   EXPECT_EQ(shown, point["end"].get<std::int64_t>() * point["nodes"].get<std::int64_t>());
-  expect_refused("report " + quoted(fs::path(sweep.string() + ":99")), "there is no such point; the sweep has 24");
+  expect_refused("report " + quoted(fs::path(sweep.string() + ":99")),
+                 "there is no such point; the sweep has 24");
 }
 
 TEST_F(ReportCommand, EscapesWhatASceneIsCalled) {
