@@ -10,8 +10,8 @@
 
 namespace marti::studies {
 
-/// More timed points than this are not looked at: each takes some 30 KiB.
-inline constexpr std::size_t most_limited_points = 20'000;
+/// Nothing is said of sweeps with more timed points: each takes about a millisecond and some 30 KiB.
+inline constexpr std::size_t most_limited_points = 4'000;
 
 class StoredLimits {
  public:
