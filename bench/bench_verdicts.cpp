@@ -172,7 +172,7 @@ void score_sweep(bench::Report& report, const std::string& file, const std::stri
   order.resize((order.size() + every - 1) / every);
   for (const std::size_t i : order) {
     const WhatHelps what = sweep.measure(i, sweep.prices().value_or(studies::Prices{}));
-    const studies::Limit limit = studies::find_limit(sweep.machine(i), sweep.result(i)).limit;
+    const studies::Limit limit = studies::find_limit(sweep.machine(i), sweep.result(i));
     const Help* const named = find(what, predicted[i].best());
     const std::size_t right = rule.right;
     old_rule.add(what, best_advised(limit, what, false), false);
@@ -225,7 +225,7 @@ void score_random(bench::Report& report, std::size_t machines) {
     }
     const WhatHelps what =
         studies::what_helps(config, std::nullopt, machine, result, {made.log, nullptr, {}, {}});
-    old_rule.add(what, best_advised(studies::find_limit(machine, result).limit, what, false), false);
+    old_rule.add(what, best_advised(studies::find_limit(machine, result), what, false), false);
     const std::vector<const Help*> best = studies::best_helps(what);
     if (!best.empty()) {
       std::vector<std::string> followed = assignments;

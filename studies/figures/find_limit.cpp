@@ -1,12 +1,9 @@
 #include "studies/figures/find_limit.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <numeric>
 
-#include "processors/node/memory_system.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/figures/flow_figures.h"
 
@@ -18,60 +15,6 @@ namespace {
 
 // Waits for a part that is always busy are named if they take at least this share of the nodes' time.
 constexpr double notable_share = 0.1;
-
-// What the nodes do in this part of their time.
-std::string_view activity_of(Limit limit) {
-  switch (limit) {
-    case Limit::memory_latency:
-      return "on transfers and bank accesses that meet no queue";
-    case Limit::dispatch:
-      return "waiting for the host";
-    case Limit::start_up:
-      return "waiting for the initial tree";
-    case Limit::lock:
-      return "waiting for branches that others split";
-    case Limit::imbalance:
-      return "idle";
-    case Limit::write_buffer:
-      return "waiting for room in their write buffers";
-    case Limit::slowest_part:
-    case Limit::queues:
-    case Limit::messages:
-      return "waiting for rays and for room in queues";
-    case Limit::nothing:
-    case Limit::interconnect:
-    case Limit::bank:
-    case Limit::compute:
-      break;
-  }
-  return "computing";
-}
-
-double busy_percent(const processors::MachineConfig& machine, const processors::MachineResult& result,
-                    std::string_view utilisation) {
-  return 100.0 * figure_of(machine, result, utilisation).value_or(0.0);
-}
-
-std::string describe(Limit limit, double part, const processors::MachineConfig& machine,
-                     const processors::MachineResult& result) {
-  const double percent = 100.0 * part;
-  if (limit == Limit::interconnect) {
-    return fmt::format("nodes spend {:.1f} % of their time waiting for the {}, which is {:.1f} % busy",
-                       percent, interconnect_name(machine),
-                       busy_percent(machine, result, "interconnect_utilisation"));
-  }
-  if (limit == Limit::bank) {
-    const bool distributed = machine.placement == processors::Placement::distributed;
-    return fmt::format(
-        "nodes spend {:.1f} % of their time waiting for {}, of which the busiest is {:.1f} % busy", percent,
-        distributed ? "each other's memories" : "banks", busy_percent(machine, result, "bank_utilisation"));
-  }
-  std::string text = fmt::format("nodes spend {:.1f} % of their time {}", percent, activity_of(limit));
-  if (limit == Limit::imbalance && machine.scheme == processors::Scheme::image) {
-    text += fmt::format(", with {} packet(s) for {} nodes", result.packets, result.nodes.size());
-  }
-  return text;
-}
 
 }  // namespace
 
@@ -91,9 +34,9 @@ std::string interconnect_name(const processors::MachineConfig& machine) {
   return "bus";
 }
 
-Finding find_limit(const processors::MachineConfig& machine, const processors::MachineResult& result) {
+Limit find_limit(const processors::MachineConfig& machine, const processors::MachineResult& result) {
   if (result.end == 0) {
-    return {Limit::nothing, 0.0, "nothing: the frame takes no time on this machine"};
+    return Limit::nothing;  // the frame takes no time
   }
   const processors::TimeDivision time = result.time();
   const auto part = [&](std::initializer_list<Activity> parts) {
@@ -122,9 +65,6 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
   const auto* const largest = std::max_element(
       candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   const double all = static_cast<double>(result.end) * static_cast<double>(result.nodes.size());
-  Finding finding;
-  finding.limit = largest->first;
-  finding.share = largest->second / all;
   const double flow = waits.slowest + waits.queues + waits.messages;
   if (machine.scheme != processors::Scheme::image && flow >= notable_share * all) {
     // A resource that is always busy bounds the frame even if the nodes spend more time on something else.
@@ -132,15 +72,16 @@ Finding find_limit(const processors::MachineConfig& machine, const processors::M
     // resource.
     const Bottleneck bottleneck = bottleneck_of(machine, result);
     if (figure_of(machine, result, "interconnect_utilisation").value_or(0.0) >= full) {
-      finding = {Limit::interconnect, part({Activity::interconnect_wait}) / all, ""};
-    } else if (bottleneck != Bottleneck::none) {
-      finding = {bottleneck == Bottleneck::host ? Limit::dispatch : Limit::messages, flow / all, ""};
-    } else if (waits.slowest >= notable_share * all) {
-      finding = {Limit::slowest_part, waits.slowest / all, ""};
+      return Limit::interconnect;
+    }
+    if (bottleneck != Bottleneck::none) {
+      return bottleneck == Bottleneck::host ? Limit::dispatch : Limit::messages;
+    }
+    if (waits.slowest >= notable_share * all) {
+      return Limit::slowest_part;
     }
   }
-  finding.sentence = describe(finding.limit, finding.share, machine, result);
-  return finding;
+  return largest->first;
 }
 
 std::string_view name_of(Limit limit) {

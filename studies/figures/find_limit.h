@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "processors/replay/replay.h"
 
@@ -28,14 +29,8 @@ enum class Limit {
 };
 
 /// Where most of the nodes' time goes. It does not say what would help: studies/helps measures that.
-struct Finding {
-  Limit limit = Limit::nothing;
-  double share = 0.0;    ///< of all nodes' time
-  std::string sentence;  ///< for people; names the figure it rests on
-};
-
-[[nodiscard]] Finding find_limit(const processors::MachineConfig& machine,
-                                 const processors::MachineResult& result);
+[[nodiscard]] Limit find_limit(const processors::MachineConfig& machine,
+                               const processors::MachineResult& result);
 
 /// The name of a limit in results for programs.
 [[nodiscard]] std::string_view name_of(Limit limit);

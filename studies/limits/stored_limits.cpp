@@ -60,6 +60,7 @@ StoredLimits::StoredLimits(const SweepReader& sweep, const std::optional<Prices>
   const sim::Schema schema = sweep_schema();
   DifferingKeys differing;
   std::vector<LimitPoint> points;
+  std::map<std::int64_t, std::optional<PointFigures>> one_node;  // by the id of a base machine
   for (const StoredPoint& point : sweep.points()) {
     const std::optional<SweepRow> row = sweep.read_result(point.machine);
     if (!row || count_of(row->counters, "end").value_or(0) <= 0) {
@@ -79,10 +80,15 @@ StoredLimits::StoredLimits(const SweepReader& sweep, const std::optional<Prices>
     }
     differing.add(settings);
     places_.emplace(point.ordinal, points.size() - 1);
-    const std::optional<SweepRow> base = sweep.read_result(point.base);
-    if (base && count_of(base->counters, "nodes") == 1) {
-      points.back().one_node = point_figures(base->counters);
+    // Many points have one base.
+    const auto [base, is_new] = one_node.try_emplace(point.base);
+    if (is_new) {
+      const std::optional<SweepRow> result = sweep.read_result(point.base);
+      if (result && count_of(result->counters, "nodes") == 1) {
+        base->second = point_figures(result->counters);
+      }
     }
+    points.back().one_node = base->second;
   }
   limits_.emplace(differing.keys(), std::move(points), prices);
 }

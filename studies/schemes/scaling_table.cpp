@@ -18,7 +18,7 @@ ScalingPoint point_of(const NamedMachine& machine, const processors::MachineResu
   point.nodes = machine.config.all_nodes();
   point.end = result.end;
   point.one_node_end = *count_of(one_node, "end");
-  point.limit = find_limit(machine.config, result).limit;
+  point.limit = find_limit(machine.config, result);
   const Counts counts = counts_of(machine.config, result);
   const auto figure = [&](std::string_view name) { return figure_of({&counts, &one_node}, name); };
   point.speed_up = figure("speed_up");
