@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <span>
 #include <vector>
 
 #include "accel/ray.h"
@@ -71,6 +72,14 @@ class RowRecorder {
   void shade(std::uint32_t material) { put(make_word(Step::shade, material)); }
   void light(std::uint32_t light) { put(make_word(Step::light, light)); }
   void texel(std::uint32_t texture, std::uint32_t texel) { put(make_word(Step::texel, texture), texel); }
+
+  /// The words of a pixel that was recorded before.
+  void copy(std::span<const std::uint32_t> words) {
+    while (static_cast<std::size_t>(end_ - next_) < words.size()) {
+      grow();
+    }
+    next_ = std::copy(words.begin(), words.end(), next_);
+  }
 
   /// Ends the row and copies it out.
   void end_row(LogRow& row) {

@@ -36,6 +36,14 @@ void check_options(const RenderOptions& options) {
     throw sim::UserError("the render's voxel_cut is " + std::to_string(options.voxel_cut) +
                          "; it must be finite and not below 0");
   }
+  sim::ensure(options.only == nullptr ||
+                  (options.only->width() == options.width && options.only->height() == options.height),
+              "render: the set of pixels is of another image");
+  const Frame* const before = options.before;
+  sim::ensure(before == nullptr ||
+                  (options.only != nullptr && before->image.width == options.width &&
+                   before->image.height == options.height && (before->log != nullptr) == options.record),
+              "render: the frame that is continued is another one");
   if (options.floats && options.voxel_cut > 0.0) {
     throw sim::UserError("the voxel cut averages in doubles; it cannot be rendered in floats");
   }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "processors/program/image.h"
+#include "processors/program/pixel_set.h"
 #include "processors/program/work_log.h"
 #include "scenes/scene.h"
 
@@ -22,6 +23,8 @@ inline constexpr std::uint32_t max_ray_depth = 64;
 
 /// The largest RenderOptions::samples.
 inline constexpr std::uint32_t max_samples = 1024;
+
+struct Frame;
 
 struct RenderOptions {
   std::uint32_t width = 512;   ///< pixels, 1 to 32768
@@ -48,6 +51,12 @@ struct RenderOptions {
   /// where no ray meets a primitive twice; image and log are the same then.
   bool keep_mailboxes = true;
   bool record = false;  ///< also make the work log
+  /// The pixels that are traced; null for all. The others are those of `before`, or else black and without
+  /// words in the log. Must be of the image's size.
+  const PixelSet* only = nullptr;
+  /// A rendering of other pixels of this image, by the same options, which becomes part of the frame: its
+  /// pixels outside `only`, its rays and its hashes. Pixels of `only` must not be in it. Null: there is none.
+  const Frame* before = nullptr;
 };
 
 /// Rays of each kind, in the order of RayKind.

@@ -48,6 +48,16 @@ void render_rows(const scenes::Scene& scene, const Structure& structure, const R
     }
     glm::vec3* pixels = frame.image.pixels.data() + std::size_t{y} * options.width;
     for (std::uint32_t x = 0; x < options.width; ++x) {
+      if (options.only != nullptr && !options.only->has(x, y)) {
+        worker.recorder.begin_pixel();
+        if (options.before != nullptr) {
+          pixels[x] = options.before->image.at(x, y);
+          if constexpr (recording) {
+            worker.recorder.copy(options.before->log->pixel(x, y));
+          }
+        }
+        continue;
+      }
       const Vec3<Real> color = tracer.trace(x, y);
       pixels[x] = {static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)};
     }
@@ -79,6 +89,10 @@ void render_rows(const scenes::Scene& scene, const Structure& structure, const R
   for (const Worker<Recorder>& worker : workers) {
     frame.rays += worker.rays;
     frame.hit_hash += worker.hit_hash;
+  }
+  if (options.before != nullptr) {
+    frame.rays += options.before->rays;
+    frame.hit_hash += options.before->hit_hash;
   }
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "processors/cost/accounting.h"
+#include "sim/mix.h"
 #include "sim/time.h"
 
 namespace marti::processors {
@@ -31,12 +32,16 @@ class PacketSample {
   [[nodiscard]] bool has(std::uint64_t packet) const { return is_chosen_[packet]; }
 
   /// Calls use(packet), in ascending order, for each packet that a node warms its caches with before packet
-  /// `next`: had every packet been handed out, about every `nodes`-th would have been the node's. `last` is
-  /// one past the node's previous packet, 0 when there is none.
+  /// `next`: had every packet been handed out, the node would have had one in every round of `nodes` packets.
+  /// Which one of a round is drawn at random, but always alike: nodes that take packets of different lengths
+  /// as they fall idle soon come in any order, and packets at equal distances would lie in the same columns of
+  /// the image, which no node meets. `last` is one past the node's previous packet, 0 when there is none.
   template <class Use>
   void for_each_warmed(std::uint64_t last, std::uint64_t next, std::uint64_t nodes, const Use& use) const {
     for (std::uint64_t back = std::min((next - last) / nodes, warm_up_); back > 0; --back) {
-      if (const std::uint64_t packet = next - back * nodes; !is_chosen_[packet]) {
+      const std::uint64_t later = next - back * nodes + sim::mix(next ^ sim::mix(back)) % nodes;
+      const std::uint64_t packet = std::clamp(later - std::min(later, nodes / 2), last, next - 1);
+      if (!is_chosen_[packet]) {
         use(packet);
       }
     }

@@ -30,11 +30,10 @@ StudyOutput simulator_error(const ErrorConfig& config) {
   const std::vector<MethodErrors> errors = errors_of(study);
   StudyOutput part;
   part.tables = {method_table(study, errors), figure_table(study, errors), case_table(study),
-                 level_table(study)};
-  part.host_tables = {time_table(study, errors), fastest_table(study, errors), measured_table(study, errors)};
-  part.report = fmt::format("Simulator: {} machines, {} x {} pixels\n\n{}\n{}\n", study.cases.size(),
-                            config.frame.render.width, config.frame.render.height, text_of(part.tables[0]),
-                            text_of(part.tables[3]));
+                 level_table(study), measured_table(study)};
+  part.host_tables = {time_table(study, errors), fastest_table(study, errors)};
+  part.report = fmt::format("Simulator: {} machines on {} frames\n\n{}\n{}\n", study.cases.size(),
+                            study.cases.back().frame + 1, text_of(part.tables[0]), text_of(part.tables[3]));
   part.host_report = fmt::format("Simulator: run time, {} repeats\n\n{}\n{}\n", config.repeats,
                                  text_of(part.host_tables[0]), text_of(part.host_tables[1]));
   return part;

@@ -82,6 +82,8 @@ void declare_error_keys(sim::Schema& schema) {
   schema.add(std::move(families));
   schema.texts("error.scenes", {"gears:2", "tetra:6", "teapot:4", "teapot:12", "large"},
                "scenes whose frames are timed");
+  schema.integers("error.sides", {512, 1024}, {1, 32768}, "pixels",
+                  "sides of the square images that are timed, in the place of image.width and image.height");
   schema.integers("error.nodes", {1, 4, 16, 64, 256}, {1, 65536}, "nodes",
                   "nodes of a machine, in the place of machine.nodes; 1 must be among them");
   sim::Key sizes;
@@ -149,6 +151,10 @@ ErrorConfig read_error(sim::Config& config) {
   error.scenes = config.texts("error.scenes");
   if (error.scenes.empty()) {
     config.fail("error.scenes", "must name a scene");
+  }
+  error.sides = ascending<std::uint32_t>(config.values("error.sides"));
+  if (error.sides.empty()) {
+    config.fail("error.sides", "must name a side");
   }
   error.nodes = ascending<std::uint32_t>(config.values("error.nodes"));
   if (error.nodes.empty() || error.nodes.front() != 1) {

@@ -22,6 +22,7 @@ struct ErrorConfig {
   RenderingErrorOptions rendering;
   std::vector<std::string> scenes;    ///< at least one
   processors::MachineConfig machine;  ///< its nodes and its cache are each of these in turn
+  std::vector<std::uint32_t> sides;   ///< of the square images, pixels; ascending, each once
   std::vector<std::uint32_t> nodes;   ///< ascending, each once; the first is 1
   std::vector<std::uint64_t> caches;  ///< bytes of the unified cache; ascending, each once
   std::uint32_t repeats = 3;          ///< of every measurement of run time

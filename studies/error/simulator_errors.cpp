@@ -13,6 +13,7 @@ struct Answer {
   std::size_t number = 0;  // of the case
   double error = 0.0;
   double half_width = 0.0;
+  std::size_t load_class = 0;  // by the method's own estimate
   [[nodiscard]] double excess() const { return std::max(0.0, std::abs(error) - half_width); }
 };
 
@@ -25,19 +26,18 @@ std::vector<Answer> answers_of(const SimulatorStudy& study, std::size_t method, 
     }
     if (const std::optional<Estimate>& estimate = study.estimates[method][number]) {
       answers.push_back({number, error_of(figure, estimate->value[figure], study.truth[number].value[figure]),
-                         estimate->half_width[figure]});
+                         estimate->half_width[figure], load_class_of(estimate->value[Figure::use])});
     }
   }
   return answers;
 }
 
-// The allowance by the answers of one class of nodes, without those of scene `without`.
+// The allowance by the answers of one class of load, without those of scene `without`.
 std::optional<double> allowance_of(const SimulatorStudy& study, const std::vector<Answer>& answers,
-                                   std::size_t node_class, std::optional<std::size_t> without) {
+                                   std::size_t load_class, std::optional<std::size_t> without) {
   std::vector<double> excesses;
   for (const Answer& answer : answers) {
-    const ErrorCase& one = study.cases[answer.number];
-    if (node_class_of(one.nodes) == node_class && one.scene != without) {
+    if (answer.load_class == load_class && study.cases[answer.number].scene != without) {
       excesses.push_back(answer.excess());
     }
   }
@@ -52,9 +52,7 @@ std::optional<double> cover_widened(const SimulatorStudy& study, const std::vect
   std::size_t covered = 0;
   for (const Answer& answer : answers) {
     const ErrorCase& one = study.cases[answer.number];
-    const std::optional<std::size_t> node_class = node_class_of(one.nodes);
-    const std::optional<double> allowance =
-        node_class ? allowance_of(study, answers, *node_class, one.scene) : std::nullopt;
+    const std::optional<double> allowance = allowance_of(study, answers, answer.load_class, one.scene);
     if (allowance) {
       ++asked;
       covered += answer.excess() <= *allowance ? 1 : 0;
@@ -86,33 +84,24 @@ FigureErrors figure_errors(const SimulatorStudy& study, std::size_t method, Figu
     result.covered = static_cast<double>(covered) / static_cast<double>(stated);
   }
   result.covered_widened = cover_widened(study, answers);
-  for (std::size_t i = 0; i < node_classes.size(); ++i) {
+  for (std::size_t i = 0; i < load_classes.size(); ++i) {
     result.allowance[i] = allowance_of(study, answers, i, std::nullopt);
-    double sum = 0.0;
-    double count = 0.0;
-    for (const Answer& answer : answers) {
-      if (node_class_of(study.cases[answer.number].nodes) == i) {
-        sum += answer.half_width;
-        count += 1.0;
-      }
-    }
-    result.mean_half_width[i] = count > 0.0 ? sum / count : 0.0;
   }
   return result;
 }
 
 void add_ranks(const SimulatorStudy& study, std::size_t method, MethodErrors& errors) {
-  const std::size_t scenes = study.cases.back().scene + 1;
+  const std::size_t frames = study.cases.back().frame + 1;
   double taus = 0.0;
   double ranked = 0.0;
   errors.least_tau = std::numeric_limits<double>::infinity();
-  for (std::size_t scene = 0; scene < scenes; ++scene) {
+  for (std::size_t frame = 0; frame < frames; ++frame) {
     std::vector<double> truth;
     std::vector<double> found;
     std::vector<double> true_power;
     std::vector<double> found_power;
     for (std::size_t number = 0; number < study.cases.size(); ++number) {
-      if (study.cases[number].scene != scene) {
+      if (study.cases[number].frame != frame) {
         continue;
       }
       const MachineFigures& exact = study.truth[number].value;
@@ -154,6 +143,35 @@ std::vector<MethodErrors> errors_of(const SimulatorStudy& study) {
     add_ranks(study, method, errors);
   }
   return all;
+}
+
+std::vector<MeasuredError> measured_errors_of(const SimulatorStudy& study) {
+  std::array<std::vector<Answer>, figure_count> answers;
+  for (std::size_t i = 0; i < figure_count; ++i) {
+    for (std::size_t method = 0; method < simulator_methods().size(); ++method) {
+      if (simulator_methods()[method].kind == MethodKind::sampled) {
+        const std::vector<Answer> more = answers_of(study, method, static_cast<Figure>(i));
+        answers[i].insert(answers[i].end(), more.begin(), more.end());
+      }
+    }
+  }
+  std::vector<MeasuredError> errors;
+  for (std::size_t load = 0; load < load_classes.size(); ++load) {
+    MeasuredError error{load_classes[load], 0, 1.0, {}};
+    for (std::size_t i = 0; i < figure_count; ++i) {
+      std::vector<Answer> of_class = answers[i];
+      std::erase_if(of_class, [&](const Answer& answer) { return answer.load_class != load; });
+      if (const std::optional<double> allowance = allowance_of(study, of_class, load, std::nullopt)) {
+        error.allowance[static_cast<Figure>(i)] = *allowance;
+        error.covered = std::min(error.covered, cover_widened(study, of_class).value_or(0.0));
+        error.cases = std::max(error.cases, of_class.size());
+      }
+    }
+    if (error.cases > 0) {
+      errors.push_back(error);
+    }
+  }
+  return errors;
 }
 
 }  // namespace marti::studies

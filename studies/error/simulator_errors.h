@@ -22,22 +22,25 @@ struct FigureErrors {
   /// What a half-width must be widened by, for each class, measured on all scenes: the conformal
   /// stated_confidence quantile of the amounts by which errors exceed the method's own half-widths.
   /// std::nullopt without cases.
-  std::array<std::optional<double>, node_classes.size()> allowance;
-  std::array<double, node_classes.size()> mean_half_width{};  ///< the method's own
+  std::array<std::optional<double>, load_classes.size()> allowance;
 };
 
 struct MethodErrors {
   bool any = false;  ///< there is an answer to a case
   std::array<FigureErrors, figure_count> figures;
-  double tau = 0.0;           ///< Kendall's, of frame times; mean over scenes
-  double least_tau = 0.0;     ///< of all scenes
-  double regret = 0.0;        ///< of choosing the shortest frame; that of the worst scene
-  double power_regret = 0.0;  ///< of choosing the most speed-up times efficiency; that of the worst scene
+  double tau = 0.0;           ///< Kendall's, of frame times; mean over frames
+  double least_tau = 0.0;     ///< of all frames
+  double regret = 0.0;        ///< of choosing the shortest frame time; that of the worst frame
+  double power_regret = 0.0;  ///< of choosing the most speed-up times efficiency; that of the worst frame
 };
 
 /// One for each of simulator_methods(). A machine that a method has no answer for keeps its exact time where
 /// machines are ranked. Speed-up times efficiency is what D. L. Eager, J. Zahorjan and E. D. Lazowska choose
 /// a number of nodes by ("Speedup versus efficiency in parallel systems", IEEE Trans. Computers 38(3), 1989).
 [[nodiscard]] std::vector<MethodErrors> errors_of(const SimulatorStudy& study);
+
+/// What `marti run --within` rests on: the errors of samples of all sizes together. Classes of load that no
+/// case is of are missing.
+[[nodiscard]] std::vector<MeasuredError> measured_errors_of(const SimulatorStudy& study);
 
 }  // namespace marti::studies

@@ -3,11 +3,14 @@
 #include <algorithm>
 
 #include "memory/cache_config.h"
+#include "sim/mix.h"
 #include "sim/units.h"
 #include "studies/estimate/simulator_analytic.h"
 #include "studies/host/cpu_time.h"
 #include "studies/paper/level_counts.h"
-#include "studies/run/functional_run.h"
+#include "studies/estimate/sampled_frame.h"
+#include "studies/estimate/simulator_sample.h"
+#include "studies/run/prepared_frame.h"
 
 namespace marti::studies {
 
@@ -15,14 +18,18 @@ namespace {
 
 std::vector<ErrorCase> cases_of(const ErrorConfig& config) {
   std::vector<ErrorCase> cases;
+  std::size_t frame = 0;
   for (std::size_t scene = 0; scene < config.scenes.size(); ++scene) {
-    for (const std::uint64_t cache : config.caches) {
-      for (const std::uint32_t nodes : config.nodes) {
-        cases.push_back({scene, nodes, cache,
-                         config.scenes[scene] + ", " + std::to_string(nodes) +
-                             (nodes == 1 ? " node, " : " nodes, ") +
-                             sim::print_size(static_cast<std::int64_t>(cache))});
+    for (const std::uint32_t side : config.sides) {
+      for (const std::uint64_t cache : config.caches) {
+        for (const std::uint32_t nodes : config.nodes) {
+          cases.push_back({scene, frame, nodes, cache,
+                           config.scenes[scene] + ", " + std::to_string(side) + " x " + std::to_string(side) +
+                               ", " + std::to_string(nodes) + (nodes == 1 ? " node, " : " nodes, ") +
+                               sim::print_size(static_cast<std::int64_t>(cache))});
+        }
       }
+      ++frame;
     }
   }
   return cases;
@@ -51,23 +58,37 @@ std::vector<LevelAccesses> levels_of(const std::string& scene, const processors:
   return levels;
 }
 
-// One scene's part of the study.
-class SceneStudy {
+// The seconds of the process that `work` takes.
+template <class Work>
+double seconds_of(const Work& work) {
+  const double begin = process_cpu_seconds();
+  work();
+  return process_cpu_seconds() - begin;
+}
+
+// One frame's part of the study.
+class FrameStudy {
  public:
-  SceneStudy(const ErrorConfig& config, const processors::WorkLog& log, std::size_t scene,
-             SimulatorStudy& study)
+  FrameStudy(const ErrorConfig& config, const FrameConfig& frame, std::size_t number, SimulatorStudy& study)
       : config_(config),
-        log_(log),
         study_(study),
-        first_(scene * config.nodes.size() * config.caches.size()) {}
+        first_(number * config.nodes.size() * config.caches.size()),
+        packets_(frame.render.width, frame.render.height, config.machine.packets) {
+    preparing_ = seconds_of([&] { prepared_.emplace(frame); });
+    tracing_ = seconds_of([&] { whole_ = prepared_->trace(); });
+  }
+
+  [[nodiscard]] const processors::WorkLog& log() const { return *whole_.log; }
 
   void run() {
     for (std::uint32_t repeat = 0; repeat < config_.repeats; ++repeat) {
       exact_seconds_.assign(config_.nodes.size() * config_.caches.size(), 0.0);
-      for (std::size_t node = 0; node < config_.nodes.size(); ++node) {
-        for (std::size_t cache = 0; cache < config_.caches.size(); ++cache) {
-          run_machine(cache, node, repeat);
+      for (std::size_t cache = 0; cache < config_.caches.size(); ++cache) {
+        for (std::size_t m = 0; m < simulator_methods().size(); ++m) {
+          run_method(m, cache, repeat);
         }
+      }
+      for (std::size_t node = 0; node < config_.nodes.size(); ++node) {
         run_all_caches(node, repeat);
       }
       count_interpolation(repeat);
@@ -83,26 +104,50 @@ class SceneStudy {
     return machine_with(config_.machine, config_.nodes[node], config_.caches[cache]);
   }
 
-  void run_machine(std::size_t cache, std::size_t node, std::uint32_t repeat) {
-    const processors::MachineConfig config = machine(cache, node);
-    const std::size_t number = index(cache, node);
-    const std::span<const Method> methods = simulator_methods();
-    for (std::size_t m = 0; m < methods.size(); ++m) {
-      if (!answers_alone(methods[m])) {
-        continue;
+  // Answers by one method for all numbers of nodes, the first of which is 1: an answer needs that of one node.
+  void run_method(std::size_t m, std::size_t cache, std::uint32_t repeat) {
+    const Method& method = simulator_methods()[m];
+    double one_node = 0.0;
+    for (std::size_t node = 0; node < config_.nodes.size(); ++node) {
+      const std::size_t number = index(cache, node);
+      if (method.kind == MethodKind::sampled) {
+        study_.cpu_seconds[m][repeat] += preparing_ + run_sample(m, cache, node);
+      } else if (answers_alone(method)) {
+        const double seconds = seconds_of(
+            [&] { study_.estimates[m][number] = estimate(method, log(), machine(cache, node)); });
+        const double all = preparing_ + tracing_ + seconds + one_node;
+        one_node = node == 0 ? seconds : one_node;
+        study_.cpu_seconds[m][repeat] += all;
+        if (method.kind == MethodKind::exact) {
+          exact_seconds_[number - first_] = all;
+          study_.truth[number] = *study_.estimates[m][number];
+        }
       }
-      // Every case draws samples of its own.
-      const std::uint64_t seed = config_.seed * 0x9e3779b97f4a7c15ULL + number * methods.size() + m;
-      const double begin = thread_cpu_seconds();
-      Estimate found = estimate(methods[m], log_, config, seed);
-      const double seconds = thread_cpu_seconds() - begin;
-      study_.cpu_seconds[m][repeat] += seconds;
-      if (methods[m].kind == MethodKind::exact) {
-        exact_seconds_[number - first_] = seconds;
-        study_.truth[number] = found;
-      }
-      study_.estimates[m][number] = found;
     }
+  }
+
+  // A sample of the frame, unless it would be all of it. Every case draws samples of its own.
+  double run_sample(std::size_t m, std::size_t cache, std::size_t node) {
+    const std::size_t number = index(cache, node);
+    const processors::MachineConfig config = machine(cache, node);
+    const std::uint64_t seed = sim::mix(config_.seed ^ sim::mix(number));
+    return seconds_of([&] {
+      const PacketWindows windows(packets_, window_length(config.nodes), simulator_methods()[m].strata, seed);
+      if (windows.has_all()) {
+        return;
+      }
+      const FrameConfig& frame = prepared_->config();
+      SampledFrame sampled(frame.render.width, frame.render.height,
+                           [&](const processors::PixelSet& only, const processors::Frame* before) {
+                             return prepared_->trace(&only, before);
+                           });
+      const processors::WorkLog& part = sampled.with(windows);
+      SampledRun run = estimate_by_sample(part, config, windows, sampled.lattice());
+      for (const processors::LogRow& row : part.rows) {
+        run.machine.words += row.words.size();
+      }
+      study_.estimates[m][number] = std::move(run.machine);
+    });
   }
 
   void run_all_caches(std::size_t node, std::uint32_t repeat) {
@@ -115,10 +160,11 @@ class SceneStudy {
       for (std::size_t cache = 0; cache < config_.caches.size(); ++cache) {
         shapes.push_back(memory::shape_of(machine(cache, node).cache.cache));
       }
-      const double begin = thread_cpu_seconds();
-      std::vector<Estimate> found =
-          estimate_analytically(log_, machine(0, node), shapes, {methods[m].walked_nodes});
-      study_.cpu_seconds[m][repeat] += thread_cpu_seconds() - begin;
+      std::vector<Estimate> found;
+      // One run answers for all caches.
+      study_.cpu_seconds[m][repeat] += preparing_ + tracing_ + seconds_of([&] {
+        found = estimate_analytically(log(), machine(0, node), shapes, {methods[m].walked_nodes});
+      });
       for (std::size_t cache = 0; cache < found.size(); ++cache) {
         found[cache].words = cache == 0 ? found[cache].words : 0;  // one pass for all caches
         study_.estimates[m][index(cache, node)] = found[cache];
@@ -188,20 +234,28 @@ class SceneStudy {
   }
 
   const ErrorConfig& config_;
-  const processors::WorkLog& log_;
   SimulatorStudy& study_;
   std::size_t first_;
-  std::vector<double> exact_seconds_;  // of each machine, in this repeat
+  processors::PacketList packets_;
+  std::optional<PreparedFrame> prepared_;
+  processors::Frame whole_;
+  double preparing_ = 0.0;             // seconds
+  double tracing_ = 0.0;               // seconds, of the whole frame
+  std::vector<double> exact_seconds_;  // of each machine's exact run, in this repeat
 };
 
-// Each machine's speed-up over one node with the same cache on the same scene, by the same method. Where that
-// has no answer for one node, the exact one is taken.
+// Each machine's speed-up over one node with the same cache on the same frame, by the same method. Where that
+// has no answer for one node, the exact one is taken. Samples have their speed-up already.
 void add_speed_ups(SimulatorStudy& study, std::size_t node_counts) {
   const auto one_node = [&](std::size_t number) { return number - number % node_counts; };
   for (std::size_t number = study.cases.size(); number-- > 0;) {
     add_speed_up(study.truth[number], study.truth[one_node(number)]);
   }
-  for (std::vector<std::optional<Estimate>>& estimates : study.estimates) {
+  for (std::size_t m = 0; m < simulator_methods().size(); ++m) {
+    std::vector<std::optional<Estimate>>& estimates = study.estimates[m];
+    if (simulator_methods()[m].kind == MethodKind::sampled) {
+      continue;
+    }
     for (std::size_t number = study.cases.size(); number-- > 0;) {
       if (estimates[number]) {
         const std::optional<Estimate>& one = estimates[one_node(number)];
@@ -220,14 +274,19 @@ SimulatorStudy study_simulator(const ErrorConfig& config) {
   const std::size_t methods = simulator_methods().size();
   study.estimates.assign(methods, std::vector<std::optional<Estimate>>(study.cases.size()));
   study.cpu_seconds.assign(methods, std::vector<double>(config.repeats, 0.0));
-  for (std::size_t scene = 0; scene < config.scenes.size(); ++scene) {
-    FrameConfig frame = config.frame;
-    frame.scene = config.scenes[scene];
-    const FunctionalRun run = run_functional(frame);
-    SceneStudy(config, *run.frame.log, scene, study).run();
-    if (frame.structure == "octree") {
-      const std::vector<LevelAccesses> levels = levels_of(config.scenes[scene], *run.frame.log);
-      study.levels.insert(study.levels.end(), levels.begin(), levels.end());
+  std::size_t number = 0;
+  for (const std::string& scene : config.scenes) {
+    for (const std::uint32_t side : config.sides) {
+      FrameConfig frame = config.frame;
+      frame.scene = scene;
+      frame.render.width = side;
+      frame.render.height = side;
+      FrameStudy part(config, frame, number++, study);
+      part.run();
+      if (frame.structure == "octree" && side == config.sides.front()) {
+        const std::vector<LevelAccesses> levels = levels_of(scene, part.log());
+        study.levels.insert(study.levels.end(), levels.begin(), levels.end());
+      }
     }
   }
   add_speed_ups(study, config.nodes.size());

@@ -12,12 +12,13 @@
 
 namespace marti::studies {
 
-/// A machine on a scene.
+/// A machine on a frame.
 struct ErrorCase {
   std::size_t scene = 0;  ///< index into ErrorConfig::scenes
+  std::size_t frame = 0;  ///< a scene in one of ErrorConfig::sides; scene by scene
   std::uint32_t nodes = 1;
   std::uint64_t cache = 0;  ///< bytes
-  std::string name;         ///< "teapot:12, 64 nodes, 16 KiB"
+  std::string name;         ///< "teapot:12, 512 x 512, 64 nodes, 16 KiB"
 };
 
 /// Accesses to the nodes of one level of a scene's octree beside what the formula of the paper of 1992
@@ -31,11 +32,12 @@ struct LevelAccesses {
 };
 
 struct SimulatorStudy {
-  std::vector<ErrorCase> cases;  ///< scene by scene, cache by cache, by ascending nodes
+  std::vector<ErrorCase> cases;  ///< frame by frame, cache by cache, by ascending nodes
   std::vector<Estimate> truth;   ///< of each case, by exact replay
   /// [method][case], methods as in simulator_methods(); std::nullopt where a method has no answer.
   std::vector<std::vector<std::optional<Estimate>>> estimates;
-  /// [method][repeat]: processor seconds for an answer to every case, by interpolation too.
+  /// [method][repeat]: processor seconds of runs that answer every case, from the scene to the figures of the
+  /// machine and of one node, by interpolation too.
   std::vector<std::vector<double>> cpu_seconds;
   std::vector<LevelAccesses> levels;  ///< of octrees
 };

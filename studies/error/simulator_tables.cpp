@@ -32,17 +32,6 @@ double median_of(const SimulatorStudy& study, std::size_t method) {
   return median_interval(study.cpu_seconds[method]).median;
 }
 
-// A cell without value where no interval could be tried on another scene.
-Cell least_covered(const MethodErrors& errors) {
-  std::optional<double> least;
-  for (const FigureErrors& figure : errors.figures) {
-    if (figure.covered_widened && (!least || *figure.covered_widened < *least)) {
-      least = figure.covered_widened;
-    }
-  }
-  return optional_cell(least);
-}
-
 const Column method_column = {"method", ColumnType::text, "", "way of getting the answer"};
 const Column knob_column = {"knob", ColumnType::text, "", "its setting"};
 
@@ -103,9 +92,10 @@ Table figure_table(const SimulatorStudy& study, std::span<const MethodErrors> er
        {"covered", ColumnType::real, "fraction", "share of cases in the method's own 95 % interval"},
        {"covered_widened", ColumnType::real, "fraction",
         "share in it when widened by what errors exceed it by on other scenes"},
-       {"allowance_16", ColumnType::real, "fraction", "by how much it is to be widened, up to 16 nodes"},
-       {"allowance_64", ColumnType::real, "fraction", "likewise, 17 to 64 nodes"},
-       {"allowance_256", ColumnType::real, "fraction", "likewise, 65 to 256 nodes"}});
+       {"allowance_30", ColumnType::real, "fraction",
+        "by how much it is to be widened, with an interconnect busy up to 30 % of the frame"},
+       {"allowance_70", ColumnType::real, "fraction", "likewise, up to 70 %"},
+       {"allowance_100", ColumnType::real, "fraction", "likewise, above"}});
   const std::span<const Method> methods = simulator_methods();
   for (std::size_t m = 0; m < methods.size(); ++m) {
     for (std::size_t figure = 0; errors[m].any && figure < figure_count; ++figure) {
@@ -190,11 +180,11 @@ Table time_table(const SimulatorStudy& study, std::span<const MethodErrors> erro
       {method_column,
        knob_column,
        {"figure", ColumnType::text, "", "whose error is meant"},
-       {"cpu", ColumnType::real, "s", "processor time for answers to all machines, median of the repeats"},
+       {"cpu", ColumnType::real, "s", "processor time for answers to all machines, tracing included, median of the repeats"},
        {"cpu_low", ColumnType::real, "s", "the least of the repeats"},
        {"cpu_high", ColumnType::real, "s", "the largest"},
        {"confidence", ColumnType::real, "fraction", "that the true median lies between them"},
-       {"share", ColumnType::real, "fraction", "processor time over that of exact replay"},
+       {"share", ColumnType::real, "fraction", "processor time over that of exact runs"},
        {"events", ColumnType::integer, "1", "events handled"},
        {"words", ColumnType::integer, "1", "words of the logs walked"},
        {"mean_abs", ColumnType::real, "fraction", "mean size of the errors"},
@@ -265,39 +255,26 @@ Table fastest_table(const SimulatorStudy& study, std::span<const MethodErrors> e
   return table;
 }
 
-Table measured_table(const SimulatorStudy& study, std::span<const MethodErrors> errors) {
+Table measured_table(const SimulatorStudy& study) {
   std::vector<Column> columns = {
       {"version", ColumnType::integer, "", "of the list of methods"},
-      {"number", ColumnType::integer, "", "of the method in that list"},
-      {"nodes_to", ColumnType::integer, "1", "machines of up to so many nodes, more than the class before"},
-      {"share", ColumnType::real, "fraction", "processor time over that of exact replay"},
+      {"use_to", ColumnType::real, "fraction",
+       "machines whose interconnect is busy up to this share of the frame, more than the class before"},
+      {"cases", ColumnType::integer, "1", "samples measured"},
       {"covered", ColumnType::real, "fraction",
-       "share of cases in intervals widened by what the other scenes say, of the figure of which it is "
-       "least"}};
+       "share of them in intervals widened by what the other scenes say, of the figure of which it is least"}};
   for (const std::string_view name : figure_names) {
     columns.push_back({std::string(name), ColumnType::real, "fraction",
-                       "half-width to add to the method's own, so that 95 % of errors are covered"});
-    columns.push_back({std::string(name) + "_own", ColumnType::real, "fraction",
-                       "the method's own half-width, mean over the machines measured"});
+                       "half-width to add to a sample's own, so that 95 % of errors are covered"});
   }
-  Table table("host_error_measured", "Measured errors that `marti run --within` rests on",
-              std::move(columns));
-  const std::span<const Method> methods = simulator_methods();
-  const double exact = median_of(study, 0);
-  for (std::size_t m = 0; m < methods.size(); ++m) {
-    for (std::size_t c = 0; c < node_classes.size(); ++c) {
-      if (!answers_alone(methods[m]) || !errors[m].any || !errors[m].figures[0].allowance[c]) {
-        continue;
-      }
-      std::vector<Cell> row = {std::int64_t{methods_version}, count_cell(m), count_cell(node_classes[c]),
-                               exact > 0.0 ? Cell(median_of(study, m) / exact) : Cell(),
-                               least_covered(errors[m])};
-      for (const FigureErrors& figure : errors[m].figures) {
-        row.push_back(optional_cell(figure.allowance[c]));
-        row.emplace_back(figure.mean_half_width[c]);
-      }
-      table.add_row(std::move(row));
+  Table table("error_measured", "Measured errors that `marti run --within` rests on", std::move(columns));
+  for (const MeasuredError& error : measured_errors_of(study)) {
+    std::vector<Cell> row = {std::int64_t{methods_version}, error.use_to, count_cell(error.cases),
+                             error.covered};
+    for (std::size_t i = 0; i < figure_count; ++i) {
+      row.emplace_back(error.allowance[static_cast<Figure>(i)]);
     }
+    table.add_row(std::move(row));
   }
   return table;
 }

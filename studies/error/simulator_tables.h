@@ -24,8 +24,8 @@ namespace marti::studies {
 [[nodiscard]] Table time_table(const SimulatorStudy& study, std::span<const MethodErrors> errors);
 /// "host_error_fastest": the fastest method for errors of 10, 3, 1, 0.3 and 0 %.
 [[nodiscard]] Table fastest_table(const SimulatorStudy& study, std::span<const MethodErrors> errors);
-/// "host_error_measured": the figures that `marti run --within` rests on
+/// "error_measured": the figures that `marti run --within` rests on
 /// (studies/estimate/measured_errors.h).
-[[nodiscard]] Table measured_table(const SimulatorStudy& study, std::span<const MethodErrors> errors);
+[[nodiscard]] Table measured_table(const SimulatorStudy& study);
 
 }  // namespace marti::studies

@@ -14,8 +14,8 @@ namespace marti::studies {
 
 namespace {
 
-constexpr std::size_t first_figure = 5;
-constexpr std::size_t column_count = first_figure + 2 * figure_count;
+constexpr std::size_t first_figure = 4;
+constexpr std::size_t column_count = first_figure + figure_count;
 
 [[noreturn]] void fail(const std::string& reason) {
   throw sim::InternalError("the table of measured errors: " + reason);
@@ -64,34 +64,29 @@ double number_of(std::string_view text) {
   return value;
 }
 
-std::uint32_t whole_number_of(std::string_view text) {
+std::size_t whole_number_of(std::string_view text) {
   const double value = number_of(text);
   if (value != std::floor(value) || value > 1e9) {
     fail("\"" + std::string(text) + "\" is no whole number");
   }
-  return static_cast<std::uint32_t>(value);
+  return static_cast<std::size_t>(value);
 }
 
 }  // namespace
 
-std::optional<std::size_t> node_class_of(std::uint32_t nodes) {
-  const auto* const found = std::lower_bound(node_classes.begin(), node_classes.end(), nodes);
-  if (found == node_classes.end()) {
-    return std::nullopt;
-  }
-  return static_cast<std::size_t>(found - node_classes.begin());
+std::size_t load_class_of(double use) {
+  const auto* const found = std::lower_bound(load_classes.begin(), load_classes.end(), use);
+  return std::min<std::size_t>(static_cast<std::size_t>(found - load_classes.begin()),
+                               load_classes.size() - 1);
 }
 
 std::vector<MeasuredError> parse_measured_errors(std::string_view csv) {
   const std::array<std::string_view, column_count> header = cells_of(take_line(csv));
-  constexpr std::array<std::string_view, first_figure> first = {"version", "number", "nodes_to", "share",
-                                                                "covered"};
+  constexpr std::array<std::string_view, first_figure> first = {"version", "use_to", "cases", "covered"};
   for (std::size_t i = 0; i < column_count; ++i) {
-    const std::string wanted = i < first_figure ? std::string(first[i])
-                                                : std::string(figure_names[(i - first_figure) / 2]) +
-                                                      ((i - first_figure) % 2 == 0 ? "" : "_own");
+    const std::string_view wanted = i < first_figure ? first[i] : figure_names[i - first_figure];
     if (header[i] != wanted) {
-      fail("a column \"" + std::string(header[i]) + "\" where \"" + wanted + "\" should be");
+      fail("a column \"" + std::string(header[i]) + "\" where \"" + std::string(wanted) + "\" should be");
     }
   }
   std::vector<MeasuredError> errors;
@@ -102,20 +97,19 @@ std::vector<MeasuredError> parse_measured_errors(std::string_view csv) {
            std::to_string(methods_version));
     }
     MeasuredError error;
-    error.method = whole_number_of(cells[1]);
-    error.nodes_to = whole_number_of(cells[2]);
-    error.share = number_of(cells[3]);
-    error.covered = number_of(cells[4]);
-    if (error.method >= simulator_methods().size() || !answers_alone(simulator_methods()[error.method]) ||
-        std::find(node_classes.begin(), node_classes.end(), error.nodes_to) == node_classes.end()) {
-      fail("a method or class of machines that is not known");
+    error.use_to = number_of(cells[1]);
+    error.cases = whole_number_of(cells[2]);
+    error.covered = number_of(cells[3]);
+    if (errors.size() == load_classes.size() || error.use_to != load_classes[errors.size()]) {
+      fail("a class of load that is not known, or not in its place");
     }
     for (std::size_t i = 0; i < figure_count; ++i) {
-      const auto figure = static_cast<Figure>(i);
-      error.allowance[figure] = number_of(cells[first_figure + 2 * i]);
-      error.own[figure] = number_of(cells[first_figure + 2 * i + 1]);
+      error.allowance[static_cast<Figure>(i)] = number_of(cells[first_figure + i]);
     }
     errors.push_back(error);
+  }
+  if (errors.size() != load_classes.size()) {
+    fail("classes of load are missing");
   }
   return errors;
 }

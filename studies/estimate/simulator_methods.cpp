@@ -13,7 +13,6 @@ namespace marti::studies {
 
 namespace {
 
-constexpr std::uint64_t full_warming = processors::PacketSample::all_before;
 constexpr std::uint32_t all_nodes = std::numeric_limits<std::uint32_t>::max();
 
 // No request is made, so no completion arrives.
@@ -33,10 +32,8 @@ sim::Ticks unloaded_miss(const processors::MachineConfig& machine) {
 
 std::vector<Method> make_methods() {
   std::vector<Method> methods = {{}};
-  for (const std::uint64_t warm_up : {std::uint64_t{0}, std::uint64_t{1}, full_warming}) {
-    for (const std::uint64_t one_in : {2, 4, 8, 16, 32}) {
-      methods.push_back({.kind = MethodKind::sampled, .one_in = one_in, .warm_up = warm_up});
-    }
+  for (const std::uint64_t strata : {8, 16, 32, 64}) {
+    methods.push_back({.kind = MethodKind::sampled, .strata = strata});
   }
   for (const std::uint32_t quantum : {1, 10, 100}) {
     methods.push_back({.kind = MethodKind::relaxed, .quantum = quantum});
@@ -76,10 +73,7 @@ std::string Method::knob() const {
     case MethodKind::exact:
       return "replay";
     case MethodKind::sampled:
-      return "1/" + std::to_string(one_in) + ", " +
-             (warm_up == full_warming ? "full warming"
-              : warm_up == 0          ? "cold"
-                                      : "one packet of warming");
+      return std::to_string(2 * strata) + " windows";
     case MethodKind::relaxed:
       return "quantum of " + std::to_string(quantum) + (quantum == 1 ? " miss" : " misses");
     case MethodKind::analytic:
@@ -105,7 +99,7 @@ void check_method(const Method& method, const processors::MachineConfig& machine
     case MethodKind::interpolated:
       break;
     case MethodKind::sampled:
-      processors::check_sampled(machine);
+      check_sample(machine);
       break;
     case MethodKind::relaxed:
       processors::check_relaxed(machine);
@@ -117,16 +111,15 @@ void check_method(const Method& method, const processors::MachineConfig& machine
 }
 
 Estimate estimate(const Method& method, const processors::WorkLog& log,
-                  const processors::MachineConfig& machine, std::uint64_t seed) {
+                  const processors::MachineConfig& machine) {
   sim::ensure(answers_alone(method), "a method that does not answer for one machine alone");
   switch (method.kind) {
-    case MethodKind::sampled:
-      return estimate_by_sample(log, machine, {method.one_in, method.warm_up, seed});
     case MethodKind::analytic: {
       check_analytic(machine);
       const memory::CacheShape shape = memory::shape_of(machine.cache.cache);
       return estimate_analytically(log, machine, {&shape, 1}, {method.walked_nodes})[0];
     }
+    case MethodKind::sampled:
     case MethodKind::interpolated:
     case MethodKind::exact:
     case MethodKind::relaxed:

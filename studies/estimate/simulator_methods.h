@@ -16,11 +16,11 @@ namespace marti::studies {
 
 /// Changes whenever a method answers differently or the list below is another: measured errors
 /// (measured_errors.h) are those of one version.
-inline constexpr int methods_version = 1;
+inline constexpr int methods_version = 2;
 
 enum class MethodKind : std::uint8_t {
   exact,         ///< replay of everything
-  sampled,       ///< a sample of packets (simulator_sample.h)
+  sampled,       ///< a sample of packets, of which alone the frame is traced (simulator_sample.h)
   relaxed,       ///< events out of order within a quantum (sim::Engine::relax)
   analytic,      ///< one pass and mean values (simulator_analytic.h)
   interpolated,  ///< between machines timed exactly (simulator_interpolation.h)
@@ -28,8 +28,7 @@ enum class MethodKind : std::uint8_t {
 
 struct Method {
   MethodKind kind = MethodKind::exact;
-  std::uint64_t one_in = 1;        ///< sampled
-  std::uint64_t warm_up = 0;       ///< sampled
+  std::uint64_t strata = 0;        ///< sampled
   std::uint32_t quantum = 0;       ///< relaxed: in units of the time of a read without contention
   std::uint32_t walked_nodes = 0;  ///< analytic
   bool all_caches = false;         ///< analytic: one pass for all sizes of caches
@@ -37,21 +36,22 @@ struct Method {
   Curve curve = Curve::linear;     ///< interpolated
 
   [[nodiscard]] std::string name() const;  ///< "sampled"
-  [[nodiscard]] std::string knob() const;  ///< "1/8, full warming"
+  [[nodiscard]] std::string knob() const;  ///< "16 windows"
 };
 
 /// All of them, the exact one first.
 [[nodiscard]] std::span<const Method> simulator_methods();
 
-/// Whether the method answers for a machine alone: not by interpolation, nor for many caches at once.
+/// Whether the method answers for a machine alone and from the log of the whole frame: not by interpolation,
+/// nor for many caches at once, nor from a sample.
 [[nodiscard]] constexpr bool answers_alone(const Method& method) {
-  return method.kind != MethodKind::interpolated && !method.all_caches;
+  return method.kind != MethodKind::interpolated && method.kind != MethodKind::sampled && !method.all_caches;
 }
 
-/// The estimate for one machine, without the speed-up, by a method that answers alone. `seed` is that of the
-/// random sample. Throws UserError for a machine that the method cannot answer for.
+/// The estimate for one machine, without the speed-up, by a method that answers alone. Throws UserError for a
+/// machine that the method cannot answer for.
 [[nodiscard]] Estimate estimate(const Method& method, const processors::WorkLog& log,
-                                const processors::MachineConfig& machine, std::uint64_t seed);
+                                const processors::MachineConfig& machine);
 
 /// Throws UserError with the reason when a method cannot answer for the machine.
 void check_method(const Method& method, const processors::MachineConfig& machine);

@@ -3,71 +3,52 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
+#include <numeric>
+#include <vector>
 
-#include "processors/passes/one_pass.h"
 #include "processors/replay/replay.h"
+#include "sim/key_error.h"
 #include "studies/estimate/error_metrics.h"
 #include "studies/estimate/packet_schedule.h"
 
 namespace marti::studies {
 
-std::vector<Stratum> draw_strata(std::uint64_t packets, std::uint64_t wanted, std::uint64_t seed) {
-  wanted = std::min(wanted, packets);
-  const std::uint64_t count = std::max<std::uint64_t>(1, wanted / 2);
-  std::mt19937_64 random(seed);
-  std::vector<Stratum> strata(count);
-  for (std::uint64_t i = 0; i < count; ++i) {
-    Stratum& stratum = strata[i];
-    stratum.first = packets * i / count;
-    stratum.end = packets * (i + 1) / count;
-    const std::uint64_t drawn = std::min(wanted * (i + 1) / count - wanted * i / count, stratum.size());
-    // Selection sampling (D. E. Knuth, The Art of Computer Programming 2, algorithm 3.4.2 S).
-    std::uint64_t left = drawn;
-    for (std::uint64_t packet = stratum.first; packet < stratum.end && left > 0; ++packet) {
-      if (random() % (stratum.end - packet) < left) {
-        stratum.chosen.push_back(packet);
-        --left;
-      }
-    }
-  }
-  return strata;
+namespace {
+
+constexpr std::uint64_t shortest_window = 16;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+std::size_t chosen_units(std::span<const Stratum> strata) {
+  return std::accumulate(
+      strata.begin(), strata.end(), std::size_t{0},
+      [](std::size_t sum, const Stratum& stratum) { return sum + stratum.chosen.size(); });
 }
 
-RatioEstimate ratio_estimate(std::span<const Stratum> strata, std::span<const std::uint64_t> known,
-                             std::span<const double> measured) {
-  double all_known = 0.0;
-  for (const std::uint64_t value : known) {
-    all_known += static_cast<double>(value);
-  }
-  // Sums over the strata of a mean times the stratum's size.
-  double sum_known = 0.0;
-  double sum_measured = 0.0;
+// The sum over all units that a sum over each stratum's chosen ones stands for.
+double expand(std::span<const Stratum> strata, std::span<const double> values) {
+  double sum = 0.0;
   std::size_t at = 0;
-  std::uint64_t chosen = 0;
   for (const Stratum& stratum : strata) {
     const double weight = static_cast<double>(stratum.size()) / static_cast<double>(stratum.chosen.size());
-    for (const std::uint64_t packet : stratum.chosen) {
-      sum_known += weight * static_cast<double>(known[packet]);
-      sum_measured += weight * measured[at++];
+    for (std::size_t i = 0; i < stratum.chosen.size(); ++i) {
+      sum += weight * values[at++];
     }
-    chosen += stratum.chosen.size();
   }
-  if (sum_known <= 0.0) {
-    return {sum_measured, chosen == known.size() ? 0.0 : std::numeric_limits<double>::infinity()};
-  }
-  const double ratio = sum_measured / sum_known;
-  RatioEstimate estimate;
-  estimate.total = ratio * all_known;
+  return sum;
+}
+
+// The variance of the estimated total of values - ratio * known.
+double variance_of(std::span<const Stratum> strata, std::span<const double> known,
+                   std::span<const double> measured, double ratio) {
   double variance = 0.0;
-  at = 0;
+  std::size_t at = 0;
   for (const Stratum& stratum : strata) {
     const auto n = static_cast<double>(stratum.chosen.size());
     const auto size = static_cast<double>(stratum.size());
     double sum = 0.0;
     double squares = 0.0;
-    for (const std::uint64_t packet : stratum.chosen) {
-      const double residue = measured[at++] - ratio * static_cast<double>(known[packet]);
+    for (std::size_t i = 0; i < stratum.chosen.size(); ++i, ++at) {
+      const double residue = measured[at] - ratio * known[at];
       sum += residue;
       squares += residue * residue;
     }
@@ -76,102 +57,172 @@ RatioEstimate ratio_estimate(std::span<const Stratum> strata, std::span<const st
       variance += size * size * (1.0 - n / size) * spread / n;
     }
   }
-  if (chosen == known.size()) {
-    estimate.total = sum_measured;
-  } else if (chosen <= strata.size() || estimate.total == 0.0) {
-    estimate.half_width = std::numeric_limits<double>::infinity();
-  } else {
-    estimate.half_width = student_95(chosen - strata.size()) * std::sqrt(variance) / estimate.total;
-  }
-  return estimate;
+  return variance;
 }
 
-namespace {
-
-// Words of the packets replayed, and roughly of those that warm the caches: with full warming all packets
-// before the last one, else `warm_up` packets before each.
-std::uint64_t words_walked(const processors::PacketSample& sample, std::span<const std::uint64_t> words,
-                           std::uint32_t nodes, std::uint64_t warm_up) {
-  std::uint64_t walked = 0;
-  for (const std::uint64_t packet : sample.chosen()) {
-    walked += words[packet];
-    if (warm_up != processors::PacketSample::all_before) {
-      sample.for_each_warmed(0, packet, nodes, [&](std::uint64_t before) { walked += words[before]; });
-    }
-  }
-  for (std::uint64_t packet = 0; packet < sample.chosen().back(); ++packet) {
-    const bool warms = warm_up == processors::PacketSample::all_before && !sample.has(packet);
-    walked += warms ? words[packet] : 0;
-  }
-  return walked;
-}
-
-}  // namespace
-
-Estimate estimate_by_sample(const processors::WorkLog& log, const processors::MachineConfig& machine,
-                            const SampleOptions& options) {
-  processors::check_sampled(machine);
-  const std::vector<std::uint64_t> words = processors::words_of_packets(log, machine.packets);
-  const std::uint64_t packets = words.size();
-  const std::uint64_t wanted = std::max((packets + options.one_in - 1) / options.one_in,
-                                        least_sampled_a_node * std::uint64_t{machine.all_nodes()});
-  const std::vector<Stratum> strata =
-      draw_strata(packets, std::max(wanted, std::min<std::uint64_t>(packets, 2)), options.seed);
-  std::vector<std::uint64_t> chosen;
-  for (const Stratum& stratum : strata) {
-    chosen.insert(chosen.end(), stratum.chosen.begin(), stratum.chosen.end());
-  }
-  const processors::PacketSample sample(chosen, packets, options.warm_up);
-  const processors::MachineResult result = processors::replay(log, machine, {.sample = &sample});
-
+// What the windows drawn took.
+struct WindowTotals {
   std::vector<double> times;
   std::vector<double> misses;
   std::vector<double> references;
-  Estimate estimate;
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    const processors::PacketFigures& figures = result.packet_figures[i];
-    times.push_back(static_cast<double>(figures.time));
-    misses.push_back(static_cast<double>(figures.misses));
-    references.push_back(static_cast<double>(figures.references));
+};
+
+WindowTotals totals_of_windows(const PacketWindows& windows,
+                               std::span<const processors::PacketFigures> packets) {
+  WindowTotals totals;
+  std::size_t at = 0;
+  for (const Stratum& stratum : windows.strata()) {
+    for (const std::uint64_t window : stratum.chosen) {
+      processors::PacketFigures sum;
+      for (std::uint64_t packet = windows.first(window); packet < windows.end(window); ++packet, ++at) {
+        sum.time = sim::add_ticks(sum.time, packets[at].time);
+        sum.misses += packets[at].misses;
+        sum.references += packets[at].references;
+      }
+      totals.times.push_back(static_cast<double>(sum.time));
+      totals.misses.push_back(static_cast<double>(sum.misses));
+      totals.references.push_back(static_cast<double>(sum.references));
+    }
   }
-  const RatioEstimate time = ratio_estimate(strata, words, times);
-  const RatioEstimate missed = ratio_estimate(strata, words, misses);
+  return totals;
+}
+
+// What is known of every packet, and of the windows drawn.
+struct KnownWork {
+  std::vector<std::uint64_t> words;  // of each packet
+  double all_words = 0.0;
+  std::vector<double> of_windows;
+};
+
+KnownWork known_work(const processors::WorkLog& log, const PacketWindows& windows,
+                     const PixelLattice& lattice) {
+  KnownWork known;
+  known.words = lattice.expected_words(log, windows.packets());
+  known.all_words = static_cast<double>(
+      std::accumulate(known.words.begin(), known.words.end(), std::uint64_t{0}));
+  for (const Stratum& stratum : windows.strata()) {
+    for (const std::uint64_t window : stratum.chosen) {
+      const auto first = known.words.begin() + static_cast<std::ptrdiff_t>(windows.first(window));
+      const auto end = known.words.begin() + static_cast<std::ptrdiff_t>(windows.end(window));
+      known.of_windows.push_back(static_cast<double>(std::accumulate(first, end, std::uint64_t{0})));
+    }
+  }
+  return known;
+}
+
+struct SampledMachine {
+  Estimate estimate;
+  std::vector<double> window_times;
+};
+
+SampledMachine sample_machine(const processors::WorkLog& log, const processors::MachineConfig& machine,
+                              const PacketWindows& windows, const KnownWork& known) {
+  const std::vector<std::uint64_t> chosen = windows.chosen();
+  const processors::PacketSample sample(chosen, windows.packets().size(),
+                                        processors::PacketSample::all_before);
+  const processors::MachineResult result = processors::replay(log, machine, {.sample = &sample});
+  SampledMachine sampled;
+  Estimate& estimate = sampled.estimate;
+  WindowTotals totals = totals_of_windows(windows, result.packet_figures);
   estimate.value = figures_of(machine, result);
   estimate.events = result.events;
-  estimate.words = words_walked(sample, words, machine.all_nodes(), options.warm_up);
-  estimate.references = ratio_estimate(strata, words, references).total;
-  if (chosen.size() == packets) {
-    return estimate;
+  estimate.references =
+      ratio_estimate(windows.strata(), known.of_windows, totals.references, known.all_words).total;
+  if (windows.has_all()) {
+    sampled.window_times = std::move(totals.times);
+    return sampled;
   }
+  const RatioEstimate time =
+      ratio_estimate(windows.strata(), known.of_windows, totals.times, known.all_words);
+  const RatioEstimate missed =
+      ratio_estimate(windows.strata(), known.of_windows, totals.misses, known.all_words);
 
-  // The time of packets that were not replayed is estimated from their words.
-  double all_words = 0.0;
-  for (const std::uint64_t count : words) {
-    all_words += static_cast<double>(count);
-  }
-  const double each_word = all_words > 0.0 ? time.total / all_words : 0.0;
-  std::vector<sim::Ticks> packet_times(packets);
-  for (std::uint64_t packet = 0; packet < packets; ++packet) {
-    packet_times[packet] = std::llround(each_word * static_cast<double>(words[packet]));
+  const double each_word = known.all_words > 0.0 ? time.total / known.all_words : 0.0;
+  std::vector<sim::Ticks> packet_times(known.words.size());
+  for (std::size_t packet = 0; packet < packet_times.size(); ++packet) {
+    packet_times[packet] = std::llround(each_word * static_cast<double>(known.words[packet]));
   }
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     packet_times[chosen[i]] = result.packet_figures[i].time;
   }
   auto end = static_cast<double>(schedule_packets(machine.host, machine.all_nodes(), packet_times));
+  // The frame cannot end before the links have carried all of its transfers: misses and pixels.
   const auto part =
       static_cast<double>(result.references().all_misses()) + static_cast<double>(result.pixels);
   const double whole = missed.total + static_cast<double>(log.width) * static_cast<double>(log.height);
-  // The frame cannot end before the links have carried all of its transfers.
   const double busy = estimate.value[Figure::use] * static_cast<double>(result.end) * whole / part;
+  estimate.half_width[Figure::end] =
+      busy > end ? std::max(time.half_width, missed.half_width) : time.half_width;
   end = std::max(end, busy);
   estimate.value[Figure::use] = end > 0.0 ? busy / end : 0.0;
   estimate.value[Figure::end] = end;
   estimate.value[Figure::misses] = missed.total;
-  estimate.half_width[Figure::end] = time.half_width;
   estimate.half_width[Figure::misses] = missed.half_width;
   estimate.half_width[Figure::use] =
       estimate.value[Figure::use] * std::max(time.half_width, missed.half_width);
+  sampled.window_times = std::move(totals.times);
+  return sampled;
+}
+
+}  // namespace
+
+RatioEstimate ratio_estimate(std::span<const Stratum> strata, std::span<const double> known,
+                             std::span<const double> measured, double all_known) {
+  const std::size_t chosen = chosen_units(strata);
+  const bool all = std::all_of(strata.begin(), strata.end(), [](const Stratum& stratum) {
+    return stratum.chosen.size() == stratum.size();
+  });
+  const double sum_known = expand(strata, known);
+  const double sum_measured = expand(strata, measured);
+  if (all) {
+    return {sum_measured, 0.0};
+  }
+  if (sum_known <= 0.0) {
+    return {sum_measured, infinite};
+  }
+  const double ratio = sum_measured / sum_known;
+  RatioEstimate estimate{ratio * all_known, infinite};
+  if (chosen > strata.size() && sum_measured > 0.0) {
+    estimate.half_width = student_95(chosen - strata.size()) *
+                          std::sqrt(variance_of(strata, known, measured, ratio)) / sum_measured;
+  }
   return estimate;
+}
+
+std::uint64_t window_length(std::uint32_t nodes) { return std::max<std::uint64_t>(nodes, shortest_window); }
+
+void check_sample(const processors::MachineConfig& machine) {
+  processors::check_sampled(machine);
+  if (machine.clusters > 1) {
+    throw sim::KeyError("machine.clusters", "errors of samples have been measured with one cluster only");
+  }
+  if (machine.placement != processors::Placement::shared) {
+    throw sim::KeyError("database.placement",
+                        "errors of samples have been measured with database.placement = \"shared\" only");
+  }
+}
+
+SampledRun estimate_by_sample(const processors::WorkLog& log, const processors::MachineConfig& machine,
+                              const PacketWindows& windows, const PixelLattice& lattice) {
+  check_sample(machine);
+  const KnownWork known = known_work(log, windows, lattice);
+  SampledMachine sampled = sample_machine(log, machine, windows, known);
+  SampledRun run{sampled.estimate, sampled.estimate};
+  if (machine.all_nodes() > 1) {
+    SampledMachine one = sample_machine(log, processors::one_node_of(machine), windows, known);
+    run.one_node = one.estimate;
+    add_speed_up(run.machine, run.one_node);
+    // The same packets were timed on both, so that most of what is chance in one is in the other, too.
+    const double all_times = expand(windows.strata(), sampled.window_times);
+    run.machine.half_width[Figure::speed_up] =
+        ratio_estimate(windows.strata(), sampled.window_times, one.window_times, all_times).half_width;
+  } else {
+    add_speed_up(run.machine, run.one_node);
+    run.machine.half_width[Figure::speed_up] = 0.0;
+  }
+  run.one_node.value[Figure::speed_up] = 1.0;
+  run.one_node.half_width[Figure::speed_up] = 0.0;
+  return run;
 }
 
 }  // namespace marti::studies

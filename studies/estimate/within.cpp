@@ -3,68 +3,63 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
-#include "accel/octree.h"
-#include "processors/machine/packets.h"
 #include "sim/config_errors.h"
 #include "sim/error.h"
+#include "sim/key_error.h"
 #include "sim/units.h"
 #include "studies/estimate/measured_errors.h"
-#include "studies/estimate/simulator_analytic.h"
-#include "studies/estimate/simulator_methods.h"
 #include "studies/estimate/within_output.h"
 #include "studies/keys/machine_keys.h"
 #include "studies/keys/record_keys.h"
-#include "studies/run/run_result.h"
+#include "studies/run/prepared_frame.h"
 
 namespace marti::studies {
 
 namespace {
 
-// The study's frames have at least so many packets, and at least so many for each node.
-constexpr std::uint64_t least_packets = 1024;
-constexpr std::uint64_t least_packets_a_node = 4;
 constexpr std::uint64_t sample_seed = 1;
-// The least share of a method's intervals that must hold on scenes that they were not measured on.
-constexpr double least_covered = 0.9;
-// Mean values assume that misses come one by one. They come in bursts, and on a busier bus the queues of
-// these depend on the frame more than the study's small frames show (docs/error.md).
-constexpr double most_analytic_use = 0.25;
-
-// Adds the measured half-widths to the method's own. That of the interconnect's use was measured in
-// percentage points, on machines that may use it less; it is at least the use times the relative half-widths
-// of misses and frame time.
-void widen(Estimate& estimate, const MeasuredError& measured, std::uint32_t nodes) {
-  MachineFigures& half = estimate.half_width;
-  for (std::size_t i = 0; i < figure_count; ++i) {
-    const auto figure = static_cast<Figure>(i);
-    half[figure] += measured.allowance[figure];
-  }
-  half[Figure::use] =
-      std::max(half[Figure::use], estimate.value[Figure::use] * (half[Figure::misses] + half[Figure::end]));
-  if (nodes == 1) {
-    half[Figure::speed_up] = 0.0;  // one node has a speed-up of exactly 1
-  }
-}
+// The first sample: with fewer strata its interval says little.
+constexpr std::uint64_t first_strata = 8;
+// The largest share of the pixels that the first sample may trace. If an exact run turns out to be cheaper,
+// its replays are for nothing; these cost less than half as much as tracing.
+constexpr double most_at_first = 0.10;
+// The largest share of the pixels that any sample may trace. Its packets are replayed in several steps, each
+// with all that the one before had, so that a share costs up to one and a half times as much as in an exact
+// run.
+constexpr double most_share = 0.5;
 
 double width_of(const MachineFigures& half_width) {
   return std::max(half_width[Figure::end], half_width[Figure::speed_up]);
 }
 
-// The measured errors of a method for a number of nodes; null when there are none.
-const MeasuredError* find(const std::vector<MeasuredError>& errors, std::size_t method, std::uint32_t nodes) {
-  const std::optional<std::size_t> node_class = node_class_of(nodes);
-  const auto found = std::find_if(errors.begin(), errors.end(), [&](const MeasuredError& error) {
-    return node_class && error.method == method && error.nodes_to == node_classes[*node_class];
-  });
-  return found == errors.end() ? nullptr : &*found;
+// Adds the measured half-widths to the sample's own.
+void widen(Estimate& estimate, const MachineFigures& allowance, std::uint32_t nodes) {
+  for (std::size_t i = 0; i < figure_count; ++i) {
+    const auto figure = static_cast<Figure>(i);
+    estimate.half_width[figure] += allowance[figure];
+  }
+  if (nodes == 1) {
+    estimate.half_width[Figure::speed_up] = 0.0;  // one node has a speed-up of exactly 1
+  }
 }
 
 std::string exact_output(const RunResult& result, const std::string& reason, bool json) {
   return json ? json_of(result)
               : summary_of(result) + fmt::format("\nmethod        exact replay, no error: {}\n", reason);
+}
+
+// The strata that will do, if a half-width falls with the square root of the windows.
+std::uint64_t strata_for(std::uint64_t strata, double own, double wanted) {
+  const double factor = std::min(own / wanted * (own / wanted), 1e9);
+  std::uint64_t enough = 2 * strata;
+  while (static_cast<double>(enough) < static_cast<double>(strata) * factor) {
+    enough *= 2;
+  }
+  return enough;
 }
 
 }  // namespace
@@ -89,75 +84,68 @@ double parse_tolerance(std::string_view text) {
   return value;
 }
 
-std::optional<std::string> outside_measured(const FrameConfig& frame) {
-  if (frame.structure != accel::Octree::kind_name || frame.render.mailboxes) {
-    return "errors have been measured with an octree without mailboxes only";
-  }
-  if (frame.render.samples > 1 || frame.render.voxel_cut > 0.0) {
-    return "errors have been measured with one sample a pixel and without the voxel cut only";
+std::optional<std::string> not_sampled(const FrameConfig& frame) {
+  if (frame.render.voxel_cut > 0.0) {
+    return "a frame with the voxel cut is not sampled (image.voxel_cut)";
   }
   return std::nullopt;
 }
 
-std::optional<std::string> outside_measured(const processors::MachineConfig& machine, std::uint64_t packets) {
+std::optional<std::string> not_sampled(const processors::MachineConfig& machine) {
   try {
-    check_analytic(machine);
+    check_sample(machine);
   } catch (const sim::KeyError& error) {
     return error.reason();
   }
-  if (machine.interconnect.kind != memory::InterconnectKind::bus ||
-      machine.interconnect.mode != memory::BusMode::split) {
-    return "errors have been measured with a split bus only";
-  }
-  if (!node_class_of(machine.nodes)) {
-    return fmt::format("errors have been measured with up to {} nodes only", node_classes.back());
-  }
-  if (packets < std::max(least_packets, least_packets_a_node * machine.nodes)) {
-    return fmt::format("errors have been measured with at least {} packets, and {} for each node, only",
-                       least_packets, least_packets_a_node);
-  }
   return std::nullopt;
 }
 
-std::optional<EstimatedRun> estimate_within(const processors::WorkLog& log,
-                                            const processors::MachineConfig& machine, double tolerance) {
+WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& packets,
+                             const processors::MachineConfig& machine, double tolerance) {
   const std::vector<MeasuredError> errors = parse_measured_errors(measured_errors_csv());
-  std::vector<const MeasuredError*> candidates;
-  const MeasuredError* const exact = find(errors, 0, machine.nodes);
-  for (std::size_t method = 1; exact != nullptr && method < simulator_methods().size(); ++method) {
-    const MeasuredError* const error = find(errors, method, machine.nodes);
-    // A method that is not faster than exact replay is useless; one whose measured half-width alone exceeds
-    // the tolerance never fits.
-    if (error != nullptr && error->covered >= least_covered && error->share < exact->share &&
-        width_of(error->allowance) <= tolerance && find(errors, method, 1) != nullptr) {
-      candidates.push_back(error);
-    }
+  const auto not_known = [&](double allowance) {
+    return fmt::format("errors of samples of such machines have been measured to be up to {:.2g} % beside "
+                       "what a larger sample lessens",
+                       100.0 * allowance);
+  };
+  const auto least = std::min_element(errors.begin(), errors.end(), [](const auto& a, const auto& b) {
+    return width_of(a.allowance) < width_of(b.allowance);
+  });
+  if (width_of(least->allowance) >= tolerance) {
+    return {std::nullopt, not_known(width_of(least->allowance))};
   }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const auto* a, const auto* b) { return a->share < b->share; });
-  for (const MeasuredError* const candidate : candidates) {
-    const Method& method = simulator_methods()[candidate->method];
-    // A sample that is expected to be too small is not tried.
-    if (width_of(candidate->allowance) + width_of(candidate->own) > tolerance) {
-      continue;
+  const std::uint64_t length = window_length(machine.all_nodes());
+  double most = most_at_first;
+  for (std::uint64_t strata = first_strata;;) {
+    const PacketWindows windows(packets, length, strata, sample_seed);
+    if (const double share = frame.share_with(windows); windows.has_all() || share > most) {
+      return {std::nullopt, fmt::format("a sample that can tell would trace {:.0f} % of the pixels",
+                                        100.0 * (windows.has_all() ? 1.0 : share))};
     }
+    most = most_share;
     EstimatedRun run;
-    run.method = candidate->method;
-    run.nodes_to = candidate->nodes_to;
-    run.machine = estimate(method, log, machine, sample_seed);
-    run.one_node = machine.nodes == 1 ? run.machine
-                                      : estimate(method, log, processors::one_node_of(machine), sample_seed);
-    if (method.kind == MethodKind::analytic && run.machine.value[Figure::use] > most_analytic_use) {
-      continue;
+    run.sampled = estimate_by_sample(frame.with(windows), machine, windows, frame.lattice());
+    run.windows = windows.strata().size() * 2;
+    run.of_windows = windows.windows();
+    run.packets = windows.chosen().size();
+    run.of_packets = packets.size();
+    const MeasuredError& measured = errors[load_class_of(run.sampled.machine.value[Figure::use])];
+    run.use_to = measured.use_to;
+    const MachineFigures own = run.sampled.machine.half_width;
+    widen(run.sampled.machine, measured.allowance, machine.all_nodes());
+    widen(run.sampled.one_node, errors[0].allowance, 1);
+    if (width_of(run.sampled.machine.half_width) <= tolerance) {
+      return {run, ""};
     }
-    add_speed_up(run.machine, run.one_node);
-    widen(run.machine, *candidate, machine.nodes);
-    widen(run.one_node, *find(errors, candidate->method, 1), 1);
-    if (width_of(run.machine.half_width) <= tolerance) {
-      return run;
+    std::uint64_t enough = 2 * strata;
+    for (const Figure figure : {Figure::end, Figure::speed_up}) {
+      if (measured.allowance[figure] >= tolerance) {
+        return {std::nullopt, not_known(measured.allowance[figure])};
+      }
+      enough = std::max(enough, strata_for(strata, own[figure], tolerance - measured.allowance[figure]));
     }
+    strata = enough;
   }
-  return std::nullopt;
 }
 
 std::string run_within(sim::Config& config, double tolerance, bool json, RunOptions exact) {
@@ -173,11 +161,9 @@ std::string run_within(sim::Config& config, double tolerance, bool json, RunOpti
   }
   config.refuse_unused();
   refuse_beyond_memory(config, frame, machine);
-  const std::uint64_t packets =
-      processors::PacketList(frame.render.width, frame.render.height, machine.packets).size();
-  std::optional<std::string> reason = outside_measured(frame);
+  std::optional<std::string> reason = not_sampled(frame);
   if (!reason) {
-    reason = outside_measured(machine, packets);
+    reason = not_sampled(machine);
   }
   if (tolerance == 0.0) {
     reason = "nothing else is within 0 %";
@@ -185,21 +171,28 @@ std::string run_within(sim::Config& config, double tolerance, bool json, RunOpti
   if (reason) {
     return exact_output(run(config, std::move(exact)), *reason, json);
   }
-  RunResult result;
-  result.config_name = config.name();
-  result.values = config.effective_values();
-  result.frame_config = frame;
-  result.machine = machine;
-  result.functional = sim::with_places(config, [&] { return run_functional(frame); });
-  const std::optional<EstimatedRun> estimated =
-      estimate_within(*result.functional.frame.log, machine, tolerance);
-  if (!estimated) {
-    exact.functional = std::move(result.functional);
-    return exact_output(
-        run(config, std::move(exact)),
-        fmt::format("no cheaper method has been measured to be within {:g} % here", 100.0 * tolerance), json);
-  }
-  return json ? estimate_json(result, *estimated, tolerance) : estimate_text(result, *estimated, tolerance);
+  return sim::with_places(config, [&] {
+    const PreparedFrame prepared(frame);
+    SampledFrame sampled(frame.render.width, frame.render.height,
+                         [&](const processors::PixelSet& only, const processors::Frame* before) {
+                           return prepared.trace(&only, before);
+                         });
+    const processors::PacketList packets(frame.render.width, frame.render.height, machine.packets);
+    const WithinAnswer answer = estimate_within(sampled, packets, machine, tolerance);
+    if (!answer.estimate) {
+      exact.functional = prepared.finish(std::move(sampled).whole());
+      return exact_output(run(config, std::move(exact)), answer.reason, json);
+    }
+    RunResult result;
+    result.config_name = config.name();
+    result.values = config.effective_values();
+    result.frame_config = frame;
+    result.machine = machine;
+    const TracedPart traced = sampled.traced();
+    result.functional = prepared.part(sampled.part());
+    return json ? estimate_json(result, *answer.estimate, traced, tolerance)
+                : estimate_text(result, *answer.estimate, traced, tolerance);
+  });
 }
 
 }  // namespace marti::studies

@@ -1,14 +1,16 @@
-// `marti run --within`: the cheapest answer that is good enough, with its error bars.
+// `marti run --within`: an answer with error bars from a sample of the frame, where that is cheaper than an
+// exact one.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "processors/machine/machine_config.h"
-#include "processors/program/work_log.h"
 #include "sim/config.h"
-#include "studies/estimate/simulator_figures.h"
+#include "studies/estimate/sampled_frame.h"
+#include "studies/estimate/simulator_sample.h"
 #include "studies/keys/frame_keys.h"
 #include "studies/run/run_result.h"
 
@@ -17,30 +19,32 @@ namespace marti::studies {
 /// "2%", "2 %" or "0.02". Throws UserError unless it is from 0 to 100 %.
 [[nodiscard]] double parse_tolerance(std::string_view text);
 
-/// The reason why only exact replay is known to be good for a frame, by what the study measured; std::nullopt
-/// when a cheaper method is.
-[[nodiscard]] std::optional<std::string> outside_measured(const FrameConfig& frame);
-
-/// The reason why only exact replay is known to be good for a machine, by what the study measured;
-/// std::nullopt when a cheaper method is. `packets`: of the frame.
-[[nodiscard]] std::optional<std::string> outside_measured(const processors::MachineConfig& machine,
-                                                          std::uint64_t packets);
+/// The reason why a frame is not sampled; std::nullopt when it may be.
+[[nodiscard]] std::optional<std::string> not_sampled(const FrameConfig& frame);
+/// The reason why a machine's frame is not sampled; std::nullopt when it may be.
+[[nodiscard]] std::optional<std::string> not_sampled(const processors::MachineConfig& machine);
 
 /// An estimate that is good enough.
 struct EstimatedRun {
-  std::size_t method = 0;  ///< index into simulator_methods(); never the exact one
-  std::uint32_t nodes_to = 0;
-  Estimate machine;  ///< half-widths: the method's own and what was measured
-  Estimate one_node;
+  SampledRun sampled;  ///< half-widths: the sample's own and what was measured
+  double use_to = 1.0;        ///< the class of load (measured_errors.h) that the latter are of
+  std::uint64_t windows = 0;  ///< drawn
+  std::uint64_t of_windows = 0;
+  std::uint64_t packets = 0;  ///< of the windows drawn
+  std::uint64_t of_packets = 0;
 };
 
-/// By the cheapest method whose half-widths of frame time and speed-up, its own and the measured ones
-/// together, are at most `tolerance`. If a sample's own half-widths turn out too wide, or the analytic model
-/// finds the interconnect busy, the next method is tried. std::nullopt when only exact replay is left.
-/// outside_measured() must be std::nullopt for the machine.
-[[nodiscard]] std::optional<EstimatedRun> estimate_within(const processors::WorkLog& log,
-                                                          const processors::MachineConfig& machine,
-                                                          double tolerance);
+/// An estimate, or the reason why only an exact run will do.
+struct WithinAnswer {
+  std::optional<EstimatedRun> estimate;
+  std::string reason;
+};
+
+/// Traces and times samples of `frame`, each larger than the one before, until the half-widths of frame time
+/// and speed-up are at most `tolerance`. Gives up as soon as an exact run is expected to be cheaper: what was
+/// traced till then is not lost. Both not_sampled() must be std::nullopt.
+[[nodiscard]] WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& packets,
+                                           const processors::MachineConfig& machine, double tolerance);
 
 /// Runs a configuration and gives what to print: an estimate with error bars, or the summary of an exact run
 /// and the reason for it; as JSON, an object with `estimate`, or the exact run's result. `exact`: how an

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <utility>
 
-#include "studies/estimate/simulator_methods.h"
 #include "studies/show/json_parts.h"
 #include "studies/tables/json_table.h"
 #include "studies/tables/text_units.h"
@@ -80,45 +79,59 @@ Json figures_json(const Estimate& estimate, bool with_speed_up) {
 
 }  // namespace
 
-std::string estimate_text(const RunResult& result, const EstimatedRun& run, double tolerance) {
-  const Method& method = simulator_methods()[run.method];
-  const MachineFigures& value = run.machine.value;
-  const MachineFigures& half = run.machine.half_width;
-  const double share =
-      run.machine.references > 0.0 ? 100.0 * value[Figure::misses] / run.machine.references : 0.0;
+std::string estimate_text(const RunResult& result, const EstimatedRun& run, const TracedPart& traced,
+                          double tolerance) {
+  const Estimate& machine = run.sampled.machine;
+  const MachineFigures& value = machine.value;
+  const MachineFigures& half = machine.half_width;
+  const double share = machine.references > 0.0 ? 100.0 * value[Figure::misses] / machine.references : 0.0;
   const std::uint32_t nodes = result.machine.nodes;
+  const processors::LogTotals& part = result.functional.totals;
   std::string text = scene_summary_of(result);
+  text += fmt::format("image         {} x {}, about {} rays\n", result.frame_config.render.width,
+                      result.frame_config.render.height,
+                      grouped(static_cast<std::uint64_t>(std::llround(traced.rays))));
   text += fmt::format(
-      "\nestimate      {}, {}: not exact, asked for within {:g} %\n"
-      "rests on      errors that `marti study error` measured against exact replay on machines of up to {} "
-      "nodes with the bus and the banks of configs/error.toml, of which 95 % are covered{}\n\n",
-      method.name(), method.knob(), 100.0 * tolerance, run.nodes_to,
-      method.kind == MethodKind::sampled ? ", and the spread of this run's own sample" : "");
-  text += "frame time    " + time_bar(run.machine, Figure::end);
-  text += fmt::format("speed-up      {}", number_bar(run.machine, Figure::speed_up, 2));
+      "left out      {:.1f} % of the pixels, with about {:.1f} % of the rays and {} of work log: {} windows "
+      "of {} are traced and timed, {} of {} packets, and of all others one pixel in 64\n",
+      100.0 * (1.0 - traced.pixels),
+      100.0 * std::max(0.0, 1.0 - static_cast<double>(part.all_rays()) / traced.rays),
+      bytes(std::max(0.0, traced.log_bytes - static_cast<double>(part.bytes))), run.windows, run.of_windows,
+      grouped(run.packets), grouped(run.of_packets));
+  text += fmt::format(
+      "\nestimate      not exact, asked for within {:g} %: 95 % intervals, by the spread of this sample and "
+      "errors that `marti study error` measured on machines whose interconnect is busy up to {:g} % of the "
+      "frame\n\n",
+      100.0 * tolerance, 100.0 * run.use_to);
+  text += "frame time    " + time_bar(machine, Figure::end);
+  text += fmt::format("speed-up      {}", number_bar(machine, Figure::speed_up, 2));
   text += fmt::format("  on {} node{}\n", nodes, nodes == 1 ? "" : "s");
-  text += "one node      " + time_bar(run.one_node, Figure::end);
-  text += "misses        " + number_bar(run.machine, Figure::misses, 0);
+  text += "one node      " + time_bar(run.sampled.one_node, Figure::end);
+  text += "misses        " + number_bar(machine, Figure::misses, 0);
   text += "hit ratio     " + points_bar(100.0 - share, share * half[Figure::misses], "");
   text += "interconnect  " + points_bar(100.0 * value[Figure::use], 100.0 * half[Figure::use], " busy");
-  text += "mean wait     " + time_bar(run.machine, Figure::wait);
-  text += "\nall other figures need an exact replay: run without --within\n";
+  text += "mean wait     " + time_bar(machine, Figure::wait);
+  text += "\nall other figures need an exact run, without --within\n";
   return text;
 }
 
-std::string estimate_json(const RunResult& result, const EstimatedRun& run, double tolerance) {
-  const Method& method = simulator_methods()[run.method];
+std::string estimate_json(const RunResult& result, const EstimatedRun& run, const TracedPart& traced,
+                          double tolerance) {
   const Json json = {{"marti", {{"version", version}}},
                      {"config", config_json(result.config_name, result.values)},
                      {"estimate",
-                      {{"method", method.name()},
-                       {"knob", method.knob()},
-                       {"tolerance", tolerance},
-                       {"measured_nodes_to", run.nodes_to},
+                      {{"tolerance", tolerance},
+                       {"use_to", run.use_to},
+                       {"windows", run.windows},
+                       {"of_windows", run.of_windows},
+                       {"packets", run.packets},
+                       {"of_packets", run.of_packets},
+                       {"traced_pixels", traced.pixels},
+                       {"rays", traced.rays},
                        {"nodes", result.machine.nodes},
-                       {"references", run.machine.references},
-                       {"machine", figures_json(run.machine, true)},
-                       {"one_node", figures_json(run.one_node, false)}}}};
+                       {"references", run.sampled.machine.references},
+                       {"machine", figures_json(run.sampled.machine, true)},
+                       {"one_node", figures_json(run.sampled.one_node, false)}}}};
   return json_text(json);
 }
 

@@ -8,10 +8,12 @@
 
 namespace marti::studies {
 
-/// What scene_summary_of() says, and every figure with its error bar.
-[[nodiscard]] std::string estimate_text(const RunResult& result, const EstimatedRun& run, double tolerance);
+/// What scene_summary_of() says, what was left out, and every figure with its error bar.
+[[nodiscard]] std::string estimate_text(const RunResult& result, const EstimatedRun& run,
+                                        const TracedPart& traced, double tolerance);
 
 /// The figures as docs/error.md describes them.
-[[nodiscard]] std::string estimate_json(const RunResult& result, const EstimatedRun& run, double tolerance);
+[[nodiscard]] std::string estimate_json(const RunResult& result, const EstimatedRun& run,
+                                        const TracedPart& traced, double tolerance);
 
 }  // namespace marti::studies

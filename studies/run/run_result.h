@@ -76,7 +76,7 @@ void refuse_several_frames(const sim::Config& config, const FrameRange& frames);
 /// The schema of `marti run`.
 [[nodiscard]] sim::Schema run_schema();
 
-/// The summary's first part, which needs the frame's configuration and the functional run only.
+/// The summary's first part: the scene and its structure, of which nothing need be traced.
 [[nodiscard]] std::string scene_summary_of(const RunResult& result);
 
 /// The printed summary.

@@ -62,10 +62,15 @@ void scene_lines(Lines out, const RunResult& r) {
   for (const std::string& note : r.functional.structure_notes) {
     fmt::format_to(out, "\n  note        {}", note);
   }
+  fmt::format_to(out, "\n");
+}
+
+void image_lines(Lines out, const RunResult& r) {
+  const processors::WorkLog& log = *r.functional.frame.log;
   const processors::LogTotals& totals = r.functional.totals;
   const double rays = static_cast<double>(totals.all_rays());
   fmt::format_to(out,
-                 "\nimage         {} x {}, {}{} rays (camera {}, shadow {}, reflection {}, refraction {})\n",
+                 "image         {} x {}, {}{} rays (camera {}, shadow {}, reflection {}, refraction {})\n",
                  log.width, log.height,
                  log.samples == 1 ? std::string() : fmt::format("{} samples a pixel, ", log.samples),
                  grouped(totals.all_rays()), grouped(totals.rays[0]), grouped(totals.rays[1]),
@@ -227,6 +232,7 @@ std::string scene_summary_of(const RunResult& r) {
 std::string summary_of(const RunResult& r) {
   std::string text = scene_summary_of(r);
   const Lines out = std::back_inserter(text);
+  image_lines(out, r);
   voxel_lines(out, r);
   text += plan_lines(r.plan);
   machine_lines(out, r);

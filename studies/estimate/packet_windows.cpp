@@ -1,0 +1,126 @@
+#include "studies/estimate/packet_windows.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "sim/error.h"
+#include "sim/mix.h"
+
+namespace marti::studies {
+
+namespace {
+
+// Pixels between two of the lattice: one pixel of 64 is traced, and a packet of the usual 8 x 8 has one.
+constexpr std::uint32_t lattice_step = 8;
+
+template <class Use>
+void for_each_pixel(const processors::Packet& packet, const Use& use) {
+  for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
+    for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
+      use(x, y);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Stratum> draw_strata(std::uint64_t units, std::uint64_t count, std::uint64_t seed) {
+  sim::ensure(count >= 1 && count <= units, "a number of strata without units");
+  // Each unit has a rank of its own at random, and the two lowest of a stratum are drawn. The lowest two of a
+  // stratum are among the lowest two of each half.
+  const auto rank = [start = sim::mix(seed)](std::uint64_t unit) { return sim::mix(unit ^ start); };
+  std::vector<Stratum> strata(count);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Stratum& stratum = strata[i];
+    stratum.first = units / count * i + units % count * i / count;
+    stratum.end = units / count * (i + 1) + units % count * (i + 1) / count;
+    std::vector<std::uint64_t> all(stratum.size());
+    std::iota(all.begin(), all.end(), stratum.first);
+    const auto drawn = all.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(2, all.size()));
+    std::partial_sort(all.begin(), drawn, all.end(),
+                      [&](std::uint64_t a, std::uint64_t b) { return rank(a) < rank(b); });
+    stratum.chosen.assign(all.begin(), drawn);
+    std::sort(stratum.chosen.begin(), stratum.chosen.end());
+  }
+  return strata;
+}
+
+PacketWindows::PacketWindows(const processors::PacketList& packets, std::uint64_t length,
+                             std::uint64_t strata, std::uint64_t seed)
+    : packets_(packets),
+      length_(std::min(length, packets.size())),
+      windows_(packets.size() / length_),
+      strata_(draw_strata(windows_, std::clamp<std::uint64_t>(strata, 1, std::max<std::uint64_t>(1, windows_ / 2)),
+                          seed)) {}
+
+std::vector<std::uint64_t> PacketWindows::chosen() const {
+  std::vector<std::uint64_t> packets;
+  for (const Stratum& stratum : strata_) {
+    for (const std::uint64_t window : stratum.chosen) {
+      for (std::uint64_t packet = first(window); packet < end(window); ++packet) {
+        packets.push_back(packet);
+      }
+    }
+  }
+  return packets;
+}
+
+bool PacketWindows::has_all() const {
+  return std::all_of(strata_.begin(), strata_.end(),
+                     [](const Stratum& stratum) { return stratum.chosen.size() == stratum.size(); });
+}
+
+void PacketWindows::add_to(processors::PixelSet& pixels) const {
+  for (const std::uint64_t packet : chosen()) {
+    for_each_pixel(packets_[packet], [&](std::uint32_t x, std::uint32_t y) { pixels.add(x, y); });
+  }
+}
+
+PixelLattice::Axis::Axis(std::uint32_t size) {
+  for (std::uint32_t place = std::min(lattice_step / 2, size - 1); place < size; place += lattice_step) {
+    places.push_back(place);
+  }
+  for (std::uint32_t place = 0; place < size; ++place) {
+    const std::size_t cell = std::min<std::size_t>(place / lattice_step, places.size() - 1);
+    next_to.push_back(places[cell]);
+  }
+}
+
+PixelLattice::PixelLattice(std::uint32_t width, std::uint32_t height) : columns_(width), rows_(height) {}
+
+void PixelLattice::add_to(processors::PixelSet& pixels) const {
+  for (const std::uint32_t y : rows_.places) {
+    for (const std::uint32_t x : columns_.places) {
+      pixels.add(x, y);
+    }
+  }
+}
+
+std::vector<std::uint64_t> PixelLattice::expected_words(const processors::WorkLog& log,
+                                                        const processors::PacketList& packets) const {
+  std::vector<std::uint64_t> words(packets.size());
+  for (std::uint64_t packet = 0; packet < packets.size(); ++packet) {
+    for_each_pixel(packets[packet], [&](std::uint32_t x, std::uint32_t y) {
+      words[packet] += log.pixel(columns_.next_to[x], rows_.next_to[y]).size();
+    });
+  }
+  return words;
+}
+
+PixelLattice::ImageWork PixelLattice::expected_of_image(const processors::WorkLog& log) const {
+  ImageWork work;
+  for (const std::uint32_t y : rows_.places) {
+    for (const std::uint32_t x : columns_.places) {
+      const std::span<const std::uint32_t> words = log.pixel(x, y);
+      work.words += static_cast<double>(words.size());
+      for (std::size_t at = 0; at < words.size(); at += processors::step_words(&words[at])) {
+        work.rays += processors::step_of(words[at]) == processors::Step::ray ? 1.0 : 0.0;
+      }
+    }
+  }
+  const double pixels = static_cast<double>(rows_.places.size()) * static_cast<double>(columns_.places.size());
+  const double scale = static_cast<double>(log.width) * static_cast<double>(log.height) / pixels;
+  return {scale * work.rays, scale * work.words};
+}
+
+}  // namespace marti::studies

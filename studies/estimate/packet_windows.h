@@ -1,0 +1,90 @@
+// Which packets of a frame are traced and timed in place of all of them.
+//
+// The packets, in the order in which the host hands them out, are cut into windows of equal length, long
+// enough for every node to have a packet of each, so that nodes contend as they do in the frame. The windows
+// are cut into strata, and two windows of each stratum are drawn: two are the fewest that show how windows of
+// a stratum differ. Beside the windows a lattice of pixels is traced all over the image. It tells what work
+// each packet is likely to be, and takes the nodes' caches from one window to the next.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "processors/machine/packets.h"
+#include "processors/program/pixel_set.h"
+#include "processors/program/work_log.h"
+
+namespace marti::studies {
+
+/// A stratum: the units first .. end - 1, of which chosen[0 .. ] are in the sample.
+struct Stratum {
+  std::uint64_t first = 0;
+  std::uint64_t end = 0;
+  std::vector<std::uint64_t> chosen;  ///< ascending
+  [[nodiscard]] std::uint64_t size() const { return end - first; }
+};
+
+/// Cuts units 0 .. units - 1 into `count` strata of nearly equal size and draws two units of each at random;
+/// all of a stratum that has fewer. With twice the strata, and the same seed, all units that were drawn before
+/// are drawn again. `count` is from 1 to `units`.
+[[nodiscard]] std::vector<Stratum> draw_strata(std::uint64_t units, std::uint64_t count, std::uint64_t seed);
+
+class PacketWindows {
+ public:
+  /// `length`: packets of a window, at least 1; the last window has up to twice as many less one. A window is
+  /// as long as the frame when that has fewer packets. `strata`: how many are wanted; there are never more
+  /// than half as many as windows, but at least one.
+  PacketWindows(const processors::PacketList& packets, std::uint64_t length, std::uint64_t strata,
+                std::uint64_t seed);
+
+  [[nodiscard]] std::uint64_t windows() const { return windows_; }
+  [[nodiscard]] std::span<const Stratum> strata() const { return strata_; }  ///< of windows
+  [[nodiscard]] std::uint64_t first(std::uint64_t window) const { return window * length_; }
+  [[nodiscard]] std::uint64_t end(std::uint64_t window) const {
+    return window + 1 == windows_ ? packets_.size() : (window + 1) * length_;
+  }
+  [[nodiscard]] const processors::PacketList& packets() const { return packets_; }
+  /// The packets of the windows drawn, ascending.
+  [[nodiscard]] std::vector<std::uint64_t> chosen() const;
+  [[nodiscard]] bool has_all() const;
+
+  /// Adds all pixels of the windows drawn.
+  void add_to(processors::PixelSet& pixels) const;
+
+ private:
+  processors::PacketList packets_;
+  std::uint64_t length_;
+  std::uint64_t windows_;
+  std::vector<Stratum> strata_;
+};
+
+/// Pixels at equal distances in both directions.
+class PixelLattice {
+ public:
+  PixelLattice(std::uint32_t width, std::uint32_t height);
+
+  void add_to(processors::PixelSet& pixels) const;
+  /// The words that each packet would have if each of its pixels had as many as the lattice's pixel next to
+  /// it. The lattice's pixels must be in the log.
+  [[nodiscard]] std::vector<std::uint64_t> expected_words(const processors::WorkLog& log,
+                                                          const processors::PacketList& packets) const;
+  /// Rays and words of the whole image, by those of the lattice's pixels.
+  struct ImageWork {
+    double rays = 0.0;
+    double words = 0.0;
+  };
+  [[nodiscard]] ImageWork expected_of_image(const processors::WorkLog& log) const;
+
+ private:
+  // The lattice's columns (or rows) and, for each column of the image, the one that it takes.
+  struct Axis {
+    explicit Axis(std::uint32_t size);
+    std::vector<std::uint32_t> places;
+    std::vector<std::uint32_t> next_to;
+  };
+  Axis columns_;
+  Axis rows_;
+};
+
+}  // namespace marti::studies

@@ -1,0 +1,52 @@
+// A frame of which only samples are traced, and at last perhaps all.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "processors/machine/packets.h"
+#include "processors/program/pixel_set.h"
+#include "processors/program/render.h"
+#include "studies/estimate/packet_windows.h"
+
+namespace marti::studies {
+
+/// What was traced of a frame, and what the whole would have been by the pixels of the lattice.
+struct TracedPart {
+  double pixels = 0.0;      ///< share
+  double rays = 0.0;        ///< of the whole frame
+  double log_bytes = 0.0;   ///< of the whole frame
+};
+
+/// Each pixel is traced at most once.
+class SampledFrame {
+ public:
+  /// Traces the pixels of a set and adds them to a frame that has others already, if that is not null.
+  using Trace = std::function<processors::Frame(const processors::PixelSet& only, const processors::Frame* before)>;
+
+  SampledFrame(std::uint32_t width, std::uint32_t height, Trace trace);
+
+  [[nodiscard]] const PixelLattice& lattice() const { return lattice_; }
+  /// The share of all pixels that would be traced after with(windows).
+  [[nodiscard]] double share_with(const PacketWindows& windows) const;
+  /// The log of the lattice, of these windows and of all that was traced before.
+  const processors::WorkLog& with(const PacketWindows& windows);
+  /// with() must have been called.
+  [[nodiscard]] TracedPart traced() const;
+  /// What is traced. with() must have been called.
+  [[nodiscard]] const processors::Frame& part() const { return *frame_; }
+  /// Traces all that is missing, and gives the whole frame away.
+  [[nodiscard]] processors::Frame whole() &&;
+
+ private:
+  [[nodiscard]] processors::PixelSet set_with(const PacketWindows& windows) const;
+  void trace(const processors::PixelSet& wanted);
+
+  PixelLattice lattice_;
+  Trace trace_;
+  processors::PixelSet traced_;
+  double pixels_;
+  std::optional<processors::Frame> frame_;  // empty before anything is traced
+};
+
+}  // namespace marti::studies

@@ -1,0 +1,180 @@
+#include "studies/run/prepared_frame.h"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "accel/grid.h"
+#include "accel/octree.h"
+#include "accel/bsp.h"
+#include "accel/grid_match.h"
+#include "accel/precision.h"
+#include "sim/shown.h"
+#include "studies/host/image_file.h"
+#include "studies/run/open_frame.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr std::string_view smaller_scene = "take a smaller scene";
+
+// Notes that the tree was cut at its limit, so that it is not the tree that was asked for. Dividing a node
+// never lessens the entries listed, so a limit once met stays met.
+void note_cut_tree(const FrameConfig& config, const accel::Structure& structure,
+                   std::vector<std::string>& notes) {
+  const accel::StructureOptions& options = config.structure_options;
+  const std::uint64_t limit = structure.kind() == accel::Octree::kind_name ? options.octree.max_entries
+                              : structure.kind() == accel::Bsp::kind_name  ? options.bsp.max_entries
+                                                                           : 0;
+  const std::size_t listed = structure.topology().entries.size();
+  if (limit != 0 && listed >= limit) {
+    notes.push_back("division stopped at " + std::to_string(listed) +
+                    " listed primitives, so leaves above structure.max_level may list more than "
+                    "structure.max_objects; lower the one or raise the other");
+  }
+}
+
+// Structures that the frame does not use, built only if the user wants plan item `structures` kept.
+std::vector<std::unique_ptr<accel::Structure>> kept_structures(
+    const FrameConfig& config, const std::shared_ptr<const accel::TriangleSet>& triangles) {
+  std::vector<std::unique_ptr<accel::Structure>> kept;
+  for (const std::string_view kind : accel::structure_kinds()) {
+    if (config.keep.has(PlanItem::structures) && kind != config.structure) {
+      kept.push_back(accel::make_structure(kind, triangles, config.structure_options));
+    }
+  }
+  return kept;
+}
+
+// Requires memory for all textures, and for the largest once more, as its decoder returns it.
+void require_textures(const FrameConfig& config, const scenes::Scene& scene, std::uint64_t texels) {
+  constexpr std::uint64_t bytes_a_texel = 4;
+  std::uint64_t largest = 0;
+  for (const scenes::Texture& texture : scene.textures) {
+    largest = std::max(largest, texture.texels.empty() ? texture.size() : 0);
+  }
+  config.memory.require(scenes::host_bytes(scene) + bytes_a_texel * (texels + std::min(largest, texels)),
+                        config.scene + ": the scene with its textures takes", smaller_scene);
+}
+
+scenes::Scene open_planned(const FrameConfig& config, scenes::FileUse* file) {
+  FrameConfig planned = config;
+  if (!config.keep.has(PlanItem::textures)) {
+    planned.open.gltf.size_only = size_of_image;
+  }
+  planned.open.gltf.read_unused = config.keep.has(PlanItem::unreachable);
+  return open_frame(planned, file);
+}
+
+}  // namespace
+
+PreparedFrame::PreparedFrame(const FrameConfig& config) : config_(config) {
+  scenes::FileUse file;
+  scenes::Scene scene = open_planned(config, &file);
+  prepare_planned(std::move(scene), std::move(file));
+}
+
+PreparedFrame::PreparedFrame(const FrameConfig& config, scenes::Scene scene, scenes::FileUse file)
+    : config_(config) {
+  prepare_planned(std::move(scene), std::move(file));
+}
+
+void PreparedFrame::prepare_planned(scenes::Scene scene, scenes::FileUse file) {
+  config_.memory.require(scenes::host_bytes(scene) + scenes::host_bytes_of_facts(scene),
+                         "the scene, sorted to be described, takes", smaller_scene);
+  facts_ = facts_of_frame(scene, config_.render, config_.structure, config_.keep);
+  facts_->file = std::move(file);
+  run_.plan = make_plan(*facts_);
+  run_.scene = scenes::facts_of(scene);
+  require_textures(config_, scene,
+                   is_left_out(run_.plan, PlanItem::textures) ? facts_->texels_needed : facts_->texels);
+  sim::KeyError::reported_under(
+      "scene.source", [&] { drop_parts(run_.plan, facts_->needs, decode_image, scene); },
+      sim::shown(config_.scene) + ": ");
+  own_scene_ = std::make_unique<const scenes::Scene>(std::move(scene));
+  with_scene_keys([&] { prepare(*own_scene_); });
+}
+
+PreparedFrame::PreparedFrame(const FrameConfig& config, const scenes::Scene& scene) : config_(config) {
+  with_scene_keys([&] {
+    run_.scene = scenes::facts_of(scene);
+    prepare(scene);
+  });
+}
+
+void PreparedFrame::prepare(const scenes::Scene& scene) {
+  scene_ = &scene;
+  config_.memory.take(scenes::host_bytes(scene) + accel::TriangleSet::host_bytes(scene), "the scene takes",
+                      smaller_scene);
+  give_memory(config_.memory, config_.structure_options);
+  triangles_ = std::make_shared<const accel::TriangleSet>(scene);
+  structure_ = accel::make_structure(config_.structure, triangles_, config_.structure_options);
+  others_ = kept_structures(config_, triangles_);
+  // The work log has a copy of the tree.
+  config_.memory.take(accel::host_bytes(*structure_) + accel::bytes_of(structure_->topology()),
+                      "the structure and its copy in the work log take",
+                      "lower structure.max_level or raise structure.max_objects");
+  if (facts_) {
+    plan_structure(run_.plan, *facts_, *structure_);
+    config_.render = planned_options(run_.plan, *facts_);
+  }
+  refuse_beyond_memory(config_, scene, *triangles_, *structure_);
+  run_.notes = scene.notes;
+  if (const auto* octree = dynamic_cast<const accel::StructureOf<accel::Octree>*>(structure_.get())) {
+    run_.levels = octree->concrete().levels();
+  } else if (const auto* grid = dynamic_cast<const accel::StructureOf<accel::Grid>*>(structure_.get())) {
+    run_.structure_notes.push_back(accel::describe_resolution(grid->concrete()));
+  }
+  note_cut_tree(config_, *structure_, run_.structure_notes);
+  if (std::string need = accel::describe_need(accel::precision_need(*triangles_)); !need.empty()) {
+    run_.notes.push_back(std::move(need));
+  }
+  config_.render.record = true;
+}
+
+processors::Frame PreparedFrame::trace(const processors::PixelSet* only,
+                                       const processors::Frame* before) const {
+  processors::RenderOptions options = config_.render;
+  options.only = only;
+  options.before = before;
+  return with_scene_keys([&] { return processors::render(*scene_, *triangles_, *structure_, options); });
+}
+
+FunctionalRun PreparedFrame::part(processors::Frame frame) const {
+  FunctionalRun run = run_;
+  run.frame = std::move(frame);
+  run.totals = processors::totals_of(*run.frame.log);
+  return run;
+}
+
+FunctionalRun PreparedFrame::finish(processors::Frame frame) const {
+  FunctionalRun run = run_;
+  run.frame = std::move(frame);
+  std::vector<std::uint64_t> shades;
+  run.totals = processors::totals_of(*run.frame.log, &shades);
+  run.image_hash = image_hash(run.frame.image);
+  if (std::string note = note_of_infinities(run.frame.image); !note.empty()) {
+    run.notes.push_back(std::move(note));
+  }
+  if (facts_) {
+    count_saved(run.plan, facts_->needs, *scene_, run.frame, run.totals, shades);
+  }
+  if (config_.render.voxel_cut > 0.0) {
+    VoxelReport& report = run.voxel_cut.emplace();
+    report.use = database_use(*run.frame.log);
+    if (config_.exact_too) {
+      processors::RenderOptions options = config_.render;
+      options.voxel_cut = 0.0;
+      processors::Frame exact = with_scene_keys(
+          [&] { return processors::render(*scene_, *triangles_, *structure_, options); });
+      report.exact = {
+          std::move(exact.image), processors::totals_of(*exact.log), database_use(*exact.log), {}};
+      report.exact->error = image_error(run.frame.image, report.exact->image);
+    }
+  }
+  return run;
+}
+
+}  // namespace marti::studies
