@@ -1,6 +1,5 @@
 #include "sim/engine.h"
 
-#include <algorithm>
 #include <string>
 
 namespace marti::sim {
@@ -20,10 +19,6 @@ void Engine::handle(const Event& event, std::uint64_t& at_this_tick, std::uint64
 }
 
 void Engine::run(std::uint64_t limit_per_tick) {
-  if (quantum_ > 1) {
-    run_relaxed(limit_per_tick);
-    return;
-  }
   std::uint64_t at_this_tick = 0;
   while (!queue_.empty()) {
     const Event event = queue_.pop();
@@ -34,24 +29,6 @@ void Engine::run(std::uint64_t limit_per_tick) {
     });
     handle(event, at_this_tick, limit_per_tick);
   }
-}
-
-void Engine::run_relaxed(std::uint64_t limit_per_tick) {
-  std::uint64_t at_this_tick = 0;
-  while (!queue_.empty()) {
-    Event event = queue_.pop();
-    turn_ = event.component();
-    turn_end_ = add_ticks(event.time - event.time % quantum_, quantum_);
-    handle(event, at_this_tick, limit_per_tick);
-    while (!ahead_.empty()) {
-      const auto next = std::min_element(ahead_.begin(), ahead_.end());
-      event = *next;
-      *next = ahead_.back();
-      ahead_.pop_back();
-      handle(event, at_this_tick, limit_per_tick);
-    }
-  }
-  turn_end_ = 0;
 }
 
 }  // namespace marti::sim

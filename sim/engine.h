@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "sim/event_queue.h"
@@ -35,16 +34,14 @@ class Engine {
 
   /// `event` must not lie in the past; that is a fault of the simulator, never of its input.
   [[gnu::always_inline]] void post(const Event& event) {
-    if (!goes_ahead(event)) [[likely]] {
-      queue_.push(event);
-    }
+    ensure(event.time >= now_, "an event was posted in the past");
+    queue_.push(event);
   }
   /// post() for an event that is likely to be later than those that were posted in this way before. It is
   /// handled when a posted one would be, and cheaper if that is so.
   [[gnu::always_inline]] void post_in_order(const Event& event) {
-    if (!goes_ahead(event)) [[likely]] {
-      queue_.push_in_order(event);
-    }
+    ensure(event.time >= now_, "an event was posted in the past");
+    queue_.push_in_order(event);
   }
 
   /// Handles events until none is left. Throws InternalError when more than `limit_per_tick` events are
@@ -57,27 +54,11 @@ class Engine {
   template <class Handler>
   void run_all(Handler& handler);
 
-  /// Trades exactness for speed: simulated time is cut into pieces of `quantum` ticks, and within a piece the
-  /// component of the next event first handles all events that it posts for itself before another component
-  /// is handled. Time then goes back, by less than a quantum, when another component's events follow, so
-  /// handlers must accept late requests. (The quantum of S. K. Reinhardt et al., "The Wisconsin Wind Tunnel",
-  /// SIGMETRICS 1993, on one thread.) With 0 or 1 the order is exact. Call it before run().
-  void relax(Ticks quantum) { quantum_ = quantum; }
-
   [[nodiscard]] Ticks now() const { return now_; }
   [[nodiscard]] std::uint64_t events() const { return events_; }
   void reserve(std::size_t events) { queue_.reserve(events); }
 
  private:
-  // Whether the component whose turn it is handles `event` in this turn; it is then noted.
-  bool goes_ahead(const Event& event) {
-    ensure(event.time >= now_, "an event was posted in the past");
-    if (event.time < turn_end_ && event.component() == turn_) [[unlikely]] {
-      ahead_.push_back(event);
-      return true;
-    }
-    return false;
-  }
   // Has handlers prepare for the events that are likely to be next, if many are pending.
   template <class Prepare>
   void look_ahead(const Prepare& prepare) const {
@@ -87,24 +68,15 @@ class Engine {
   }
   // Passes one event to its handler.
   void handle(const Event& event, std::uint64_t& at_this_tick, std::uint64_t limit_per_tick);
-  void run_relaxed(std::uint64_t limit_per_tick);
 
   EventQueue queue_;
   std::array<EventHandler*, max_classes> handlers_{};
   Ticks now_ = 0;
   std::uint64_t events_ = 0;
-  Ticks quantum_ = 0;
-  Ticks turn_end_ = 0;  // end of the piece of time in which component turn_ runs ahead; 0: none does
-  std::uint32_t turn_ = 0;
-  std::vector<Event> ahead_;  // what the component has posted for itself in its turn
 };
 
 template <class Handler>
 void Engine::run_all(Handler& handler) {
-  if (quantum_ > 1) {
-    run(std::numeric_limits<std::uint64_t>::max());
-    return;
-  }
   std::uint64_t events = 0;
   while (!queue_.empty()) {
     const auto prepare = [&handler](const Event& next) { handler.prepare(next); };

@@ -35,16 +35,4 @@ void check_sampled(const MachineConfig& config) {
   }
 }
 
-void check_relaxed(const MachineConfig& config) {
-  check_sampled(config);
-  if (config.placement == Placement::distributed ||
-      (config.interconnect.kind == memory::InterconnectKind::bus &&
-       config.interconnect.arbitration != memory::Arbitration::fifo)) {
-    throw sim::KeyError(
-        config.placement == Placement::distributed ? "database.placement" : "interconnect.arbitration",
-        "time may be relaxed only where requests are served first come, first served: not with a distributed "
-        "database or a bus granted by priority");
-  }
-}
-
 }  // namespace marti::processors

@@ -54,8 +54,8 @@ LeftOut leave_out(const ReplayOptions& options, ReplayInput& input) {
         memory::shape_of(config.cache.cache).lines() * sizeof(std::uint32_t) * config.all_nodes();
     left.line_set_bytes = (input.line_set + 7) / 8 * config.all_nodes();
   }
-  // Observers need every read. Replays with a sample or a quantum need the events.
-  const bool plain = options.observer == nullptr && options.sample == nullptr && options.quantum <= 1;
+  // Observers need every read. Replays with a sample need the events.
+  const bool plain = options.observer == nullptr && options.sample == nullptr;
   if (!options.keep_read_events && plain && why_read_events(config) == nullptr) {
     input.own_reads = memory::ideal_read(config.interconnect);
     left.read_events = true;
@@ -109,9 +109,6 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   if (options.sample != nullptr) {
     check_sampled(config);
   }
-  if (options.quantum > 1) {
-    check_relaxed(config);
-  }
   switch (config.scheme) {
     case Scheme::image:
       break;
@@ -149,7 +146,7 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
                     options.stripped->suits(config),
                 "a stripped log is walked by a machine that it was not made for");
   }
-  sim::ensure(options.path == nullptr || (options.observer != nullptr && options.quantum <= 1),
+  sim::ensure(options.path == nullptr || options.observer != nullptr,
               "a critical path is recorded of exact replays that are observed");
   if (options.observer != nullptr) {
     options.observer->begin(input);
@@ -162,7 +159,6 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
   }
   nodes->start(options.start_seed);
-  engine.relax(options.quantum);
   nodes->run_all(engine);
   nodes->finish();
 

@@ -86,13 +86,10 @@ struct ReplayOptions {
   /// scheme with a given tree, dynamic assignment, one context, and no second level of caches or counting of
   /// more than hits and misses (check_sampled).
   const PacketSample* sample = nullptr;
-  /// Not exact (sim::Engine::relax): where first come is first served, requests of one quantum may be served
-  /// in another order. For machines that pass check_relaxed(). 0 or 1: exact.
-  sim::Ticks quantum = 0;
   bool with_contexts = false;  ///< nodes that can hold several contexts and prefetch, even for one context;
                                ///< same result
   /// Records the critical path; `observer` must be it or pass all calls on to it. Same result. Not with
-  /// `stripped`, `sample` or `quantum`.
+  /// `stripped` or `sample`.
   PathRecorder* path = nullptr;
 };
 
@@ -104,9 +101,6 @@ struct ReplayOptions {
 
 /// Throws UserError with the reason when some of the machine's packets cannot be replayed without the others.
 void check_sampled(const MachineConfig& config);
-
-/// Throws UserError with the reason when the machine's components need events in their exact order.
-void check_relaxed(const MachineConfig& config);
 
 /// The conservation laws that every result must obey. Each node's time adds up to the end. Every pixel is
 /// written once; where rays move, every ray of the log is made, traced and ended once and every message

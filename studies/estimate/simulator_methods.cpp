@@ -1,9 +1,7 @@
 #include "studies/estimate/simulator_methods.h"
 
 #include <limits>
-#include <memory>
 
-#include "processors/node/memory_system.h"
 #include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "studies/estimate/simulator_analytic.h"
@@ -15,28 +13,10 @@ namespace {
 
 constexpr std::uint32_t all_nodes = std::numeric_limits<std::uint32_t>::max();
 
-// No request is made, so no completion arrives.
-class NoClient final : public memory::InterconnectClient {
-  void read_done(std::uint32_t /*port*/, const memory::Service& /*service*/) override {}
-  void write_done(std::uint32_t /*port*/, sim::Ticks /*done*/) override {}
-};
-
-// The time of a miss without contention.
-sim::Ticks unloaded_miss(const processors::MachineConfig& machine) {
-  sim::Engine engine;
-  NoClient client;
-  const std::unique_ptr<memory::Interconnect> interconnect =
-      processors::make_memory_system(machine, {engine, client, 0, 0, 1, 1});
-  return interconnect->unloaded_read(machine.reference_bytes());
-}
-
 std::vector<Method> make_methods() {
   std::vector<Method> methods = {{}};
   for (const std::uint64_t strata : {8, 16, 32, 64}) {
     methods.push_back({.kind = MethodKind::sampled, .strata = strata});
-  }
-  for (const std::uint32_t quantum : {1, 10, 100}) {
-    methods.push_back({.kind = MethodKind::relaxed, .quantum = quantum});
   }
   for (const std::uint32_t nodes : {std::uint32_t{1}, std::uint32_t{4}, all_nodes}) {
     methods.push_back({.kind = MethodKind::analytic, .walked_nodes = nodes});
@@ -58,8 +38,6 @@ std::string Method::name() const {
       return "exact";
     case MethodKind::sampled:
       return "sampled";
-    case MethodKind::relaxed:
-      return "relaxed";
     case MethodKind::analytic:
       return "analytic";
     case MethodKind::interpolated:
@@ -74,8 +52,6 @@ std::string Method::knob() const {
       return "replay";
     case MethodKind::sampled:
       return std::to_string(2 * strata) + " windows";
-    case MethodKind::relaxed:
-      return "quantum of " + std::to_string(quantum) + (quantum == 1 ? " miss" : " misses");
     case MethodKind::analytic:
       return all_caches ? "all nodes walked, all caches at once"
              : walked_nodes == all_nodes
@@ -101,9 +77,6 @@ void check_method(const Method& method, const processors::MachineConfig& machine
     case MethodKind::sampled:
       check_sample(machine);
       break;
-    case MethodKind::relaxed:
-      processors::check_relaxed(machine);
-      break;
     case MethodKind::analytic:
       check_analytic(machine);
       break;
@@ -122,14 +95,9 @@ Estimate estimate(const Method& method, const processors::WorkLog& log,
     case MethodKind::sampled:
     case MethodKind::interpolated:
     case MethodKind::exact:
-    case MethodKind::relaxed:
       break;
   }
-  processors::ReplayOptions options;
-  if (method.kind == MethodKind::relaxed) {
-    options.quantum = sim::multiply_ticks(unloaded_miss(machine), method.quantum);
-  }
-  const processors::MachineResult result = processors::replay(log, machine, options);
+  const processors::MachineResult result = processors::replay(log, machine);
   Estimate estimate;
   estimate.value = figures_of(machine, result);
   estimate.references = static_cast<double>(result.references().references());

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,7 +20,6 @@ inline constexpr int methods_version = 2;
 enum class MethodKind : std::uint8_t {
   exact,         ///< replay of everything
   sampled,       ///< a sample of packets, of which alone the frame is traced (simulator_sample.h)
-  relaxed,       ///< events out of order within a quantum (sim::Engine::relax)
   analytic,      ///< one pass and mean values (simulator_analytic.h)
   interpolated,  ///< between machines timed exactly (simulator_interpolation.h)
 };
@@ -29,7 +27,6 @@ enum class MethodKind : std::uint8_t {
 struct Method {
   MethodKind kind = MethodKind::exact;
   std::uint64_t strata = 0;        ///< sampled
-  std::uint32_t quantum = 0;       ///< relaxed: in units of the time of a read without contention
   std::uint32_t walked_nodes = 0;  ///< analytic
   bool all_caches = false;         ///< analytic: one pass for all sizes of caches
   bool over_caches = false;        ///< interpolated: over sizes of caches, else over numbers of nodes

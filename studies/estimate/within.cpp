@@ -31,6 +31,8 @@ constexpr double most_at_first = 0.10;
 // with all that the one before had, so that a share costs up to one and a half times as much as in an exact
 // run.
 constexpr double most_share = 0.5;
+// A sample is not made larger if it is expected to need as much as this in the end.
+constexpr double hopeless_share = 1.5;
 
 double width_of(const MachineFigures& half_width) {
   return std::max(half_width[Figure::end], half_width[Figure::speed_up]);
@@ -52,15 +54,12 @@ std::string exact_output(const RunResult& result, const std::string& reason, boo
               : summary_of(result) + fmt::format("\nmethod        exact replay, no error: {}\n", reason);
 }
 
-// The strata that will do, if a half-width falls with the square root of the windows.
-std::uint64_t strata_for(std::uint64_t strata, double own, double wanted) {
-  const double factor = std::min(own / wanted * (own / wanted), 1e9);
-  std::uint64_t enough = 2 * strata;
-  while (static_cast<double>(enough) < static_cast<double>(strata) * factor) {
-    enough *= 2;
-  }
-  return enough;
-}
+// By how many times as many windows will do, if a half-width falls with their square root.
+double times_as_many(double own, double wanted) { return own / wanted * (own / wanted); }
+
+// The next sample has twice or four times as many strata: the first ones' half-widths say only roughly how
+// many are needed.
+std::uint64_t next_strata(std::uint64_t strata, double times) { return times > 2.0 ? 4 * strata : 2 * strata; }
 
 }  // namespace
 
@@ -137,14 +136,18 @@ WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& 
     if (width_of(run.sampled.machine.half_width) <= tolerance) {
       return {run, ""};
     }
-    std::uint64_t enough = 2 * strata;
+    double times = 1.0;
     for (const Figure figure : {Figure::end, Figure::speed_up}) {
       if (measured.allowance[figure] >= tolerance) {
         return {std::nullopt, not_known(measured.allowance[figure])};
       }
-      enough = std::max(enough, strata_for(strata, own[figure], tolerance - measured.allowance[figure]));
+      times = std::max(times, times_as_many(own[figure], tolerance - measured.allowance[figure]));
     }
-    strata = enough;
+    if (const double share = frame.traced().pixels * times; share > hopeless_share) {
+      return {std::nullopt, fmt::format("a sample that can tell would trace about {:.0f} % of the pixels",
+                                        std::min(100.0, 100.0 * share))};
+    }
+    strata = next_strata(strata, times);
   }
 }
 

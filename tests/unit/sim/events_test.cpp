@@ -195,24 +195,20 @@ class Spreader final : public EventHandler {
 
 TEST(Engine, HandlesTheSameWithOneHandlerAsWithHandlersByClass) {
   constexpr int events = 20'000;  // many are pending at a time
-  for (const Ticks quantum : {0, 100}) {
-    Engine by_class;
-    Spreader first(by_class, events);
-    by_class.relax(quantum);
-    by_class.post(Event::make(0, 0, 0));
-    by_class.run(events);
-    Engine all;
-    Spreader second(all, events);
-    all.relax(quantum);
-    all.post(Event::make(0, 0, 0));
-    all.run_all(second);
-    EXPECT_EQ(first.handled, second.handled);
-    EXPECT_EQ(first.handled.size(), std::size_t{events} + 1);
-    EXPECT_EQ(by_class.events(), all.events());
-    EXPECT_TRUE(quantum != 0 || second.in_order > 100);
-    const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };
-    EXPECT_TRUE(quantum != 0 || std::is_sorted(first.handled.begin(), first.handled.end(), earlier));
-  }
+  Engine by_class;
+  Spreader first(by_class, events);
+  by_class.post(Event::make(0, 0, 0));
+  by_class.run(events);
+  Engine all;
+  Spreader second(all, events);
+  all.post(Event::make(0, 0, 0));
+  all.run_all(second);
+  EXPECT_EQ(first.handled, second.handled);
+  EXPECT_EQ(first.handled.size(), std::size_t{events} + 1);
+  EXPECT_EQ(by_class.events(), all.events());
+  EXPECT_GT(second.in_order, 100);
+  const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };
+  EXPECT_TRUE(std::is_sorted(first.handled.begin(), first.handled.end(), earlier));
 }
 
 // A component that posts its next event `delay` ticks later, `left` times.
