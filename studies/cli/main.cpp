@@ -299,7 +299,8 @@ struct CompareArguments {
 };
 
 void add_compare_command(CLI::App& app, CompareArguments& arguments) {
-  CLI::App* compare = app.add_subcommand("compare", "What differs between two runs, points or sweeps");
+  CLI::App* compare = app.add_subcommand(
+      "compare", "What differs between two runs, points or sweeps, or a run and every point");
   compare->add_option("A", arguments.a, "directory of a run or sweep; DIR:N is point N of a sweep")
       ->type_name("RESULT")
       ->required();

@@ -60,12 +60,16 @@ void add_counters(const SweepRow& row, Figures& figures) {
                  [&figures](const std::string& name, std::int64_t value) { figures[name] = value; });
 }
 
-void remove_relative(Figures& figures) {
+void keep_what_sweeps_have(ComparedResult& result) {
   for (const FigureEntry& entry : derived_figures()) {
     if (entry.formula->is_relative()) {
-      figures.erase(entry.name);
+      result.figures.erase(entry.name);
     }
   }
+  std::erase_if(result.settings, [](const auto& setting) {
+    return setting.first.starts_with("host_machine.") || setting.first.starts_with("prices.") ||
+           setting.first.starts_with("record.");
+  });
 }
 
 }  // namespace marti::studies
