@@ -88,12 +88,18 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
   SweepReport report;
   report.store = options.directory / "results.sqlite";
   report.points = options.directory / "points.csv";
+  // Nobody else may write the store from its check until the tables that follow from it are written.
+  std::optional<StoreLock> lock(std::in_place, report.store);
+  const auto unlock = [&lock](int /*signal*/) { lock.reset(); };
   const bool is_new = !is_begun(report.store);
-  announce(describe(plan, look_ahead(plan, options)));  // checks a store that was begun
+  {
+    const AtSignal unlocked(unlock);
+    announce(describe(plan, look_ahead(plan, options)));  // checks a store that was begun
+  }
   const unsigned threads = threads_of(options);
   const unsigned all_threads =
       threads * (options.ranks != nullptr ? static_cast<unsigned>(options.ranks->size()) : 1U);
-  SweepStore store(report.store, plan, !is_new);
+  SweepStore store(report.store, plan, &*lock);
   const Schedule left(plan, store.done(), store.frames_done());
   report.timed = left.machines_left();
   report.traced = left.frames_left();
@@ -112,8 +118,9 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
     }
   });
   try {
-    const AtSignal last_words([&](int /*signal*/) {
+    const AtSignal last_words([&](int signal) {
       const std::size_t saved = coordinator.close_for_good();
+      unlock(signal);
       std::fprintf(
           stderr, "marti: interrupted: %zu of %zu machines are saved in %s; the same command does the rest\n",
           saved, plan.machines.size(), report.store.c_str());
@@ -135,6 +142,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
   }
   progress.end();
   store.close();
+  const AtSignal unlocked(unlock);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report.reader = std::make_unique<const SweepReader>(report.store);
   report.limited = limited_points(*report.reader, prices);

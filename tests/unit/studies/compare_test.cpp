@@ -19,6 +19,7 @@
 #include "sim/error.h"
 #include "studies/compare/differences.h"
 #include "studies/run/run_result.h"
+#include "studies/sweep/store/point_result.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
@@ -292,6 +293,28 @@ TEST(Compare, RefusesASweepOrAResultWithoutFrameTimes) {
     changed.replace(at, changed.find(',', at) - at, end);
     write(run, changed);
     EXPECT_NE(message().find(run + ": has no frame time"), std::string::npos) << end << message();
+  }
+}
+
+// A point is made by `marti sweep`: that is what has to be run again.
+TEST(Compare, ABrokenPointIsOfASweep) {
+  const TemporaryDirectory directory;
+  const fs::path store = directory.path() / "sweep" / "results.sqlite";
+  fs::create_directories(store.parent_path());
+  {
+    SweepStore made(store, test::made_plan(2));
+    made.add_frame(0, test::made_frame_row(0), 1);
+    made.add_result(0, SweepRow{Counts(counted_figures().size()), {}}, 1);
+    made.close();
+  }
+  const SweepReader reader(store);
+  const RunJson point = point_result(reader, 0, "sweep:0");
+  EXPECT_EQ(point.part("figures.machine").file(), "sweep:0");
+  for (const RunJson& part : {point, point.part("config"), point.of(point.json()["figures"])}) {
+    const std::string message = user_error_of([&] { (void)part.required_number("no.such.figure", 1, 2); });
+    EXPECT_TRUE(message.starts_with("sweep:0: has no number")) << message;
+    EXPECT_NE(message.find("`marti sweep CONFIG -o DIR`"), std::string::npos) << message;
+    EXPECT_EQ(message.find("marti run"), std::string::npos) << message;
   }
 }
 
