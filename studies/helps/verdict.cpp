@@ -125,7 +125,7 @@ std::string gain_text(const Help& help) {
 }
 
 std::string verdict(const WhatHelps& what, const processors::MachineConfig& machine,
-                    const processors::MachineResult& result) {
+                    const processors::MachineResult& result, const Counts& counts) {
   if (result.end == 0) {
     return "nothing: the frame takes no time on this machine";
   }
@@ -134,7 +134,8 @@ std::string verdict(const WhatHelps& what, const processors::MachineConfig& mach
   }
   const std::vector<const Help*> helps = best_helps(what);
   if (!helps.empty()) {
-    return fmt::format("{}{}; {}", gain_text(*helps[0]), ties(helps), why(*helps[0], machine, result));
+    return fmt::format("{}{}; {}", gain_text(*helps[0]), ties(helps),
+                       why(*helps[0], machine, result, counts));
   }
   if (what.pair) {
     return fmt::format("{} and {} bind together: {}: frame {} shorter, but by neither alone {}",
