@@ -60,7 +60,7 @@ room(studies/operations host keys run tables)
 room(studies/paper host keys run tables)
 room(studies/schemes figures keys paper run tables)
 room(studies/stability host keys run show tables)
-room(studies/error estimate host keys paper run tables)
+room(studies/error estimate figures host keys paper run tables)
 room(studies/cli compare error estimate figures frames host keys limits operations paper report run run/plan run/trace schemes show
      stability sweep sweep/plan sweep/ranks sweep/store tables)
 

@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
+#include "studies/figures/best_offer.h"
 #include "studies/report/model/answer_text.h"
-#include "studies/sweep/store/sweep_best.h"
 
 namespace marti::studies {
 
