@@ -26,13 +26,15 @@ Cell cell(const std::optional<double>& value) { return value ? Cell(*value) : Ce
 }  // namespace
 
 Table helps_table(const RunJson& run) {
-  Table table("what_helps", "What would make the frame shorter",
-              {{"step", ColumnType::text, "", "what is changed, and nothing else"},
-               {"saved", ColumnType::real, "fraction", "of the frame time; empty: not replayed"},
-               {"most_saved", ColumnType::real, "fraction", "more cannot be saved, by the nodes' own work"},
-               {"price", ColumnType::real, "1", "of the step, by [prices]"},
-               {"at_best", ColumnType::text, "", "the same resource as if it cost nothing"},
-               {"saved_at_best", ColumnType::real, "fraction", "of the frame time; empty: not replayed"}});
+  Table table(
+      "what_helps", "What would make the frame shorter",
+      {{"step", ColumnType::text, "", "what is changed, and nothing else"},
+       {"saved", ColumnType::real, "fraction", "of the frame time; empty: not replayed"},
+       {"most_saved", ColumnType::real, "fraction", "more cannot be saved, by the nodes' own work"},
+       {"price", ColumnType::real, "1",
+        "of the step, by [prices]; smaller packets, regions and another way of building cost nothing"},
+       {"at_best", ColumnType::text, "", "the same resource as if it cost nothing"},
+       {"saved_at_best", ColumnType::real, "fraction", "of the frame time; empty: not replayed"}});
   for (const RunJson& resource : run.list("machine.what_helps.resources")) {
     const RunJson step = resource.part("step");
     const RunJson best = resource.part("best");
