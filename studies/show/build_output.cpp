@@ -4,6 +4,7 @@
 
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "sim/statistics.h"
 #include "studies/show/json_parts.h"

@@ -4,7 +4,9 @@
 
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "sim/statistics.h"
 #include "studies/show/json_parts.h"
 
 namespace marti::studies {

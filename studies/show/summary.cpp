@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <iterator>
 #include <optional>
 #include <utility>
 
-#include "sim/units.h"
+#include "sim/statistics.h"
 #include "studies/figures/find_limit.h"
 #include "studies/run/plan/plan_output.h"
 #include "studies/run/run_result.h"

@@ -1,5 +1,5 @@
 // The report of a run's directory: what its result.json says, and the files beside it; and that of a point of
-// a sweep, as far as its store says the same.
+// a sweep, from the figures and settings that its store keeps.
 #include <fmt/format.h>
 
 #include <map>

@@ -34,8 +34,8 @@ class SweepStore {
   [[nodiscard]] std::vector<bool> frames_done();
 
   // Each is committed when it returns. A row that is there already must be equal, else InternalError: the
-  // same machine has given two results. `cpu_nanoseconds` is what the host took; it is kept apart from what
-  // must be the same in every run.
+  // same machine has given two results. `cpu_nanoseconds` is what the host took; it differs from run to run,
+  // so it goes to tables of its own.
   void add_frame(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds);
   void add_result(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds);
 
@@ -48,8 +48,7 @@ class SweepStore {
   [[nodiscard]] std::vector<bool> done(const std::string& query, const std::vector<std::int64_t>& ids);
   void add_cost(const std::string& table, std::int64_t id, std::int64_t cpu_nanoseconds);
 
-  std::optional<StoreLock>
-      lock_;  // unless the caller holds it; outlives the connection, as it stands before it
+  std::optional<StoreLock> lock_;  // empty where the caller holds it; ends after the connection
   std::optional<SqliteConnection> connection_;
   std::optional<RowWriter> writer_;  // these are made when the tables are there
   std::optional<RowReader> reader_;
