@@ -15,7 +15,6 @@
 #include "processors/replay/replay.h"
 #include "sim/config.h"
 #include "sim/error.h"
-#include "sim/files.h"
 #include "studies/keys/frame_keys.h"
 #include "studies/keys/machine_keys.h"
 #include "studies/run/functional_run.h"
@@ -141,7 +140,7 @@ int main(int argc, char** argv) {
   return bench::run_benchmark("bench_store", argc, argv, [](bench::Report& report, int count, char** values) {
     const std::filesystem::path directory =
         std::filesystem::temp_directory_path() / ("bench-store-" + std::to_string(getpid()));
-    sim::make_directory(directory);
+    std::filesystem::create_directory(directory);
     run(report, count > 1 ? std::strtoul(values[1], nullptr, 10) : 10000, directory);
     std::filesystem::remove_all(directory);
   });

@@ -65,7 +65,7 @@ class Scratch {
  public:
   Scratch()
       : directory_(std::filesystem::temp_directory_path() / ("bench-sweep-" + std::to_string(getpid()))) {
-    sim::make_directory(directory_);
+    std::filesystem::create_directory(directory_);
   }
   ~Scratch() {
     std::error_code ignored;

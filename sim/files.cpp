@@ -84,18 +84,4 @@ void write_file(const std::filesystem::path& file, std::string_view content, Dur
   }
 }
 
-void make_directory(const std::filesystem::path& directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (std::error_code ignored; std::filesystem::is_regular_file(directory, ignored)) {
-    throw UserError(directory.string() + ": is a file; results need a directory, choose another name");
-  }
-  if (!error && !std::filesystem::is_directory(directory, error)) {
-    error = std::make_error_code(std::errc::not_a_directory);
-  }
-  if (error) {
-    fail(directory, "cannot be made a directory", error.value());
-  }
-}
-
 }  // namespace marti::sim

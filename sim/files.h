@@ -20,7 +20,4 @@ std::string read_file(const std::filesystem::path& file, std::int64_t max_bytes)
 void write_file(const std::filesystem::path& file, std::string_view content,
                 Durability durability = Durability::cached);
 
-/// Makes a directory with its parents if it does not exist. UserError if that fails.
-void make_directory(const std::filesystem::path& directory);
-
 }  // namespace marti::sim

@@ -20,7 +20,7 @@
 #include "scenes/tessellate.h"
 #include "sim/config_errors.h"
 #include "sim/error.h"
-#include "sim/files.h"
+#include "sim/made_directory.h"
 #include "sim/memory_budget.h"
 #include "sim/shown.h"
 #include "sim/units.h"
@@ -113,8 +113,8 @@ void run_command(const RunArguments& arguments) {
     run_within_command(arguments, config, std::move(options));
     return;
   }
+  const sim::MadeDirectory made = studies::prepare_output(arguments.directory);
   if (!arguments.directory.empty()) {
-    studies::prepare_output(arguments.directory);
     studies::load_image_library();
   }
   const studies::RunResult result = studies::run(config, std::move(options));
@@ -159,8 +159,8 @@ void run_study(const StudyArguments& arguments, const sim::Schema& schema, const
   sim::Config config = arguments.config.empty()
                            ? sim::Config::from_text(schema, "", "defaults", arguments.assignments)
                            : sim::Config::from_file(schema, arguments.config, arguments.assignments);
+  const sim::MadeDirectory made = studies::prepare_output(arguments.directory);
   if (!arguments.directory.empty()) {
-    studies::prepare_output(arguments.directory);
     studies::load_image_library();
   }
   const studies::StudyOutput output = sim::with_places(config, [&] { return study(config); });
@@ -286,7 +286,7 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
     studies::require_config_file(arguments.config);
     sim::Config config =
         sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
-    studies::prepare_output(arguments.directory);
+    const sim::MadeDirectory made = studies::prepare_output(arguments.directory);
     print(sim::with_places(
         config, [&] { return studies::write_traces(config, arguments.options, arguments.directory); }));
   });
@@ -299,7 +299,8 @@ struct CompareArguments {
 };
 
 void add_compare_command(CLI::App& app, CompareArguments& arguments) {
-  CLI::App* compare = app.add_subcommand("compare", "What differs between two runs, points or sweeps");
+  CLI::App* compare = app.add_subcommand(
+      "compare", "What differs between two runs, points or sweeps, or a run and every point");
   compare->add_option("A", arguments.a, "directory of a run or sweep; DIR:N is point N of a sweep")
       ->type_name("RESULT")
       ->required();

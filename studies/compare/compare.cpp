@@ -7,6 +7,7 @@
 #include "sim/error.h"
 #include "studies/compare/compare_sweeps.h"
 #include "studies/compare/compare_text.h"
+#include "studies/compare/compare_with_sweep.h"
 #include "studies/compare/differences.h"
 #include "studies/compare/figures.h"
 #include "studies/tables/result_directory.h"
@@ -26,8 +27,7 @@ struct Target {
 
 constexpr std::string_view expected =
     "expected is a directory of `marti run`, its result.json, the directory of a sweep, or DIR:N for point N "
-    "of "
-    "a sweep";
+    "of a sweep";
 
 Target target_of(const std::string& name) {
   std::error_code ignored;
@@ -60,17 +60,17 @@ std::string compare_results(const std::string& a, const std::string& b, const Co
   if (sweep_a && sweep_b) {
     return compare_sweeps(from.file, to.file, options);
   }
-  if (sweep_a || sweep_b) {
-    const std::string& sweep = sweep_a ? a : b;
-    throw sim::UserError(sweep + ": is a whole sweep, but " + (sweep_a ? b : a) + " is one machine; give " +
-                         sweep + ":N for point N of it");
+  if (sweep_b) {
+    return compare_with_sweep(read(from, a), to.file, SweepSide::b, options);
+  }
+  if (sweep_a) {
+    return compare_with_sweep(read(to, b), from.file, SweepSide::a, options);
   }
   ComparedResult one = read(from, a);
   ComparedResult other = read(to, b);
-  // A run is measured against its one node, a point against the base of its sweep.
   if (from.kind == Target::Kind::point || to.kind == Target::Kind::point) {
-    remove_relative(one.figures);
-    remove_relative(other.figures);
+    keep_what_sweeps_have(one);
+    keep_what_sweeps_have(other);
   }
   const Differences found = differences_of(one, other);
   return options.json ? differences_json(one, other, found, options.all)

@@ -1,4 +1,5 @@
-// `marti compare A B`: what differs between two results, or between two sweeps.
+// `marti compare A B`: what differs between two results, between two sweeps, or between a result and every
+// point of a sweep.
 #pragma once
 
 #include <string>
@@ -11,8 +12,8 @@ struct CompareOptions {
 };
 
 /// Each of `a` and `b` is a directory that `marti run` has written or its result.json, `DIR:N`, which is
-/// point N of the sweep in that directory, or the directory of a sweep; a sweep goes with a sweep. The text
-/// ends in a line break; equal files give equal texts. Throws UserError for what cannot be read or compared.
+/// point N of the sweep in that directory, or the directory of a sweep. The text ends in a line break; equal
+/// files give equal texts. Throws UserError for what cannot be read or compared.
 [[nodiscard]] std::string compare_results(const std::string& a, const std::string& b,
                                           const CompareOptions& options = {});
 

@@ -15,7 +15,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A control character in somebody's file must not reach the terminal.
+std::string time_of(const Cell& ticks) {
+  const auto* whole = std::get_if<std::int64_t>(&ticks);
+  return whole != nullptr ? seconds(*whole) : short_text(ticks, "-");
+}
+
+Json side_json(const ComparedResult& result) { return {{"name", result.name}, {"version", result.version}}; }
+
+}  // namespace
+
 std::string printable(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; },
@@ -23,26 +31,9 @@ std::string printable(std::string text) {
   return text;
 }
 
-std::string time_of(const Cell& ticks) {
-  const auto* whole = std::get_if<std::int64_t>(&ticks);
-  return whole != nullptr ? seconds(*whole) : short_text(ticks, "-");
-}
-
 std::string count(std::size_t number, const char* what) {
   return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
 }
-
-Json list_of(const std::vector<Difference>& differences) {
-  Json list = Json::array();
-  for (const Difference& difference : differences) {
-    list.push_back(json_of(difference));
-  }
-  return list;
-}
-
-Json side_json(const ComparedResult& result) { return {{"name", result.name}, {"version", result.version}}; }
-
-}  // namespace
 
 std::string lines_of(const std::vector<Difference>& differences, bool all) {
   const std::size_t shown = all ? differences.size() : std::min(differences.size(), most_lines);
@@ -108,18 +99,26 @@ nlohmann::ordered_json json_of(const Difference& difference) {
   return object;
 }
 
+nlohmann::ordered_json json_of(const std::vector<Difference>& differences) {
+  Json list = Json::array();
+  for (const Difference& difference : differences) {
+    list.push_back(json_of(difference));
+  }
+  return list;
+}
+
 std::string differences_json(const ComparedResult& a, const ComparedResult& b, const Differences& found,
                              bool all) {
   Json object = {{"a", side_json(a)},
                  {"b", side_json(b)},
-                 {"settings", list_of(found.settings)},
+                 {"settings", json_of(found.settings)},
                  {"equal_settings", found.equal_settings},
-                 {"texts", list_of(found.texts)},
-                 {"numbers", list_of(found.numbers)},
-                 {"one_side", list_of(found.one_side)},
+                 {"texts", json_of(found.texts)},
+                 {"numbers", json_of(found.numbers)},
+                 {"one_side", json_of(found.one_side)},
                  {"equal_figures", found.equal.size()}};
   if (all) {
-    object["equal"] = list_of(found.equal);
+    object["equal"] = json_of(found.equal);
   }
   return json_text(object);
 }

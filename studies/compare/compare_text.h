@@ -12,6 +12,12 @@ namespace marti::studies {
 /// Without `all`, no list is longer than this.
 inline constexpr std::size_t most_lines = 20;
 
+/// A text of somebody's file without control characters, which must not reach the terminal.
+[[nodiscard]] std::string printable(std::string text);
+
+/// "1 setting", "2 settings".
+[[nodiscard]] std::string count(std::size_t number, const char* what);
+
 /// Two results, settings first.
 [[nodiscard]] std::string differences_text(const ComparedResult& a, const ComparedResult& b,
                                            const Differences& found, bool all);
@@ -22,5 +28,6 @@ inline constexpr std::size_t most_lines = 20;
 [[nodiscard]] std::string lines_of(const std::vector<Difference>& differences, bool all);
 
 [[nodiscard]] nlohmann::ordered_json json_of(const Difference& difference);
+[[nodiscard]] nlohmann::ordered_json json_of(const std::vector<Difference>& differences);
 
 }  // namespace marti::studies

@@ -31,6 +31,15 @@ void merge(const Map& a, const Map& b, const Visit& visit) {
   }
 }
 
+// As Differences::numbers is sorted.
+void sort_by_size(std::vector<Difference>& numbers) {
+  std::stable_sort(numbers.begin(), numbers.end(), [](const Difference& a, const Difference& b) {
+    const double first = a.relative().value_or(0.0);
+    const double second = b.relative().value_or(0.0);
+    return first != second ? first > second : a.name < b.name;
+  });
+}
+
 }  // namespace
 
 std::optional<double> Difference::relative() const {
@@ -54,14 +63,6 @@ std::string change_of(const Difference& difference) {
   }
   const double percent = 100.0 * (*to - *from) / std::abs(*from);
   return std::abs(percent) < 0.005 ? fmt::format("{:+.1e} %", percent) : fmt::format("{:+.2f} %", percent);
-}
-
-void sort_by_size(std::vector<Difference>& numbers) {
-  std::stable_sort(numbers.begin(), numbers.end(), [](const Difference& a, const Difference& b) {
-    const double first = a.relative().value_or(0.0);
-    const double second = b.relative().value_or(0.0);
-    return first != second ? first > second : a.name < b.name;
-  });
 }
 
 Differences differences_of(const ComparedResult& a, const ComparedResult& b) {

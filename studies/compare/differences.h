@@ -34,7 +34,4 @@ struct Differences {
 /// The change from a to b for people: "+12.50 %"; "from 0" where a is 0.
 [[nodiscard]] std::string change_of(const Difference& difference);
 
-/// Sorts numbers as Differences::numbers is.
-void sort_by_size(std::vector<Difference>& numbers);
-
 }  // namespace marti::studies

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "studies/figures/derived_figures.h"
-#include "studies/sweep/store/point_json.h"
+#include "studies/sweep/store/point_result.h"
 #include "studies/tables/json_table.h"
 #include "studies/tables/run_json.h"
 
@@ -52,7 +52,7 @@ ComparedResult read_run(const std::filesystem::path& path, const std::string& na
 }
 
 ComparedResult read_point(const SweepReader& sweep, std::int64_t ordinal, const std::string& name) {
-  return compared(RunJson(point_json(sweep, ordinal, name), sweep.file().string()), name);
+  return compared(point_result(sweep, ordinal, name), name);
 }
 
 void add_counters(const SweepRow& row, Figures& figures) {
@@ -60,12 +60,16 @@ void add_counters(const SweepRow& row, Figures& figures) {
                  [&figures](const std::string& name, std::int64_t value) { figures[name] = value; });
 }
 
-void remove_relative(Figures& figures) {
+void keep_what_sweeps_have(ComparedResult& result) {
   for (const FigureEntry& entry : derived_figures()) {
     if (entry.formula->is_relative()) {
-      figures.erase(entry.name);
+      result.figures.erase(entry.name);
     }
   }
+  std::erase_if(result.settings, [](const auto& setting) {
+    return setting.first.starts_with("host_machine.") || setting.first.starts_with("prices.") ||
+           setting.first.starts_with("record.");
+  });
 }
 
 }  // namespace marti::studies

@@ -33,7 +33,9 @@ struct ComparedResult {
 /// The counted figures of a row.
 void add_counters(const SweepRow& row, Figures& figures);
 
-/// Removes what is measured against another machine, which a run and a sweep do not choose alike.
-void remove_relative(Figures& figures);
+/// Removes what cannot be compared with a sweep: figures that are measured against another machine, which a
+/// run and a sweep do not choose alike, and settings that a sweep does not keep, because no result depends on
+/// them.
+void keep_what_sweeps_have(ComparedResult& result);
 
 }  // namespace marti::studies

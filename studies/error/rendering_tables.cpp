@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "studies/figures/best_offer.h"
+
 namespace marti::studies {
 
 namespace {
@@ -93,13 +95,16 @@ std::vector<double> timed_costs(const RenderingStudy& study) {
 }
 
 std::vector<std::size_t> front_of(const RenderingStudy& study, Knob knob, const std::vector<double>& costs) {
-  const std::vector<std::size_t> points = points_of(study, knob);
-  std::vector<CostAndError> pairs;
+  std::vector<std::size_t> points = points_of(study, knob);
+  // Where pixels are infinite the error is no number, and no point of the front.
+  std::erase_if(points,
+                [&](std::size_t point) { return std::isnan(known_error(study, study.points[point])); });
+  std::vector<Offer> pairs;
   for (const std::size_t point : points) {
     pairs.push_back({costs[point], known_error(study, study.points[point])});
   }
   std::vector<std::size_t> front;
-  for (const std::size_t index : pareto_front(pairs)) {
+  for (const std::size_t index : pareto_front(pairs, Better::lower)) {
     front.push_back(points[index]);
   }
   return front;

@@ -192,8 +192,8 @@ class FrameStudy {
     }
   }
 
-  // Estimates each machine that has neighbours on both sides from all others of its row: these are as far
-  // apart as they are when every other machine is timed.
+  // Estimates each machine that has neighbours on both sides from all others of its row. So the neighbours
+  // are two steps of the row apart, as if only every other machine were timed.
   void interpolate_all() {
     const std::span<const Method> methods = simulator_methods();
     for (std::size_t m = 0; m < methods.size(); ++m) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "studies/figures/best_offer.h"
+
 namespace marti::studies {
 
 namespace {
@@ -193,7 +195,7 @@ Table time_table(const SimulatorStudy& study, std::span<const MethodErrors> erro
   const std::span<const Method> methods = simulator_methods();
   const double exact = median_of(study, 0);
   for (std::size_t figure = 0; figure < figure_count; ++figure) {
-    std::vector<CostAndError> points;
+    std::vector<Offer> points;
     std::vector<std::size_t> of_point;
     for (std::size_t m = 0; m < methods.size(); ++m) {
       if (errors[m].any) {
@@ -201,7 +203,7 @@ Table time_table(const SimulatorStudy& study, std::span<const MethodErrors> erro
         of_point.push_back(m);
       }
     }
-    const std::vector<std::size_t> front = pareto_front(points);
+    const std::vector<std::size_t> front = pareto_front(points, Better::lower);
     for (std::size_t p = 0; p < points.size(); ++p) {
       const std::size_t m = of_point[p];
       const MedianInterval time = median_interval(study.cpu_seconds[m]);

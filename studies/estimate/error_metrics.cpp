@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "sim/error.h"
 
@@ -40,22 +39,6 @@ double regret(std::span<const double> truth, std::span<const double> estimate) {
   const auto chosen =
       static_cast<std::size_t>(std::min_element(estimate.begin(), estimate.end()) - estimate.begin());
   return truth[chosen] / *std::min_element(truth.begin(), truth.end()) - 1.0;
-}
-
-std::vector<std::size_t> pareto_front(std::span<const CostAndError> points) {
-  std::vector<std::size_t> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return points[a].cost != points[b].cost ? points[a].cost < points[b].cost
-                                            : points[a].error < points[b].error;
-  });
-  std::vector<std::size_t> front;
-  for (const std::size_t point : order) {
-    if (front.empty() || points[point].error < points[front.back()].error) {
-      front.push_back(point);
-    }
-  }
-  return front;
 }
 
 ErrorSummary summarise(std::span<const double> errors) {

@@ -19,14 +19,6 @@ namespace marti::studies {
 /// values.
 [[nodiscard]] double regret(std::span<const double> truth, std::span<const double> estimate);
 
-/// The indices of the points that no other beats in one coordinate without losing in the other, both of which
-/// are better when smaller; by ascending x. Of equal points the first.
-struct CostAndError {
-  double cost = 0.0;
-  double error = 0.0;
-};
-[[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const CostAndError> points);
-
 /// Statistics of signed errors.
 struct ErrorSummary {
   std::size_t cases = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "processors/flow/pipeline/stages.h"
+#include "studies/figures/derived_figures.h"
 
 namespace marti::studies {
 
@@ -34,21 +35,6 @@ void add_node(const MachineResult& result, std::size_t node, StageLoad& load) {
 void divide(StageLoad& load) {
   load.busy = share(load.busy, static_cast<double>(load.nodes));
   load.queue_full = share(load.queue_full, static_cast<double>(load.nodes));
-}
-
-void add_networks(const MachineConfig& machine, const MachineResult& result, FlowFigures& figures) {
-  std::int64_t hops = 0;
-  for (const memory::NetworkStatistics& network : result.flow.networks) {
-    figures.messages += network.messages;
-    figures.bytes += network.bytes;
-    hops += network.hops;
-    if (machine.network.kind != memory::NetworkKind::ideal) {
-      const double capacity = static_cast<double>(result.end) * static_cast<double>(network.links);
-      figures.network =
-          std::max(figures.network.value_or(0.0), share(static_cast<double>(network.busy), capacity));
-    }
-  }
-  figures.hops_a_message = share(static_cast<double>(hops), static_cast<double>(figures.messages));
 }
 
 }  // namespace
@@ -98,16 +84,6 @@ FlowFigures flow_figures(const MachineConfig& machine, const MachineResult& resu
   for (StageLoad& stage : figures.stages) {
     divide(stage);
   }
-  add_networks(machine, result, figures);
-  const std::vector<std::uint64_t>& memory = result.flow.memory_bytes;
-  if (!memory.empty()) {
-    const auto [least, most] = std::minmax_element(memory.begin(), memory.end());
-    figures.least_memory = *least;
-    figures.most_memory = *most;
-    for (const std::uint64_t bytes : memory) {
-      figures.mean_memory += static_cast<double>(bytes) / static_cast<double>(memory.size());
-    }
-  }
   const double ways = static_cast<double>(result.end) * machine.clusters;
   if (ways > 0.0) {
     // Sending the last ray may keep the host busy beyond the frame's end.
@@ -122,8 +98,8 @@ Bottleneck bottleneck_of(const MachineConfig& machine, const MachineResult& resu
   if (figures.host >= full) {
     return Bottleneck::host;
   }
-  return std::max(figures.host_link, figures.network.value_or(0.0)) >= full ? Bottleneck::network
-                                                                            : Bottleneck::none;
+  const double network = figure_of(machine, result, "network_utilisation").value_or(0.0);
+  return std::max(figures.host_link, network) >= full ? Bottleneck::network : Bottleneck::none;
 }
 
 FlowWaits flow_waits(const MachineConfig& machine, const MachineResult& result) {

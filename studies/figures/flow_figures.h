@@ -1,4 +1,5 @@
-// Figures of the schemes in which rays move: how busy stages and nodes are, and what their waits are due to.
+// What the catalogue does not have of the schemes in which rays move: how busy stages, nodes and the host
+// are, and what their waits are due to.
 #pragma once
 
 #include <optional>
@@ -27,16 +28,8 @@ struct StageLoad {
 struct FlowFigures {
   StageLoad all;
   std::vector<StageLoad> stages;  ///< empty where there are none
-  std::int64_t messages = 0;      ///< that went through the networks
-  std::int64_t bytes = 0;
-  double hops_a_message = 0.0;
-  /// Busy time / (links * frame time) of the busiest cluster's network; std::nullopt for an ideal network.
-  std::optional<double> network;
   double host = 0.0;       ///< share of the frame in which the host sends camera rays, mean of the clusters
   double host_link = 0.0;  ///< share in which contributions occupy its link; 0 for an ideal network or a bus
-  std::uint64_t least_memory = 0;  ///< bytes of the database in a node's own memory: least, mean, most
-  double mean_memory = 0.0;
-  std::uint64_t most_memory = 0;
 
   /// The stage whose nodes are busiest; where there are no stages, all nodes.
   [[nodiscard]] const StageLoad& slowest() const;

@@ -2,6 +2,7 @@
 #include <functional>
 #include <utility>
 
+#include "studies/figures/counted_figures.h"
 #include "studies/helps/least_time.h"
 #include "studies/helps/resources.h"
 #include "studies/helps/verdict.h"
@@ -35,11 +36,12 @@ class Measurement {
  public:
   Measurement(const Changer& changer, const std::optional<Prices>& prices,
               const processors::MachineConfig& machine, const processors::MachineResult& result,
-              const SharedLog& shared, Work budget)
+              const Counts& counts, const SharedLog& shared, Work budget)
       : changer_(changer),
         prices_(prices),
         machine_(machine),
         result_(result),
+        counts_(counts),
         shared_(shared),
         limited_(budget != unlimited_work),
         budget_(budget) {
@@ -155,7 +157,7 @@ class Measurement {
       const std::optional<Change>& change = one.resource.step ? one.resource.step : one.resource.best;
       MeasuredChange& into = one.help.step ? *one.help.step : *one.help.best;
       if (into.outcome != Outcome::measured) {
-        wanted.push_back({&change->machine, &into, share_of(one.help.part, machine_, result_)});
+        wanted.push_back({&change->machine, &into, share_of(one.help.part, counts_)});
       }
     }
     std::stable_sort(wanted.begin(), wanted.end(), [](const Replay& a, const Replay& b) {
@@ -273,6 +275,7 @@ class Measurement {
   const std::optional<Prices>& prices_;
   const processors::MachineConfig& machine_;
   const processors::MachineResult& result_;
+  const Counts& counts_;
   const SharedLog& shared_;
   bool limited_;
   Work budget_;  // what is left of it
@@ -286,11 +289,12 @@ WhatHelps what_helps(const sim::Config& config, const std::optional<Prices>& pri
                      const processors::MachineConfig& machine, const processors::MachineResult& result,
                      const SharedLog& shared, Work budget) {
   WhatHelps what;
+  const Counts counts = counts_of(machine, result);
   if (result.end > 0) {
     const Changer changer(config);
-    what = Measurement(changer, prices, machine, result, shared, budget).made();
+    what = Measurement(changer, prices, machine, result, counts, shared, budget).made();
   }
-  what.sentence = verdict(what, machine, result);
+  what.sentence = verdict(what, machine, result, counts);
   return what;
 }
 

@@ -15,6 +15,24 @@ bool named(const Help& help) { return saved(help) >= worth_naming; }
 // The step's price; 0 for one that has none.
 double price(const Help& help) { return help.step ? help.step->price.value_or(0.0) : 0.0; }
 
+// Whether a step only divides the program's work in another way, so that no part of the machine changes.
+bool is_of_program(const MeasuredChange& step) {
+  return std::all_of(step.keys.begin(), step.keys.end(), [](const KeyChange& change) {
+    return change.key.starts_with("packets.") || change.key.starts_with("build.") ||
+           change.key == "space.level";
+  });
+}
+
+std::string price_text(const MeasuredChange& step) {
+  if (!step.price) {
+    return {};
+  }
+  if (*step.price != 0.0) {
+    return fmt::format(", price {:+g}", *step.price);
+  }
+  return is_of_program(step) ? ", costs nothing" : ", without a price";
+}
+
 std::string percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
 
 // What the resource gives at its best, where that is more than the step gives.
@@ -116,16 +134,12 @@ std::vector<const Help*> best_helps(const WhatHelps& what) {
 }
 
 std::string gain_text(const Help& help) {
-  std::string text =
-      fmt::format("{}: frame {} shorter{}", describe(help.step->keys), percent(saved(help)), at_best(help));
-  if (help.step->price) {
-    text += price(help) == 0.0 ? std::string(", without a price") : fmt::format(", price {:+g}", price(help));
-  }
-  return text;
+  return fmt::format("{}: frame {} shorter{}{}", describe(help.step->keys), percent(saved(help)),
+                     at_best(help), price_text(*help.step));
 }
 
 std::string verdict(const WhatHelps& what, const processors::MachineConfig& machine,
-                    const processors::MachineResult& result) {
+                    const processors::MachineResult& result, const Counts& counts) {
   if (result.end == 0) {
     return "nothing: the frame takes no time on this machine";
   }
@@ -134,7 +148,8 @@ std::string verdict(const WhatHelps& what, const processors::MachineConfig& mach
   }
   const std::vector<const Help*> helps = best_helps(what);
   if (!helps.empty()) {
-    return fmt::format("{}{}; {}", gain_text(*helps[0]), ties(helps), why(*helps[0], machine, result));
+    return fmt::format("{}{}; {}", gain_text(*helps[0]), ties(helps),
+                       why(*helps[0], machine, result, counts));
   }
   if (what.pair) {
     return fmt::format("{} and {} bind together: {}: frame {} shorter, but by neither alone {}",

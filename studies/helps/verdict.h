@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "studies/figures/figure_parts.h"
 #include "studies/helps/what_helps.h"
 
 namespace marti::studies {
@@ -16,17 +17,18 @@ namespace marti::studies {
 /// without prices.
 [[nodiscard]] std::pair<int, double> worth(double saved, double price);
 
+// Everywhere `counts` are the counted figures of the result.
+
 /// The share of all nodes' time, at most 1, that has to do with a part of the machine; of an interconnect and
 /// of banks the share of the frame in which they are busy, if that is more.
-[[nodiscard]] double share_of(Part part, const processors::MachineConfig& machine,
-                              const processors::MachineResult& result);
+[[nodiscard]] double share_of(Part part, const Counts& counts);
 
 /// Why the part matters: how busy it is, or what share of the nodes' time it takes.
 [[nodiscard]] std::string why(const Help& help, const processors::MachineConfig& machine,
-                              const processors::MachineResult& result);
+                              const processors::MachineResult& result, const Counts& counts);
 
 /// The sentence of `what`, without a full stop.
 [[nodiscard]] std::string verdict(const WhatHelps& what, const processors::MachineConfig& machine,
-                                  const processors::MachineResult& result);
+                                  const processors::MachineResult& result, const Counts& counts);
 
 }  // namespace marti::studies

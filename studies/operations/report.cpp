@@ -94,7 +94,8 @@ void step_lines(Lines out, const OperationsStudy& study) {
   fmt::format_to(out, "   a step\n");
   for (const WalkRow& row : study.walks) {
     if (row.mailboxes) {
-      continue;  // the steps are the same, and one integer a look-up
+      continue;  // its steps take the operations of those without mailboxes, and one integer operation a
+                 // look-up
     }
     for (const StepRow& step : steps_of(row)) {
       if (step.per_ray == 0.0) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/error.h"
-#include "sim/files.h"
+#include "sim/made_directory.h"
 #include "studies/host/signals_held.h"
 #include "studies/report/page/report_page.h"
 #include "studies/report/plots/plots.h"
@@ -84,10 +84,8 @@ std::vector<fs::path> write_all(const fs::path& file, const std::string& page, c
   const SignalsHeld held;
   PendingFiles pending_page(directory_of(file));
   pending_page.write(file.filename().string(), page);
+  const sim::MadeDirectory made = directory.empty() ? sim::MadeDirectory() : sim::MadeDirectory(directory);
   PendingFiles pending_plots(directory);
-  if (!directory.empty()) {
-    sim::make_directory(directory);
-  }
   for (const Plot& plot : plots) {
     pending_plots.write(plot.file, plot.content);
   }

@@ -14,6 +14,7 @@
 #include "processors/replay/bounds.h"
 #include "processors/replay/replay.h"
 #include "sim/config.h"
+#include "sim/statistics.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/helps/what_helps.h"
 #include "studies/run/functional_run.h"
@@ -45,6 +46,17 @@ struct RunResult {
   /// A figure of the timed machine (studies/figures/derived_figures.h), measured against one node.
   [[nodiscard]] std::optional<double> figure(std::string_view name) const {
     return figure_of({&counts, &one_node_counts}, name);
+  }
+  /// A counted figure of the timed machine; 0 where the machine has no such part.
+  [[nodiscard]] std::int64_t count(std::string_view name) const { return count_of(counts, name).value_or(0); }
+  /// The counted figures that a component's counters are merged into: those whose names begin with `prefix`.
+  template <sim::HasCounters S>
+  [[nodiscard]] S counters(const std::string& prefix) const {
+    S sum;
+    for (const sim::Counter<S>& counter : S::counters()) {
+      sum.*counter.member = count(prefix + std::string(counter.name));
+    }
+    return sum;
   }
 };
 

@@ -4,9 +4,11 @@
 
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "sim/statistics.h"
 #include "studies/show/json_parts.h"
+#include "studies/show/text_columns.h"
 
 namespace marti::studies {
 
@@ -16,33 +18,35 @@ nlohmann::ordered_json build_json(const processors::BuildResult& build, bool per
           {"per_node", counters_list(build.nodes, per_node)}};
 }
 
-std::string build_lines(const processors::MachineResult& result) {
-  const processors::BuildResult& build = result.build;
+std::string build_lines(const RunResult& r) {
+  const processors::BuildResult& build = r.timed.build;
   std::string text;
   if (build.sharing == processors::Sharing::given) {
     return text;
   }
-  const auto out = std::back_inserter(text);
-  const processors::BuildCounts counts = build.counts();
-  const processors::BuildLevel all = build.all_levels();
-  fmt::format_to(out,
+  fmt::format_to(std::back_inserter(text),
                  "\nbuilding      {} before the frame, {:.2f} % of its time; {} during it, {} lock waits",
-                 counts.start_up_splits, 100.0 * sim::ratio(build.start_up, result.end).value_or(0.0),
-                 counts.splits, counts.waits);
-  if (build.wasted_splits() != 0) {
-    fmt::format_to(out, ", {} made more than once", build.wasted_splits());
+                 r.count("build_start_up_splits"),
+                 100.0 * sim::ratio(r.count("build_start_up"), r.count("end")).value_or(0.0),
+                 r.count("build_splits"), r.count("build_waits"));
+  if (const std::int64_t wasted = r.count("build_wasted_splits"); wasted != 0) {
+    text += fmt::format(", {} made more than once", wasted);
   }
-  fmt::format_to(out, "\n  {:<6}{:>10}{:>10}{:>10}{:>12}{:>12}{:>12}{:>14}\n", "level", "branches", "leaves",
-                 "partial", "node bytes", "list bytes", "released", "visits");
+  const TextColumns table = {8, {10, 10, 10, 12, 12, 12, 14}};
+  text += "\n" + table.row("  level", {"branches", "leaves", "partial", "node bytes", "list bytes",
+                                       "released", "visits"});
   const auto line = [&](const std::string& name, const processors::BuildLevel& level) {
-    fmt::format_to(out, "  {:<6}{:>10}{:>10}{:>10}{:>12}{:>12}{:>12}{:>14}\n", name, level.branches,
-                   level.leaves, level.partial, level.node_bytes, level.list_bytes, level.released_bytes,
-                   level.visits);
+    std::vector<std::string> cells;
+    for (const std::int64_t count : {level.branches, level.leaves, level.partial, level.node_bytes,
+                                     level.list_bytes, level.released_bytes, level.visits}) {
+      cells.push_back(std::to_string(count));
+    }
+    text += table.row("  " + name, cells);
   };
   for (std::size_t level = 0; level < build.levels.size(); ++level) {
     line(std::to_string(level + 1), build.levels[level]);
   }
-  line("all", all);
+  line("all", r.counters<processors::BuildLevel>("tree_"));
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "processors/replay/replay.h"
+#include "studies/run/run_result.h"
 
 namespace marti::studies {
 
@@ -12,6 +13,6 @@ namespace marti::studies {
 [[nodiscard]] nlohmann::ordered_json build_json(const processors::BuildResult& build, bool per_node);
 
 /// Lines of the summary; empty when the tree is given.
-[[nodiscard]] std::string build_lines(const processors::MachineResult& result);
+[[nodiscard]] std::string build_lines(const RunResult& result);
 
 }  // namespace marti::studies

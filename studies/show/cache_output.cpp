@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "studies/show/json_parts.h"
 
@@ -34,19 +35,16 @@ nlohmann::ordered_json second_level_json(const processors::MachineConfig& machin
   return object;
 }
 
-std::string second_level_line(const processors::MachineConfig& machine,
-                              const processors::MachineResult& result) {
-  if (machine.l2.sharing == SecondLevel::none) {
+std::string second_level_line(const RunResult& r) {
+  const SecondLevel sharing = r.machine.l2.sharing;
+  if (sharing == SecondLevel::none) {
     return {};
   }
-  const memory::CacheCounters sum = result.l2.counters();
-  const std::int64_t asked = sum.references();
+  const std::optional<double> hit_ratio = r.figure("l2_hit_ratio");
   return fmt::format("second level  {}: {} look-ups, {} misses, {}\n",
-                     machine.l2.sharing == SecondLevel::shared ? "one a cluster" : "one a node", asked,
-                     sum.misses,
-                     asked == 0 ? std::string("never asked")
-                                : fmt::format("hit ratio {:.2f} %", 100.0 * static_cast<double>(sum.hits) /
-                                                                        static_cast<double>(asked)));
+                     sharing == SecondLevel::shared ? "one a cluster" : "one a node",
+                     r.count("l2_hits") + r.count("l2_misses"), r.count("l2_misses"),
+                     hit_ratio ? fmt::format("hit ratio {:.2f} %", 100.0 * *hit_ratio) : "never asked");
 }
 
 }  // namespace marti::studies

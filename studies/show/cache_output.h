@@ -6,6 +6,7 @@
 
 #include "processors/machine/machine_config.h"
 #include "processors/replay/replay.h"
+#include "studies/run/run_result.h"
 
 namespace marti::studies {
 
@@ -15,7 +16,6 @@ namespace marti::studies {
                                                        bool per_cache);
 
 /// A line of the summary; empty without a second level.
-[[nodiscard]] std::string second_level_line(const processors::MachineConfig& machine,
-                                            const processors::MachineResult& result);
+[[nodiscard]] std::string second_level_line(const RunResult& result);
 
 }  // namespace marti::studies

@@ -4,7 +4,9 @@
 
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "sim/statistics.h"
 #include "studies/show/json_parts.h"
 
 namespace marti::studies {
@@ -14,25 +16,21 @@ nlohmann::ordered_json context_json(const processors::MachineConfig& machine,
   return {{"contexts", machine.contexts}, {"per_node", counters_list(result.nodes, per_node)}};
 }
 
-std::string context_lines(const processors::MachineConfig& machine, const processors::ContextResult& result) {
+std::string context_lines(const RunResult& r) {
   std::string text;
-  if (result.nodes.empty()) {
+  if (r.timed.contexts.nodes.empty()) {
     return text;
   }
   const auto out = std::back_inserter(text);
-  const processors::ContextCounts counts = result.counts();
-  if (machine.contexts > 1) {
+  if (r.machine.contexts > 1) {
     fmt::format_to(out, "contexts      {} a node, {} switches, {} waits for a line that another fetched\n",
-                   machine.contexts, counts.switches, counts.joined);
+                   r.machine.contexts, r.count("contexts_switches"), r.count("contexts_joined"));
   }
-  if (machine.prefetch.on()) {
-    const double issued = static_cast<double>(counts.issued);
+  if (r.machine.prefetch.on()) {
+    const std::optional<double> useful = sim::ratio(r.count("contexts_useful"), r.count("contexts_issued"));
     fmt::format_to(out, "prefetch      {} lines, {} of them useful, {} waits for one under way, {} dropped\n",
-                   counts.issued,
-                   counts.issued == 0
-                       ? "-"
-                       : fmt::format("{:.2f} %", 100.0 * static_cast<double>(counts.useful) / issued),
-                   counts.late, counts.dropped);
+                   r.count("contexts_issued"), useful ? fmt::format("{:.2f} %", 100.0 * *useful) : "-",
+                   r.count("contexts_late"), r.count("contexts_dropped"));
   }
   return text;
 }

@@ -6,6 +6,7 @@
 
 #include "processors/machine/machine_config.h"
 #include "processors/replay/replay.h"
+#include "studies/run/run_result.h"
 
 namespace marti::studies {
 
@@ -14,7 +15,6 @@ namespace marti::studies {
                                                   const processors::ContextResult& result, bool per_node);
 
 /// Lines of the summary; empty with one context and no prefetch.
-[[nodiscard]] std::string context_lines(const processors::MachineConfig& machine,
-                                        const processors::ContextResult& result);
+[[nodiscard]] std::string context_lines(const RunResult& result);
 
 }  // namespace marti::studies

@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <vector>
 
 #include "sim/statistics.h"
 #include "studies/show/json_parts.h"
+#include "studies/show/text_columns.h"
 
 namespace marti::studies {
 
@@ -27,18 +27,8 @@ std::string_view name_of(memory::RecordKind kind) {
 
 std::string_view work_of(const AttributionRow& row) { return row.splitting ? "split" : "trace"; }
 
-CacheCountResult::ByClass all_classes(const CacheCountResult& counts) {
-  CacheCountResult::ByClass sum{};
-  for (const CacheCountResult::ByClass& kind : *counts.miss_classes) {
-    for (std::size_t i = 0; i < sum.size(); ++i) {
-      sum[i] += kind[i];
-    }
-  }
-  return sum;
-}
-
-double percent(std::int64_t part, std::int64_t whole) {
-  return 100.0 * sim::ratio(part, whole).value_or(0.0);
+std::string percent(std::int64_t part, std::int64_t whole) {
+  return fmt::format("{:.2f} %", 100.0 * sim::ratio(part, whole).value_or(0.0));
 }
 
 // Sums of the rows by what `key` makes of them.
@@ -51,30 +41,27 @@ auto sums_by(const std::vector<AttributionRow>& rows, const Key& key) {
   return sums;
 }
 
-void attribution_lines(std::string& text, const std::vector<AttributionRow>& rows) {
-  const auto out = std::back_inserter(text);
+void attribution_lines(std::string& text, const RunResult& r) {
+  const std::vector<AttributionRow>& rows = *r.timed.counts.attribution;
   AttributionCounts all;
+  std::vector<AttributionRow> traced;
   for (const AttributionRow& row : rows) {
     sim::merge(all, row.counts);
+    if (!row.splitting) {
+      traced.push_back(row);
+    }
   }
-  fmt::format_to(out, "\nwhere misses and waits come from\n  {:<22}{:>15}{:>15}{:>12}{:>12}{:>12}\n", "",
-                 "references", "misses", "miss ratio", "of misses", "of waits");
+  const TextColumns table = {24, {15, 15, 12, 12, 12}};
+  text += "\nwhere misses and waits come from\n" +
+          table.row("", {"references", "misses", "miss ratio", "of misses", "of waits"});
   const auto line = [&](const std::string& name, const AttributionCounts& counts) {
-    fmt::format_to(out, "  {:<22}{:>15}{:>15}{:>10.2f} %{:>10.2f} %{:>10.2f} %\n", name, counts.references,
-                   counts.misses, percent(counts.misses, counts.references),
-                   percent(counts.misses, all.misses), percent(counts.waited(), all.waited()));
+    text +=
+        table.row("  " + name, {std::to_string(counts.references), std::to_string(counts.misses),
+                                percent(counts.misses, counts.references), percent(counts.misses, all.misses),
+                                percent(counts.waited(), all.waited())});
   };
   for (const auto& [level, counts] : sums_by(rows, [](const AttributionRow& row) { return row.level; })) {
     line(level == 0 ? "materials, texels" : "level " + std::to_string(level), counts);
-  }
-  std::vector<AttributionRow> traced;
-  AttributionCounts splitting;
-  for (const AttributionRow& row : rows) {
-    if (row.splitting) {
-      sim::merge(splitting, row.counts);
-    } else {
-      traced.push_back(row);
-    }
   }
   for (const auto& [ray, counts] : sums_by(traced, [](const AttributionRow& row) { return row.ray; })) {
     line(std::string(processors::ray_kind_names[static_cast<std::size_t>(ray)]) + " rays", counts);
@@ -83,8 +70,26 @@ void attribution_lines(std::string& text, const std::vector<AttributionRow>& row
     line("bounce " + std::to_string(bounce), counts);
   }
   if (traced.size() != rows.size()) {
-    line("splitting branches", splitting);
+    line("splitting branches", r.counters<AttributionCounts>("split_"));
   }
+}
+
+void class_lines(std::string& text, const RunResult& r) {
+  const TextColumns table = {14, std::vector<int>(memory::miss_classes, 15)};
+  text += "\n" + table.row("misses", {memory::miss_class_names.begin(), memory::miss_class_names.end()});
+  const auto line = [&](const std::string& name) {
+    std::vector<std::string> cells;
+    for (const std::string_view kind : memory::miss_class_names) {
+      cells.push_back(std::to_string(r.count(name + "_misses_" + std::string(kind))));
+    }
+    const bool none =
+        std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell == "0"; });
+    text += none && name != "all" ? std::string() : table.row("  " + name, cells);
+  };
+  for (const std::string_view kind : memory::record_kind_names) {
+    line(std::string(kind));
+  }
+  line("all");
 }
 
 }  // namespace
@@ -114,34 +119,23 @@ nlohmann::ordered_json counts_json(const CacheCountResult& counts) {
   return object;
 }
 
-std::string counts_lines(const processors::MachineConfig& machine, const CacheCountResult& counts) {
+std::string counts_lines(const RunResult& r) {
   std::string text;
-  const auto out = std::back_inserter(text);
-  if (counts.miss_classes) {
-    fmt::format_to(out, "\nmisses        {:>15}{:>15}{:>15}{:>15}\n", memory::miss_class_names[0],
-                   memory::miss_class_names[1], memory::miss_class_names[2], memory::miss_class_names[3]);
-    const auto line = [&](std::string_view name, const CacheCountResult::ByClass& classes) {
-      fmt::format_to(out, "  {:<12}{:>15}{:>15}{:>15}{:>15}\n", name, classes[0], classes[1], classes[2],
-                     classes[3]);
-    };
-    for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
-      const CacheCountResult::ByClass& classes = (*counts.miss_classes)[kind];
-      if (std::any_of(classes.begin(), classes.end(), [](std::int64_t count) { return count != 0; })) {
-        line(memory::record_kind_names[kind], classes);
-      }
-    }
-    line("all", all_classes(counts));
+  if (r.timed.counts.miss_classes) {
+    class_lines(text, r);
   }
-  if (counts.sharing) {
-    const memory::SharingResult& sharing = *counts.sharing;
-    fmt::format_to(out,
-                   "\nsharing       {} fetches of {} lines, {:.2f} % of lines fetched before; "
-                   "{} lines by one node only, {} by all {}\n",
-                   sharing.fetches, sharing.distinct, percent(sharing.duplicates(), sharing.fetches),
-                   sharing.by(1), sharing.by(machine.nodes), machine.nodes);
+  if (r.timed.counts.sharing) {
+    const std::int64_t fetches = r.count("sharing_fetches");
+    const std::int64_t lines = r.count("sharing_distinct_lines");
+    text += fmt::format(
+        "\nsharing       {} fetches of {} lines, {} of lines fetched before; {} lines by one node only, {} "
+        "by "
+        "all {}\n",
+        fetches, lines, percent(fetches - lines, fetches), r.count("sharing_lines_of_one"),
+        r.count("sharing_lines_of_all"), r.machine.nodes);
   }
-  if (counts.attribution) {
-    attribution_lines(text, *counts.attribution);
+  if (r.timed.counts.attribution) {
+    attribution_lines(text, r);
   }
   return text;
 }

@@ -5,8 +5,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "processors/machine/machine_config.h"
 #include "processors/replay/replay.h"
+#include "studies/run/run_result.h"
 #include "studies/tables/table.h"
 
 namespace marti::studies {
@@ -15,8 +15,7 @@ namespace marti::studies {
 [[nodiscard]] nlohmann::ordered_json counts_json(const processors::CacheCountResult& counts);
 
 /// Lines of the summary; empty when nothing was asked for.
-[[nodiscard]] std::string counts_lines(const processors::MachineConfig& machine,
-                                       const processors::CacheCountResult& counts);
+[[nodiscard]] std::string counts_lines(const RunResult& result);
 
 /// The table "attribution": a row for each cell that is not empty.
 [[nodiscard]] Table attribution_table(const std::vector<processors::AttributionRow>& rows);

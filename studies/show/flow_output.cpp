@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
 
 #include "sim/statistics.h"
 #include "studies/figures/flow_figures.h"
@@ -16,18 +17,9 @@ namespace marti::studies {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using processors::FlowCounts;
 using processors::MachineConfig;
 using processors::MachineResult;
 using processors::Scheme;
-
-FlowCounts sum_of_nodes(const MachineResult& result) {
-  FlowCounts sum;
-  for (const FlowCounts& node : result.flow.nodes) {
-    sim::merge(sum, node);
-  }
-  return sum;
-}
 
 Json load_json(const StageLoad& load) {
   return {{"name", load.name},
@@ -54,7 +46,13 @@ std::string short_time(double ticks) {
   return s >= 1e-3 ? fmt::format("{:.3f} ms", s * 1e3) : fmt::format("{:.3f} us", s * 1e6);
 }
 
-double ratio(std::int64_t part, std::int64_t whole) { return sim::ratio(part, whole).value_or(0.0); }
+double ratio(const RunResult& r, std::string_view part, std::string_view whole) {
+  return sim::ratio(r.count(part), r.count(whole)).value_or(0.0);
+}
+
+std::string bytes_of(const RunResult& r, std::string_view figure) {
+  return bytes(static_cast<double>(r.count(figure)));
+}
 
 void load_line(std::back_insert_iterator<std::string> out, const StageLoad& load) {
   fmt::format_to(out, "  {:<12}{} node{}, {:.1f} % busy (the busiest {:.1f} %", load.name, load.nodes,
@@ -89,53 +87,45 @@ nlohmann::ordered_json flow_json(const MachineConfig& machine, const MachineResu
           {"per_node", nodes}};
 }
 
-std::string flow_lines(const MachineConfig& machine, const MachineResult& result) {
+std::string flow_lines(const RunResult& r) {
+  const MachineConfig& machine = r.machine;
   std::string text;
   if (machine.scheme == Scheme::image) {
     return text;
   }
   const auto out = std::back_inserter(text);
-  const FlowFigures figures = flow_figures(machine, result);
-  const processors::FlowResult& flow = result.flow;
-  const FlowCounts counts = sum_of_nodes(result);
-  const auto rays = static_cast<std::int64_t>(flow.rays);
-  fmt::format_to(out, "\nrays          {}, at most {} in flight, at most {} set aside at a node\n", flow.rays,
-                 flow.most_in_flight, counts.most_set_aside);
-  fmt::format_to(out, "  messages    {}, {:.1f} a ray, {} ({:.0f} B a ray)\n", figures.messages,
-                 ratio(figures.messages, rays), bytes(static_cast<double>(figures.bytes)),
-                 ratio(figures.bytes, rays));
-  fmt::format_to(out, "  queues      mean wait {}\n", short_time(ratio(counts.queued, counts.taken)));
+  const FlowFigures figures = flow_figures(machine, r.timed);
+  fmt::format_to(out, "\nrays          {}, at most {} in flight, at most {} set aside at a node\n",
+                 r.count("flow_rays"), r.count("flow_most_in_flight"), r.count("flow_most_set_aside"));
+  fmt::format_to(out, "  messages    {}, {:.1f} a ray, {} ({:.0f} B a ray)\n", r.count("network_messages"),
+                 ratio(r, "network_messages", "flow_rays"), bytes_of(r, "network_bytes"),
+                 ratio(r, "network_bytes", "flow_rays"));
+  fmt::format_to(out, "  queues      mean wait {}\n", short_time(ratio(r, "flow_queued", "flow_taken")));
   for (const StageLoad& stage : figures.stages) {
     load_line(out, stage);
   }
   load_line(out, figures.all);
-  if (figures.most_memory == 0) {
+  if (r.count("flow_most_memory") == 0) {
     fmt::format_to(out, "  memory      none in the nodes: the database is in the clusters' memories\n");
   } else {
-    fmt::format_to(out, "  memory      of a node: {} to {}, mean {}\n",
-                   bytes(static_cast<double>(figures.least_memory)),
-                   bytes(static_cast<double>(figures.most_memory)), bytes(figures.mean_memory));
+    fmt::format_to(out, "  memory      of a node: {} to {}, mean {}\n", bytes_of(r, "flow_least_memory"),
+                   bytes_of(r, "flow_most_memory"), bytes(ratio(r, "flow_memory", "nodes")));
   }
   if (machine.scheme == Scheme::space) {
     fmt::format_to(out, "  regions     {}, below {} nodes that all have; {} primitives more than once\n",
-                   flow.regions, flow.top_nodes, flow.duplicated_primitives);
+                   r.count("regions"), r.count("top_nodes"), r.count("duplicated_primitives"));
     if (machine.space.policy == processors::RegionPolicy::sampled) {
       fmt::format_to(out, "  pre-pass    {} of one node's computing before the frame\n",
-                     short_time(static_cast<double>(flow.sampling_work)));
+                     short_time(static_cast<double>(r.count("sampling_work"))));
     }
   }
   fmt::format_to(out, "network       {}",
                  memory::network_kind_names[static_cast<std::size_t>(machine.network.kind)]);
-  if (figures.network) {
-    memory::WaitStatistics waits;
-    for (const memory::NetworkStatistics& network : flow.networks) {
-      waits.count += network.waits.count;
-      waits.sum = sim::add_ticks(waits.sum, network.waits.sum);
-      waits.max = std::max(waits.max, network.waits.max);
-    }
+  if (const std::optional<double> busy = r.figure("network_utilisation")) {
     fmt::format_to(out, ", links {:.1f} % busy, {:.1f} hops a message, mean wait {}, longest {}",
-                   100.0 * *figures.network, figures.hops_a_message,
-                   short_time(ratio(waits.sum, waits.count)), short_time(static_cast<double>(waits.max)));
+                   100.0 * *busy, r.figure("hops_a_message").value_or(0.0),
+                   short_time(r.figure("mean_network_wait").value_or(0.0)),
+                   short_time(static_cast<double>(r.count("network_wait_max"))));
   }
   text += "\n";
   return text;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "processors/replay/replay.h"
+#include "studies/run/run_result.h"
 
 namespace marti::studies {
 
@@ -13,7 +14,6 @@ namespace marti::studies {
                                                const processors::MachineResult& result, bool per_node);
 
 /// Lines of the summary; empty with the image scheme.
-[[nodiscard]] std::string flow_lines(const processors::MachineConfig& machine,
-                                     const processors::MachineResult& result);
+[[nodiscard]] std::string flow_lines(const RunResult& result);
 
 }  // namespace marti::studies

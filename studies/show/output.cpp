@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "sim/files.h"
+#include "sim/pending_file.h"
 #include "sim/sha256.h"
 #include "studies/host/image_file.h"
 #include "studies/host/signals_held.h"
@@ -45,9 +45,13 @@ void add_files(const RunResult& result, PendingFiles& files) {
 
 }  // namespace
 
-void prepare_output(const std::filesystem::path& directory) {
-  sim::make_directory(directory);
+sim::MadeDirectory prepare_output(const std::filesystem::path& directory) {
+  if (directory.empty()) {
+    return {};
+  }
+  sim::MadeDirectory made(directory);
   const sim::PendingFile probe(directory / "probe");
+  return made;
 }
 
 WrittenRun write_output(const RunResult& result, const std::filesystem::path& directory) {

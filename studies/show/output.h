@@ -5,12 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "sim/made_directory.h"
 #include "studies/run/run_result.h"
 
 namespace marti::studies {
 
-/// Makes sure that `directory` exists and can be written to, so that a long run does not end in a refusal.
-void prepare_output(const std::filesystem::path& directory);
+/// Makes sure that `directory` exists and can be written to, so that a long run does not end in a refusal. To
+/// be kept until the files are written: what was made and is empty then is removed. An empty name makes
+/// nothing.
+[[nodiscard]] sim::MadeDirectory prepare_output(const std::filesystem::path& directory);
 
 struct WrittenRun {
   std::vector<std::filesystem::path> files;

@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <iterator>
 #include <optional>
 #include <utility>
 
-#include "sim/units.h"
+#include "sim/statistics.h"
 #include "studies/figures/find_limit.h"
 #include "studies/run/plan/plan_output.h"
 #include "studies/run/run_result.h"
@@ -17,6 +16,7 @@
 #include "studies/show/flow_output.h"
 #include "studies/show/helps_output.h"
 #include "studies/show/scaling_output.h"
+#include "studies/show/text_columns.h"
 #include "studies/show/working_set_output.h"
 #include "studies/tables/text_units.h"
 
@@ -35,8 +35,12 @@ std::string ratio(std::optional<double> value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : "-";
 }
 
-std::string percent(double part, double whole) {
-  return whole > 0.0 ? fmt::format("{:.2f} %", 100.0 * part / whole) : "-";
+std::string percent(std::optional<double> share) {
+  return share ? fmt::format("{:.2f} %", 100.0 * *share) : "-";
+}
+
+std::string percent(std::uint64_t part, std::uint64_t whole) {
+  return percent(sim::ratio(static_cast<std::int64_t>(part), static_cast<std::int64_t>(whole)));
 }
 
 void scene_lines(Lines out, const RunResult& r) {
@@ -90,23 +94,20 @@ void voxel_lines(Lines out, const RunResult& r) {
   if (frame.voxels == 0) {
     fmt::format_to(out, "no cell of the tree is that small\n");
   } else {
-    const double rays = static_cast<double>(frame.rays.all() - frame.rays.traced[1]);
+    const std::uint64_t rays = frame.rays.all() - frame.rays.traced[1];
     const std::uint64_t taken = frame.rays.voxels[0] + frame.rays.voxels[2] + frame.rays.voxels[3];
     fmt::format_to(out, "{} voxels from level {} on; {} rays saw one ({} of all but shadow rays)\n",
                    grouped(std::uint64_t{frame.voxels}), frame.first_voxel_level, grouped(taken),
-                   percent(static_cast<double>(taken), rays));
+                   percent(taken, rays));
   }
   const auto use = [&](std::string_view name, const DatabaseUse& u, const processors::LogTotals& totals) {
     const accel::Topology& topology = frame.log->topology;
     const memory::LayoutConfig& layout = r.machine.layout;
-    const auto share = [](std::uint64_t part, std::size_t whole) {
-      return percent(static_cast<double>(part), static_cast<double>(whole));
-    };
     const std::uint64_t needed = u.nodes * layout.node_bytes + u.entries * layout.entry_bytes +
                                  u.primitives * layout.primitive_bytes + u.voxels * layout.material_bytes;
     fmt::format_to(out, "  {:<12}reads {} nodes ({}), {} of the lists, {} of the primitives, {} voxels: {}\n",
-                   name, grouped(u.nodes), share(u.nodes, topology.nodes.size()),
-                   share(u.entries, topology.entries.size()), share(u.primitives, frame.log->primitives),
+                   name, grouped(u.nodes), percent(u.nodes, topology.nodes.size()),
+                   percent(u.entries, topology.entries.size()), percent(u.primitives, frame.log->primitives),
                    grouped(u.voxels), bytes(static_cast<double>(needed)));
     fmt::format_to(out, "  {:<12}{} steps, {:.1f} a ray\n", "", grouped(totals.all_steps()),
                    static_cast<double>(totals.all_steps()) / static_cast<double>(totals.all_rays()));
@@ -114,12 +115,11 @@ void voxel_lines(Lines out, const RunResult& r) {
   use("cut", report.use, r.functional.totals);
   if (report.exact) {
     const ImageError& error = report.exact->error;
-    const auto pixels = static_cast<double>(frame.image.pixels.size());
+    const std::size_t pixels = frame.image.pixels.size();
     use("exact", report.exact->use, report.exact->totals);
-    fmt::format_to(out,
-                   "  {:<12}RMSE {:.5f}, largest {:.3f}, {} of the pixels changed, {} by more than 1/255\n",
-                   "error", error.rmse, error.largest, percent(static_cast<double>(error.changed), pixels),
-                   percent(static_cast<double>(error.visible), pixels));
+    fmt::format_to(
+        out, "  {:<12}RMSE {:.5f}, largest {:.3f}, {} of the pixels changed, {} by more than 1/255\n",
+        "error", error.rmse, error.largest, percent(error.changed, pixels), percent(error.visible, pixels));
   }
 }
 
@@ -146,62 +146,62 @@ void machine_lines(Lines out, const RunResult& r) {
 }
 
 void time_lines(Lines out, const RunResult& r) {
-  const processors::TimeDivision time = r.timed.time();
-  const double all = static_cast<double>(r.timed.end) * static_cast<double>(r.timed.nodes.size());
   fmt::format_to(out, "\nwhere the nodes' time goes\n");
-  for (std::size_t i = 0; i < processors::activities; ++i) {
-    if (time[i] != 0) {
-      fmt::format_to(out, "  {:<20}{:>9}\n", processors::activity_names[i],
-                     percent(static_cast<double>(time[i]), all));
+  for (const std::string_view activity : processors::activity_names) {
+    const std::string name(activity);
+    if (r.count("time_" + name) != 0) {
+      fmt::format_to(out, "  {:<20}{:>9}\n", name, percent(r.figure("share_" + name)));
     }
   }
 }
 
-// "mean wait 0.1 us, ..." of what waited at a queue.
-std::string waiting(const memory::WaitStatistics& w) {
-  if (w.count == 0) {
+// "mean wait 0.1 us, ..." at a queue, "bank" for example.
+std::string waiting(const RunResult& r, const std::string& queue,
+                    const std::optional<memory::WaitStatistics>& waits) {
+  const std::optional<double> mean = r.figure("mean_" + queue + "_wait");
+  if (!mean) {
     return "no transactions";
   }
-  return fmt::format("mean wait {}, 95 % below {}, longest {}", seconds(w.sum / w.count),
-                     seconds(w.histogram.percentile(95.0).value_or(0)), seconds(w.max));
+  return fmt::format("mean wait {}, 95 % below {}, longest {}", seconds(static_cast<sim::Ticks>(*mean)),
+                     seconds(waits->histogram.percentile(95.0).value_or(0)),
+                     seconds(r.count(queue + "_wait_max")));
 }
 
 void distribution_lines(Lines out, const RunResult& r) {
-  const memory::DistributedStatistics& accesses = *r.totals.distributed;
-  const memory::NetworkStatistics& network = *r.totals.network;
-  const std::int64_t remote = accesses.remote_reads + accesses.remote_writes;
-  const std::int64_t all = remote + accesses.local_reads + accesses.local_writes;
-  fmt::format_to(out,
-                 "\n{:<14}{} messages, {} with their headers, {:.1f} hops each; {} of the accesses remote\n",
-                 "network", grouped(network.messages), bytes(static_cast<double>(network.bytes)),
-                 r.figure("hops_a_message").value_or(0.0),
-                 percent(static_cast<double>(remote), static_cast<double>(all)));
+  const std::int64_t remote = r.count("distributed_remote_reads") + r.count("distributed_remote_writes");
+  const std::int64_t all = remote + r.count("distributed_local_reads") + r.count("distributed_local_writes");
+  fmt::format_to(
+      out, "\n{:<14}{} messages, {} with their headers, {:.1f} hops each; {} of the accesses remote\n",
+      "network", grouped(r.count("network_messages")), bytes(static_cast<double>(r.count("network_bytes"))),
+      r.figure("hops_a_message").value_or(0.0), percent(sim::ratio(remote, all)));
   if (const std::optional<double> used = r.figure("interconnect_utilisation")) {
     fmt::format_to(out, "  {:<12}{:.1f} % of its links busy, {}\n",
                    memory::network_kind_names[static_cast<std::size_t>(r.machine.network.kind)],
-                   100.0 * *used, waiting(*r.totals.network_waits));
+                   100.0 * *used, waiting(r, "network", r.totals.network_waits));
   }
 }
 
 void memory_lines(Lines out, const RunResult& r) {
-  const processors::ReferenceCounts references = r.timed.references();
-  fmt::format_to(out, "\nreferences    {:>15} {:>15} {:>10}\n", "lines", "misses", "hit ratio");
-  const auto line = [&](std::string_view name, std::int64_t hits, std::int64_t misses) {
-    if (hits + misses > 0) {
-      fmt::format_to(out, "  {:<11} {:>15} {:>15} {:>10}\n", name, grouped(hits + misses), grouped(misses),
-                     percent(static_cast<double>(hits), static_cast<double>(hits + misses)));
+  const TextColumns table = {14, {15, 16, 11}};
+  fmt::format_to(out, "\n{}", table.row("references", {"lines", "misses", "hit ratio"}));
+  const auto line = [&](std::string_view name, const std::string& prefix, const std::string& hit_ratio) {
+    const std::int64_t misses = r.count(prefix + "misses");
+    if (const std::int64_t lines = r.count(prefix + "hits") + misses; lines > 0) {
+      fmt::format_to(out, "{}",
+                     table.row(fmt::format("  {}", name),
+                               {grouped(lines), grouped(misses), percent(r.figure(hit_ratio))}));
     }
   };
-  for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
-    line(memory::record_kind_names[kind], references.hits[kind], references.misses[kind]);
+  for (const std::string_view kind : memory::record_kind_names) {
+    line(kind, std::string(kind) + "_", "hit_ratio_" + std::string(kind));
   }
-  line("all", references.all_hits(), references.all_misses());
-  fmt::format_to(out, "{}", second_level_line(r.machine, r.timed));
+  line("all", "", "hit_ratio");
+  fmt::format_to(out, "{}", second_level_line(r));
   if (r.machine.scheme == processors::Scheme::space) {
     return;  // nodes share no memory
   }
 
-  const double moved = static_cast<double>(r.totals.interconnect->bytes);
+  const double moved = static_cast<double>(r.count("interconnect_bytes"));
   const bool distributed = r.machine.placement == processors::Placement::distributed;
   const bool ideal = r.machine.interconnect.kind == memory::InterconnectKind::ideal;
   if (ideal && !distributed) {
@@ -213,12 +213,11 @@ void memory_lines(Lines out, const RunResult& r) {
   } else {
     fmt::format_to(out, "\n{:<14}{:.1f} % busy, {}, {} moved\n", interconnect_name(r.machine),
                    100.0 * r.figure("interconnect_utilisation").value_or(0.0),
-                   waiting(*r.totals.interconnect_waits), bytes(moved));
+                   waiting(r, "interconnect", r.totals.interconnect_waits), bytes(moved));
   }
   fmt::format_to(out, "{:<14}{:.1f} % busy (the busiest {:.1f} %), {}\n", distributed ? "memories" : "banks",
                  100.0 * r.figure("mean_bank_utilisation").value_or(0.0),
-                 100.0 * r.figure("bank_utilisation").value_or(0.0),
-                 r.totals.bank_waits ? waiting(*r.totals.bank_waits) : "no transactions");
+                 100.0 * r.figure("bank_utilisation").value_or(0.0), waiting(r, "bank", r.totals.bank_waits));
 }
 
 }  // namespace
@@ -239,14 +238,14 @@ std::string summary_of(const RunResult& r) {
   text += loss_lines(r);
   time_lines(out, r);
   memory_lines(out, r);
-  text += counts_lines(r.machine, r.timed.counts);
+  text += counts_lines(r);
   if (r.working_set) {
     text += working_set_lines(*r.working_set);
   }
   text += critical_path_lines(r);
-  text += context_lines(r.machine, r.timed.contexts);
-  text += build_lines(r.timed);
-  text += flow_lines(r.machine, r.timed);
+  text += context_lines(r);
+  text += build_lines(r);
+  text += flow_lines(r);
   text += bound_lines(r);
   text += record_lines(r);
   if (r.helps) {

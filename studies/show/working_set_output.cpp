@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sim/statistics.h"
+#include "studies/show/text_columns.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies {
@@ -87,13 +88,14 @@ void cache_lines(std::string& text, const WorkingSet& set, std::size_t number) {
   const auto out = std::back_inserter(text);
   const CacheWorkingSet& cache = set.caches[number];
   const memory::StackHistogram& distances = cache.distances;
-  fmt::format_to(out, "  {:<12}{:>12}{:>12}{:>15}{:>12}{:>16}\n", name_of(set, number), "lines", "bytes",
-                 "misses", "miss ratio", "of compulsory");
+  const TextColumns table = {14, {12, 12, 15, 12, 16}};
+  text += table.row("  " + std::string(name_of(set, number)),
+                    {"lines", "bytes", "misses", "miss ratio", "of compulsory"});
   for (const Point& point : powers_of_two(distances)) {
-    fmt::format_to(out, "  {:<12}{:>12}{:>12}{:>15}{:>10.3f} %{:>14.2f} x\n", "", point.size,
-                   size_text(set, point.size), point.misses,
-                   100.0 * share_of(point.misses, distances.references),
-                   share_of(point.misses, distances.compulsory));
+    text +=
+        table.row("", {std::to_string(point.size), size_text(set, point.size), std::to_string(point.misses),
+                       fmt::format("{:.3f} %", 100.0 * share_of(point.misses, distances.references)),
+                       fmt::format("{:.2f} x", share_of(point.misses, distances.compulsory))});
   }
   fmt::format_to(out, "  {:<12}2 x compulsory with {} ({} lines), 1.1 x with {} ({}), 1 x with {} ({})\n", "",
                  size_text(set, lines_within(distances, 20)), lines_within(distances, 20),

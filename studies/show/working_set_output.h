@@ -1,5 +1,5 @@
-// The misses of caches of other sizes and ways in the summary and in result.json, as a table and as a chart,
-// from one pass over a run's references.
+// The misses of caches of other sizes and ways in the summary, in result.json and as a table, from one pass
+// over a run's references.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -20,8 +20,5 @@ namespace marti::studies {
 /// that neighbours differ by 1/256 of their size or more, with all powers of two; then all ways counted at
 /// the machine's number of sets.
 [[nodiscard]] Table working_set_table(const processors::WorkingSet& set);
-
-/// The chart of the table.
-[[nodiscard]] std::string working_set_chart(const Table& table);
 
 }  // namespace marti::studies

@@ -48,6 +48,24 @@ std::vector<bool> found_in(const std::vector<std::string>& keys, const std::vect
   return found;
 }
 
+// Ends a store and removes its file if that holds no result. On a full disk, where a store cannot be ended,
+// it stays.
+void remove_if_empty(SweepStore& store, const std::filesystem::path& file) {
+  const auto any = [](const std::vector<bool>& done) {
+    return std::find(done.begin(), done.end(), true) != done.end();
+  };
+  try {
+    if (any(store.done()) || any(store.frames_done())) {
+      return;
+    }
+    store.close();
+    if (std::error_code ignored; !has_log_or_journal(file)) {
+      std::filesystem::remove(file, ignored);
+    }
+  } catch (const sim::UserError&) {
+  }
+}
+
 }  // namespace
 
 SweepOutlook look_ahead(const SweepPlan& plan, const SweepOptions& options) {
@@ -66,16 +84,22 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
                       const std::optional<Prices>& prices,
                       const std::function<void(const std::string&)>& announce) {
   refuse_large_machines(plan, limit);
-  prepare_output(options.directory);
+  const sim::MadeDirectory made = prepare_output(options.directory);
   SweepReport report;
   report.store = options.directory / "results.sqlite";
   report.points = options.directory / "points.csv";
-  const bool begun = is_begun(report.store);
-  announce(describe(plan, look_ahead(plan, options)));  // checks a store that was begun
+  // Nobody else may write the store from its check until the tables that follow from it are written.
+  std::optional<StoreLock> lock(std::in_place, report.store);
+  const auto unlock = [&lock](int /*signal*/) { lock.reset(); };
+  const bool is_new = !is_begun(report.store);
+  {
+    const AtSignal unlocked(unlock);
+    announce(describe(plan, look_ahead(plan, options)));  // checks a store that was begun
+  }
   const unsigned threads = threads_of(options);
   const unsigned all_threads =
       threads * (options.ranks != nullptr ? static_cast<unsigned>(options.ranks->size()) : 1U);
-  SweepStore store(report.store, plan, begun);
+  SweepStore store(report.store, plan, &*lock);
   const Schedule left(plan, store.done(), store.frames_done());
   report.timed = left.machines_left();
   report.traced = left.frames_left();
@@ -93,29 +117,32 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
       server->over(frame);
     }
   });
-  {
-    const AtSignal last_words([&](int /*signal*/) {
+  try {
+    const AtSignal last_words([&](int signal) {
       const std::size_t saved = coordinator.close_for_good();
+      unlock(signal);
       std::fprintf(
           stderr, "marti: interrupted: %zu of %zu machines are saved in %s; the same command does the rest\n",
           saved, plan.machines.size(), report.store.c_str());
     });
-    try {
-      if (server) {
-        server->work(site, coordinator, options.configuration, threads);
-      } else {
-        // More workers than tasks would only wait.
-        const std::size_t tasks = std::max<std::size_t>(1, report.timed + report.traced);
-        work_together(site, coordinator, static_cast<unsigned>(std::min<std::size_t>(threads, tasks)));
-      }
-    } catch (const sim::UserError& error) {
-      progress.end();
-      throw sim::UserError(error.what() + (" (" + std::to_string(coordinator.saved())) + " of " +
-                           std::to_string(plan.machines.size()) + " machines are saved)");
+    if (server) {
+      server->work(site, coordinator, options.configuration, threads);
+    } else {
+      // More workers than tasks would only wait.
+      const std::size_t tasks = std::max<std::size_t>(1, report.timed + report.traced);
+      work_together(site, coordinator, static_cast<unsigned>(std::min<std::size_t>(threads, tasks)));
     }
+  } catch (const sim::UserError& error) {
+    progress.end();
+    if (is_new) {
+      remove_if_empty(store, report.store);
+    }
+    throw sim::UserError(error.what() + (" (" + std::to_string(coordinator.saved())) + " of " +
+                         std::to_string(plan.machines.size()) + " machines are saved)");
   }
   progress.end();
   store.close();
+  const AtSignal unlocked(unlock);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report.reader = std::make_unique<const SweepReader>(report.store);
   report.limited = limited_points(*report.reader, prices);

@@ -19,10 +19,10 @@ std::span<const std::string_view> run_file_names() {
 
 std::map<std::string, std::string> files_of(const RunJson& run) {
   std::map<std::string, std::string> files;
-  const RunJson named(run.find("files"), run.file());
+  const RunJson named = run.part("files");
   for (const std::string_view name : run_file_names()) {
     if (named.json().is_object() && named.json().contains(name)) {
-      files[std::string(name)] = RunJson(named.json()[name], run.file()).text("sha256");
+      files[std::string(name)] = named.of(named.json()[name]).text("sha256");
     }
   }
   return files;

@@ -22,9 +22,13 @@ constexpr std::size_t most_fields = 2000;
 
 const Json none;
 
-[[noreturn]] void refuse(const std::string& file, const std::string& reason) {
-  throw sim::UserError(file + ": " + reason +
-                       "; expected is the result.json of `marti run CONFIG -o DIR`: run it again");
+[[noreturn]] void refuse(const std::string& file, const std::string& reason, MadeBy made_by = MadeBy::run) {
+  throw sim::UserError(
+      file + ": " + reason +
+      (made_by == MadeBy::run
+           ? "; expected is the result.json of `marti run CONFIG -o DIR`: run it again"
+           : "; expected is a point of a sweep by this version of `marti sweep CONFIG -o DIR`: "
+             "run it again in another directory"));
 }
 
 // Limits depth and number of fields: readers may walk a result by recursion, and filling an object that keeps
@@ -83,7 +87,7 @@ const Json& RunJson::at(std::string_view path) const {
   return part;
 }
 
-void RunJson::refuse(const std::string& reason) const { studies::refuse(file_, reason); }
+void RunJson::refuse(const std::string& reason) const { studies::refuse(file_, reason, made_by_); }
 
 std::optional<double> RunJson::number(std::string_view path) const {
   const Json& value = find(path);
@@ -125,7 +129,7 @@ std::vector<RunJson> RunJson::list(std::string_view path) const {
   if (value.is_array()) {
     for (const Json& part : value) {
       if (part.is_object()) {
-        parts.emplace_back(part, file_);
+        parts.push_back(of(part));
       }
     }
   }

@@ -1,6 +1,8 @@
-// A result.json, read with care: a field may be missing or of another type, whoever wrote the file.
+// A result.json, read with care: anybody may have changed the file, so a field may be missing or of another
+// type.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -11,10 +13,14 @@
 
 namespace marti::studies {
 
-/// A part of a result. Fields are named by their path: "machine.what_helps.sentence".
+/// Which command has made a result: a refusal says that it has to be run again.
+enum class MadeBy : std::uint8_t { run, sweep };
+
+/// A result, or a part of one. Fields are named by their path: "machine.what_helps.sentence".
 class RunJson {
  public:
-  RunJson(nlohmann::ordered_json json, std::string file) : json_(std::move(json)), file_(std::move(file)) {}
+  RunJson(nlohmann::ordered_json json, std::string file, MadeBy made_by = MadeBy::run)
+      : json_(std::move(json)), file_(std::move(file)), made_by_(made_by) {}
 
   /// The field; null when it is missing.
   [[nodiscard]] const nlohmann::ordered_json& find(std::string_view path) const;
@@ -31,11 +37,14 @@ class RunJson {
   /// Empty when the field is missing or not a text.
   [[nodiscard]] std::string text(std::string_view path) const;
   [[nodiscard]] bool boolean(std::string_view path) const;
+  /// Another part of the same result: the field, or `json`, which was found in it.
+  [[nodiscard]] RunJson part(std::string_view path) const { return of(find(path)); }
+  [[nodiscard]] RunJson of(const nlohmann::ordered_json& json) const { return {json, file_, made_by_}; }
   /// The objects of a list; empty when the field is missing or not a list. Items that are not objects are
   /// ignored.
   [[nodiscard]] std::vector<RunJson> list(std::string_view path) const;
 
-  /// Throws UserError: the file's name, `reason`, and what file is expected.
+  /// Throws UserError: the file's name, `reason`, and what is expected.
   [[noreturn]] void refuse(const std::string& reason) const;
 
   [[nodiscard]] const nlohmann::ordered_json& json() const { return json_; }
@@ -44,6 +53,7 @@ class RunJson {
  private:
   nlohmann::ordered_json json_;
   std::string file_;
+  MadeBy made_by_;
 };
 
 /// A `result.json`. Throws UserError when the file cannot be read, is not the result of a run, has another

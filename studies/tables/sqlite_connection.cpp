@@ -64,7 +64,8 @@ void SqliteConnection::fail(const SQLite::Exception& error) const {
   std::string message =
       name_ + ": the database cannot be " + (writes_ ? "written: " : "read: ") + error.what();
   if (kind == SQLITE_IOERR || kind == SQLITE_CANTOPEN) {
-    // Where opening it has failed, there is no connection to ask; SQLite has left errno as it was.
+    // A database that could not be opened has no connection to ask for the reason; then SQLite has not
+    // changed errno since the system set it.
     const int reason = opened_ ? sqlite3_system_errno(opened_->getHandle()) : errno;
     message += reason == 0 ? "" : std::string(" (") + std::strerror(reason) + ")";
   }

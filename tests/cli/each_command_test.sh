@@ -28,6 +28,7 @@ marti compare -- run other
 marti trace -- "$source/configs/marti.toml" "${small[@]}" --set machine.nodes=2 -o traces
 marti sweep -- "$source/configs/sweep-small.toml" "${small[@]}" -o sweep
 marti sweep -- "$source/configs/sweep-small.toml" "${small[@]}" -o sweep --plan
+marti compare -- run sweep
 marti report -- sweep:3
 marti report -- run
 marti report -- sweep

@@ -73,6 +73,19 @@ TEST(Study, WrongInputIsTwoAndOlderResultsStay) {
   EXPECT_EQ(marti("study paper /nonexistent.toml -o " + quoted(out)).status, 2);
 }
 
+TEST(Study, WhatIsRefusedLeavesNoDirectory) {
+  const TemporaryDirectory directory;
+  const fs::path configs = fs::path(MARTI_SOURCE) / "configs";
+  const std::string out = " --set scene.source=none.glb -o " + quoted(directory.path() / "new" / "below");
+  for (const std::string& study :
+       {"operations " + quoted(configs / "marti.toml"), "paper " + quoted(configs / "paper.toml"),
+        "frames " + quoted(configs / "marti.toml"), "schemes " + quoted(configs / "schemes.toml"),
+        "error " + quoted(configs / "error.toml"), std::string("stability")}) {
+    expect_refused("study " + study + out, "scene.source");
+    EXPECT_FALSE(fs::exists(directory.path() / "new")) << study;
+  }
+}
+
 TEST(Study, AFullDiskLeavesTheOldResults) {
   const TemporaryDirectory directory;
   const fs::path out = directory.path() / "out";

@@ -262,6 +262,17 @@ TEST_F(SweepCommand, RefusesWhatItCannotDo) {
       sweep(config, out, "--set host_machine.memory_limit=1MiB --set machine.clusters=4000");
   EXPECT_EQ(large.status, 2);
   EXPECT_TRUE(says(large, "host_machine.memory_limit = 1 MiB")) << large.output;
+  // A frame that does not: that is found out when it is to be traced.
+  const std::string huge =
+      "--set host_machine.memory_limit=20MiB --set image.width=4000 --set image.height=4000";
+  const Outcome frame = sweep(config, out / "below", huge);
+  EXPECT_EQ(frame.status, 2);
+  EXPECT_TRUE(says(frame, "0 of 24 machines are saved")) << frame.output;
+  EXPECT_FALSE(fs::exists(out)) << "what was made for results that never came is removed";
+  ASSERT_EQ(sweep(config, out).status, 0);
+  const std::string results = results_by_key(store);
+  EXPECT_EQ(sweep(config, out, huge).status, 2);
+  EXPECT_EQ(results_by_key(store), results);
   const Outcome closed = shell(quoted(MARTI_PROGRAM) + " sweep " + quoted(config) + " --plan > /dev/full");
   EXPECT_EQ(closed.status, 2) << closed.output;
 }

@@ -1,5 +1,7 @@
 // A sweep that ends early: killed, interrupted, on a full disk, beside another one.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 
 #include <algorithm>
 #include <chrono>
@@ -9,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "sim/descriptor.h"
 #include "tests/cli/started.h"
 #include "tests/cli/sweep_files.h"
 #include "tests/support/temporary_directory.h"
@@ -142,6 +145,29 @@ TEST(SweepEnd, TwoAtOnceOnOneStoreAreRefused) {
   EXPECT_TRUE(says(second, "process")) << second.output;
   EXPECT_EQ(first.wait(), 0) << read(directory.path() / "said");
   EXPECT_EQ(results_in(out), 320);
+}
+
+// A store that somebody writes may look damaged to others: who writes it comes first.
+TEST(SweepEnd, TheLockIsTakenBeforeTheStoreIsRead) {
+  const TemporaryDirectory directory;
+  const fs::path config = directory.path() / "sweep.toml";
+  write(config, small_sweep);
+  const fs::path out = directory.path() / "out";
+  fs::create_directory(out);
+  write(out / "results.sqlite", "half of a store");
+  const fs::path lock = out / "results.sqlite.lock";
+  write(lock, "process 1 on another computer\n");
+  {
+    const sim::Descriptor held(open(lock.c_str(), O_RDWR | O_CLOEXEC));
+    ASSERT_EQ(flock(held.get(), LOCK_EX), 0);
+    const Outcome refused = sweep(config, out);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_TRUE(says(refused, "process 1 on another computer is writing it")) << refused.output;
+  }
+  const Outcome damaged = sweep(config, out);
+  EXPECT_EQ(damaged.status, 2);
+  EXPECT_TRUE(says(damaged, "results.sqlite: is no SQLite database")) << damaged.output;
+  EXPECT_EQ(read(out / "results.sqlite"), "half of a store");
 }
 
 TEST(SweepEnd, AFullDiskIsToldAndTheSweepGoesOnLater) {

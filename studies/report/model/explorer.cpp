@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "memory/record_kind.h"
 #include "studies/report/model/cycle_groups.h"
 #include "studies/report/model/rounded.h"
 
@@ -64,40 +65,33 @@ Json model_json(const AxisModel& model) {
 
 /// A figure of every point that the page has.
 struct ExplorerField {
-  std::string name;  // as in ReportPoint::figures
-  std::string unit;  // as shown
-  std::string description;
-  double scale = 1.0;  // shown is the figure times this
-  bool exact = false;  // all its digits are shown
+  std::string name;        // as in ReportPoint::figures
+  std::string unit = "1";  // as shown
+  double scale = 1.0;      // shown is the figure times this
+  bool exact = false;      // all its digits are shown
 };
 
 // The fields that at least one point has.
 std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
-  std::vector<ExplorerField> fields = {
-      {"end", "ms", "frame time", ms_a_ps, true},
-      {"speed_up", "1", "speed-up over the base machine", 1.0, true},
-      {"efficiency", "fraction", "speed-up by the number of nodes", 1.0, true},
-      {"times_faster", "1", "frame time of the machine of [sweep.compare] by this one's"},
-      {"price", "1", sweep.priced ? "cost by [prices]" : "number of nodes"},
-      {"hit_ratio", "fraction", "hits by all references"},
-      {"hit_ratio_node", "fraction", "of node records"},
-      {"hit_ratio_list", "fraction", "of lists"},
-      {"hit_ratio_primitive", "fraction", "of primitives"},
-      {"hit_ratio_material", "fraction", "of materials"},
-      {"interconnect_utilisation", "fraction",
-       "busy time of the busiest cluster's interconnect by the frame time"},
-      {"bank_utilisation", "fraction", "busy time of the busiest bank by the frame time"},
-      {"network_utilisation", "fraction", "busy time of the network's links by the frame time"},
-      {"mean_interconnect_wait", "us", "mean wait for the interconnect", us_a_ps},
-      {"interconnect_wait_p50", "us", "half of the waits for the interconnect are not longer", us_a_ps},
-      {"interconnect_wait_p95", "us", "95 % of the waits for the interconnect are not longer", us_a_ps},
-      {"interconnect_wait_p99", "us", "99 % of the waits for the interconnect are not longer", us_a_ps},
-      {"mean_bank_wait", "us", "mean wait for a bank", us_a_ps},
-      {"bank_wait_p50", "us", "half of the waits for a bank are not longer", us_a_ps},
-      {"bank_wait_p95", "us", "95 % of the waits for a bank are not longer", us_a_ps},
-      {"bank_wait_p99", "us", "99 % of the waits for a bank are not longer", us_a_ps}};
+  std::vector<ExplorerField> fields = {{"end", "ms", ms_a_ps, true},
+                                       {"speed_up", "1", 1.0, true},
+                                       {"efficiency", "1", 1.0, true},
+                                       {"times_faster"},
+                                       {"price"},
+                                       {"hit_ratio"}};
+  for (const std::string_view kind : memory::record_kind_names) {
+    fields.push_back({"hit_ratio_" + std::string(kind)});
+  }
+  for (const char* const part : {"interconnect", "bank", "network"}) {
+    fields.push_back({part + std::string("_utilisation")});
+  }
+  for (const std::string wait : {"interconnect_wait", "bank_wait"}) {
+    for (const std::string& name : {"mean_" + wait, wait + "_p50", wait + "_p95", wait + "_p99"}) {
+      fields.push_back({name, "us", us_a_ps});
+    }
+  }
   for (const std::string_view group : cycle_group_names) {
-    fields.push_back({"part_" + std::string(group), "fraction", "share of the nodes' time"});
+    fields.push_back({"part_" + std::string(group)});
   }
   std::erase_if(fields, [&](const ExplorerField& field) {
     return std::none_of(sweep.points.begin(), sweep.points.end(),
@@ -182,8 +176,7 @@ Json explorer_json(const ReportPoints& sweep, std::span<const AxisModel> models,
   json["fields"] = Json::array();
   json["columns"] = Json::object();
   for (const ExplorerField& field : explorer_fields(sweep)) {
-    json["fields"].push_back(
-        {{"name", field.name}, {"unit", field.unit}, {"description", field.description}});
+    json["fields"].push_back({{"name", field.name}, {"unit", field.unit}});
     json["columns"][field.name] = column_of(field, sweep);
   }
   json["models"] = Json::object();

@@ -13,7 +13,7 @@ void add_path_chart(const RunJson& run, ReportData& report) {
               {{"what", ColumnType::text, "", "what is done, see docs/model.md, The critical path"},
                {"ps", ColumnType::integer, "ps", "time of it on the path"},
                {"share", ColumnType::real, "fraction", "of the frame time"}});
-  const RunJson times(run.find("machine.critical_path.time_ps"), run.file());
+  const RunJson times = run.part("machine.critical_path.time_ps");
   if (!times.json().is_object()) {
     return;
   }

@@ -1,5 +1,5 @@
-// Numbers as short as a page needs them. They are rounded before anything is made of them, so that the page
-// and the plots show the same.
+// Numbers as short as a page needs them. They are rounded before the page and the plots are made of them, so
+// that both show equal digits.
 #pragma once
 
 namespace marti::studies {

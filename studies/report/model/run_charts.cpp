@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 std::int64_t plus(std::int64_t a, std::int64_t b) {
   std::int64_t sum = 0;
   if (__builtin_add_overflow(a, b, &sum)) {
-    throw std::overflow_error("its counts do not fit in 64 bits; run `marti run` again");
+    throw std::overflow_error("has counts that do not fit in 64 bits");
   }
   return sum;
 }
@@ -31,7 +31,7 @@ std::int64_t plus(std::int64_t a, std::int64_t b) {
 std::int64_t times(std::int64_t a, std::int64_t b) {
   std::int64_t product = 0;
   if (__builtin_mul_overflow(a, b, &product)) {
-    throw std::overflow_error("its counts do not fit in 64 bits; run `marti run` again");
+    throw std::overflow_error("has counts that do not fit in 64 bits");
   }
   return product;
 }
@@ -103,7 +103,7 @@ std::int64_t size_of(const RunJson& run, const std::string& key) {
   if (!keys.is_object() || !keys.contains(key)) {
     return 0;
   }
-  std::string text = RunJson(keys[key], run.file()).text("value");
+  std::string text = run.of(keys[key]).text("value");
   std::erase(text, '"');
   try {
     return sim::parse_size(text);
@@ -309,7 +309,7 @@ void add_run_charts(const RunJson& run, ReportData& report) {
   try {
     add_all(run, report);
   } catch (const std::overflow_error& error) {
-    throw sim::UserError(run.file() + ": " + error.what());
+    run.refuse(error.what());
   }
 }
 

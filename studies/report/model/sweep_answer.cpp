@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
+#include "studies/figures/best_offer.h"
 #include "studies/report/model/answer_text.h"
-#include "studies/sweep/store/sweep_best.h"
 
 namespace marti::studies {
 
@@ -16,8 +16,8 @@ namespace {
 
 double price_of(const ReportPoint& point) { return point.figure("price"); }
 
-// The point of the front farthest below the line between its ends. A price of 0 has no logarithm: prices are
-// taken as they are then.
+// The point of the front farthest below the line between its ends, in logarithms of price and time. A price
+// of 0 has no logarithm, so where the cheapest machine is free the prices themselves are taken.
 std::size_t knee_of(const ReportPoints& sweep, const std::vector<std::size_t>& front) {
   const bool free = price_of(sweep.points[front.front()]) <= 0.0;  // the cheapest
   const auto place = [&](std::size_t i) {

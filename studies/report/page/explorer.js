@@ -194,7 +194,7 @@ marti.explorer = (() => {
     const details = document.getElementById("points");
     const most = 1000;
     const fields = explorer.fields;
-    const measure = ({ name, unit }) => (unit === "1" || unit === "fraction" ? name : `${name}_${unit}`);
+    const measure = ({ name, unit }) => (unit === "1" ? name : `${name}_${unit}`);
     const names = [...explorer.axes.map((axis) => axis.name), ...fields.map(measure)];
     const row = (i) => [
       ...explorer.axes.map((axis, a) => axis.texts[explorer.place[a][i]]),

@@ -14,7 +14,7 @@ namespace marti::studies {
 /// page.
 [[nodiscard]] ReportData read_report(const std::filesystem::path& directory);
 
-// The readers of runs and studies, with the same errors.
+// The readers of each kind of directory. They throw as read_report() does.
 
 /// A directory of `marti run -o`: result.json, and if they exist image.png, heat-*.png and
 /// working_set.vl.json beside it.

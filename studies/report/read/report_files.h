@@ -1,4 +1,5 @@
-// Files beside the results that a report takes in as they are. Each may have been changed by anybody.
+// Images and charts that a run or a study has written beside its results, for its report. Anybody may have
+// changed them, so they are checked.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // The report of a run's directory: what its result.json says, and the files beside it; and that of a point of
-// a sweep, as far as its store says the same.
+// a sweep, from the figures and settings that its store keeps.
 #include <fmt/format.h>
 
 #include <map>
@@ -13,7 +13,7 @@
 #include "studies/report/model/run_charts.h"
 #include "studies/report/read/read_report.h"
 #include "studies/report/read/report_files.h"
-#include "studies/sweep/store/point_json.h"
+#include "studies/sweep/store/point_result.h"
 #include "studies/tables/result_directory.h"
 #include "studies/tables/run_files.h"
 #include "studies/tables/run_json.h"
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 void add_configuration(const RunJson& run, ReportData& report) {
   std::string defaults;
   for (const auto& [key, setting] : run.at("config.keys").items()) {
-    const RunJson each(setting, run.file());
+    const RunJson each = run.of(setting);
     const std::string line = key + " = " + each.text("value") + "\n";
     (each.boolean("given") ? report.configuration : defaults) += line;
   }
@@ -44,7 +44,7 @@ Table plan_table(const RunJson& run) {
                {"saved_operations", ColumnType::integer, "1", "counted after the frame"},
                {"unit", ColumnType::text, "", "of saved_operations"}});
   for (const auto& [name, item] : run.at("plan").items()) {
-    const RunJson each(item, run.file());
+    const RunJson each = run.of(item);
     const bool saved = each.find("counted.operations").is_number_integer();
     table.add_row({name, each.text("decision"), each.text("class"), each.text("fact"),
                    saved ? Cell(whole(each, "counted.operations")) : Cell(), each.text("unit")});
@@ -146,7 +146,7 @@ ReportData read_run_report(const fs::path& directory) {
 }
 
 ReportData read_point_report(const PointName& point) {
-  const RunJson run(point_json(SweepReader(point.store), point.ordinal, point.name), point.name);
+  const RunJson run = point_result(SweepReader(point.store), point.ordinal, point.name);
   ReportData report = machine_report(run, "its base machine");
   report.title = fmt::format("Point {} of a sweep: {} on {}", point.ordinal, run.text("figures.frame.scene"),
                              machine_text(run));

@@ -41,7 +41,8 @@ class RankServer {
 
   void tell(std::size_t rank, const SweepMessage& message);
   [[nodiscard]] bool all_leave() const;
-  /// Does what there is to do; returns whether there was anything.
+  /// Forgets logs, takes the messages that have come, and hands out tasks; returns whether there were any of
+  /// these.
   bool step(const SweepSite& site, Coordinator& coordinator);
   bool forget_logs();
   bool hand_out(Coordinator& coordinator);

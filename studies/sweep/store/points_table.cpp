@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "sim/error.h"
+#include "studies/figures/best_offer.h"
 #include "studies/figures/derived_figures.h"
-#include "studies/sweep/store/sweep_best.h"
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_table.h"
 #include "studies/tables/text_units.h"

@@ -19,14 +19,16 @@ std::string now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std:
 
 }  // namespace
 
-SweepStore::SweepStore(const std::filesystem::path& file, const SweepPlan& plan, bool checked) {
-  lock_.emplace(file);
+SweepStore::SweepStore(const std::filesystem::path& file, const SweepPlan& plan, const StoreLock* held) {
+  if (held == nullptr) {
+    lock_.emplace(file);
+  }
   connection_.emplace(check_store_file(file), SqliteConnection::Access::write);
   const bool is_new = is_empty_database(*connection_);
   if (!is_new) {
     const std::int64_t format = check_store_format(*connection_, file);
     check_store_version(*connection_, file);
-    if (!checked) {
+    if (held == nullptr) {
       check_whole(*connection_, file, format);
     }
   }

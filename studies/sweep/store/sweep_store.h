@@ -24,9 +24,9 @@ class SweepStore {
   /// Opens the file, or makes it, and enters what the plan asks for in one transaction: older results stay.
   /// Refuses a file that is not a store, one of another version of the store or of the program (whose results
   /// could differ), and one that another process has open.
-  /// `checked`: a SweepReader has just found that the file is not damaged, so that it is not read again for
-  /// that.
-  SweepStore(const std::filesystem::path& file, const SweepPlan& plan, bool checked = false);
+  /// `held`: the caller has the file's lock and a SweepReader has found since then that the file, if it is
+  /// there, is not damaged. So it is neither locked nor read again for that.
+  SweepStore(const std::filesystem::path& file, const SweepPlan& plan, const StoreLock* held = nullptr);
 
   /// For each machine of the plan: is its result there?
   [[nodiscard]] std::vector<bool> done();
@@ -34,8 +34,8 @@ class SweepStore {
   [[nodiscard]] std::vector<bool> frames_done();
 
   // Each is committed when it returns. A row that is there already must be equal, else InternalError: the
-  // same machine has given two results. `cpu_nanoseconds` is what the host took; it is kept apart from what
-  // must be the same in every run.
+  // same machine has given two results. `cpu_nanoseconds` is what the host took; it differs from run to run,
+  // so it goes to tables of its own.
   void add_frame(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds);
   void add_result(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds);
 
@@ -48,7 +48,7 @@ class SweepStore {
   [[nodiscard]] std::vector<bool> done(const std::string& query, const std::vector<std::int64_t>& ids);
   void add_cost(const std::string& table, std::int64_t id, std::int64_t cpu_nanoseconds);
 
-  std::optional<StoreLock> lock_;  // outlives the connection, as it stands before it
+  std::optional<StoreLock> lock_;  // empty where the caller holds it; ends after the connection
   std::optional<SqliteConnection> connection_;
   std::optional<RowWriter> writer_;  // these are made when the tables are there
   std::optional<RowReader> reader_;

@@ -26,7 +26,7 @@ struct FrameLog {
 /// longer than it. Logs in use stay in memory; others make room, those first that were used longest ago.
 class LogCache {
  public:
-  /// Makes the log of one frame, the same each time.
+  /// Makes the log of one frame; each call must give an equal log.
   using Trace = std::function<FrameLog()>;
 
   /// `memory_limit`: bytes of all logs together; one log may always be there.

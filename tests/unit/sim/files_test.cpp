@@ -8,8 +8,10 @@
 #include <csignal>
 #include <fstream>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "sim/made_directory.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 
@@ -127,15 +129,37 @@ TEST(Files, ManyWritersOfOneFileNeverMix) {
   EXPECT_EQ(entries_in(directory.path()), 1U);
 }
 
-TEST(Files, DirectoriesAreMadeWithTheirParents) {
+TEST(MadeDirectory, IsMadeWithItsParentsAndStaysWhenItHoldsSomething) {
   const TemporaryDirectory directory;
   const auto deep = directory.path() / "a" / "b";
-  make_directory(deep);
-  make_directory(deep);
-  EXPECT_TRUE(std::filesystem::is_directory(deep));
-  write_file(deep / "file", "x");
-  EXPECT_THROW(make_directory(deep / "file"), UserError);
-  EXPECT_THROW(make_directory(deep / "file" / "below"), UserError);
+  {
+    const MadeDirectory made(deep);
+    const MadeDirectory again(deep);
+    EXPECT_TRUE(std::filesystem::is_directory(deep));
+    write_file(deep / "file", "x");
+    EXPECT_THROW(MadeDirectory(deep / "file"), UserError);
+    EXPECT_THROW(MadeDirectory(deep / "file" / "below"), UserError);
+  }
+  EXPECT_EQ(read_file(deep / "file", 10), "x");
+}
+
+TEST(MadeDirectory, LeavesNothingBehindWhereNothingWasWritten) {
+  const TemporaryDirectory directory;
+  for (const char* name : {"a", "a/b/c", "a/", "a/../b", "./a/./b"}) {
+    { const MadeDirectory made(directory.path() / name); }
+    EXPECT_EQ(entries_in(directory.path()), 0U) << name;
+  }
+  std::filesystem::create_directory(directory.path() / "there");
+  { const MadeDirectory made(directory.path() / "there"); }
+  { const MadeDirectory made(directory.path() / "there" / "new"); }
+  EXPECT_TRUE(std::filesystem::is_directory(directory.path() / "there")) << "it was there before";
+  EXPECT_EQ(entries_in(directory.path() / "there"), 0U);
+  {
+    MadeDirectory made(directory.path() / "moved");
+    const MadeDirectory other(std::move(made));
+    EXPECT_TRUE(std::filesystem::is_directory(directory.path() / "moved"));
+  }
+  EXPECT_EQ(entries_in(directory.path()), 1U);
 }
 
 }  // namespace

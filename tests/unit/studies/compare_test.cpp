@@ -4,17 +4,22 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/config.h"
 #include "sim/error.h"
 #include "studies/compare/differences.h"
 #include "studies/run/run_result.h"
+#include "studies/sweep/store/point_result.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
@@ -163,6 +168,156 @@ TEST(Compare, SweepsAreMatchedBySettings) {
   EXPECT_NE(text.find("+100.00 %"), std::string::npos) << text;
 }
 
+// Settings by name as A and B have them.
+std::map<std::string, std::pair<json, json>> settings_of(const json& list) {
+  std::map<std::string, std::pair<json, json>> settings;
+  for (const json& setting : list) {
+    EXPECT_TRUE(settings.emplace(setting["name"], std::pair(setting["a"], setting["b"])).second);
+  }
+  return settings;
+}
+
+// The oracle: the result compared with each point by itself.
+void expect_comparison_of_each_point(const std::string& result, const std::string& sweep, std::size_t planned,
+                                     const std::vector<std::int64_t>& timed) {
+  for (const bool sweep_is_a : {false, true}) {
+    const auto compared = [&](const std::string& with) {
+      return json::parse(sweep_is_a ? compare_results(with, result, {true, true})
+                                    : compare_results(result, with, {true, true}));
+    };
+    const json found = compared(sweep);
+    EXPECT_EQ(found["sweep"], sweep_is_a ? "a" : "b");
+    EXPECT_EQ(found["planned_points"], planned);
+    ASSERT_EQ(found["points"].size(), timed.size());
+    std::set<std::int64_t> seen;
+    std::int64_t last = 0;
+    std::map<std::string, std::set<std::string>> in_points;
+    for (const json& point : found["points"]) {
+      const auto ordinal = point["point"].get<std::int64_t>();
+      seen.insert(ordinal);
+      EXPECT_GE(point["end"].get<std::int64_t>(), last) << "the shortest frame comes first";
+      last = point["end"];
+      const json pair = compared(sweep + ":" + std::to_string(ordinal));
+      json end;
+      for (const char* list : {"numbers", "equal"}) {
+        for (const json& number : pair[list]) {
+          if (number["name"] == "end") {
+            end = number;
+          }
+        }
+      }
+      EXPECT_EQ(point["end"], end[sweep_is_a ? "a" : "b"]);
+      EXPECT_EQ(found["end"], end[sweep_is_a ? "b" : "a"]);
+      EXPECT_EQ(point["ratio"].get<double>(), end["b"].get<double>() / end["a"].get<double>());
+      auto expected = settings_of(found["settings"]);
+      for (const auto& [name, values] : settings_of(point["settings"])) {
+        EXPECT_TRUE(expected.emplace(name, values).second) << name << " is said to be alike in every point";
+        in_points[name].insert(values.first.dump() + values.second.dump());
+      }
+      EXPECT_EQ(settings_of(pair["settings"]), expected) << ordinal;
+    }
+    EXPECT_EQ(seen, std::set<std::int64_t>(timed.begin(), timed.end()));
+    for (const auto& [name, values] : in_points) {
+      const auto here = static_cast<std::size_t>(
+          std::count_if(found["points"].begin(), found["points"].end(),
+                        [&](const json& point) { return settings_of(point["settings"]).contains(name); }));
+      EXPECT_TRUE(values.size() > 1 || here < timed.size()) << name << " is alike in every point";
+    }
+  }
+}
+
+TEST(Compare, AResultWithASweepIsItsComparisonWithEachPoint) {
+  const TemporaryDirectory directory;
+  const std::string sweep = (directory.path() / "sweep").string();
+  fs::create_directories(sweep);
+  std::vector<std::int64_t> timed;
+  {
+    SweepPlan plan = test::made_plan(12);
+    // Two points of one machine.
+    plan.points[7].machine = plan.points[4].machine;
+    SweepStore store(fs::path(sweep) / "results.sqlite", plan);
+    for (std::size_t frame = 0; frame < 2; ++frame) {
+      store.add_frame(frame, test::made_frame_row(frame), 1);
+    }
+    for (std::size_t machine = 0; machine < 12; ++machine) {
+      if (machine % 4 != 1) {
+        // Some frame times are equal.
+        SweepRow row = test::plain_row(machine);
+        row.counters[0] = static_cast<std::int64_t>(1000 + 37 * machine % 5);
+        store.add_result(machine, row, 1);
+      }
+    }
+    store.close();
+    for (std::size_t point = 0; point < 12; ++point) {
+      if (plan.points[point].machine % 4 != 1) {
+        timed.push_back(static_cast<std::int64_t>(point));
+      }
+    }
+  }
+  expect_comparison_of_each_point(sweep + ":2", sweep, 12, timed);
+  const fs::path run = directory.path() / "run" / "result.json";
+  write(run, json_of(run_of({"machine.nodes=2"})));
+  expect_comparison_of_each_point(run.string(), sweep, 12, timed);
+
+  const std::string text = compare_results(sweep + ":2", sweep);
+  std::int64_t faster = 0;
+  std::int64_t equal = 0;
+  const json found = json::parse(compare_results(sweep + ":2", sweep, {true, false}));
+  for (const json& point : found["points"]) {
+    faster += point["end"] < found["end"] ? 1 : 0;
+    equal += point["end"] == found["end"] ? 1 : 0;
+  }
+  EXPECT_NE(text.find("12, 9 of them timed: " + std::to_string(faster) + " faster than A, " +
+                      std::to_string(equal) + " as fast, " + std::to_string(9 - faster - equal) + " slower"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("best           point " + found["points"][0]["point"].dump() + ":"), std::string::npos)
+      << text;
+  EXPECT_EQ(text, compare_results(sweep + ":2", sweep + "/results.sqlite"));
+}
+
+TEST(Compare, RefusesASweepOrAResultWithoutFrameTimes) {
+  const TemporaryDirectory directory;
+  const fs::path store = directory.path() / "sweep" / "results.sqlite";
+  fs::create_directories(store.parent_path());
+  SweepStore(store, test::made_plan(3)).close();
+  const std::string run = (directory.path() / "run" / "result.json").string();
+  const std::string good = json_of(run_of({}));
+  const auto message = [&] { return user_error_of([&] { (void)compare_results(run, store.string()); }); };
+  write(run, good);
+  EXPECT_NE(message().find("no point of this sweep has been run yet"), std::string::npos) << message();
+  for (const char* end : {"\"end\": 0", "\"end\": -5", "\"end\": \"1\"", "\"end\": null", "\"end\": 1e300",
+                          "\"end\": 18446744073709551615", "\"other\": 7"}) {
+    std::string changed = good;
+    const std::size_t at = changed.find("\"end\": ", changed.find("\"machine\": {"));
+    changed.replace(at, changed.find(',', at) - at, end);
+    write(run, changed);
+    EXPECT_NE(message().find(run + ": has no frame time"), std::string::npos) << end << message();
+  }
+}
+
+// A point is made by `marti sweep`: that is what has to be run again.
+TEST(Compare, ABrokenPointIsOfASweep) {
+  const TemporaryDirectory directory;
+  const fs::path store = directory.path() / "sweep" / "results.sqlite";
+  fs::create_directories(store.parent_path());
+  {
+    SweepStore made(store, test::made_plan(2));
+    made.add_frame(0, test::made_frame_row(0), 1);
+    made.add_result(0, SweepRow{Counts(counted_figures().size()), {}}, 1);
+    made.close();
+  }
+  const SweepReader reader(store);
+  const RunJson point = point_result(reader, 0, "sweep:0");
+  EXPECT_EQ(point.part("figures.machine").file(), "sweep:0");
+  for (const RunJson& part : {point, point.part("config"), point.of(point.json()["figures"])}) {
+    const std::string message = user_error_of([&] { (void)part.required_number("no.such.figure", 1, 2); });
+    EXPECT_TRUE(message.starts_with("sweep:0: has no number")) << message;
+    EXPECT_NE(message.find("`marti sweep CONFIG -o DIR`"), std::string::npos) << message;
+    EXPECT_EQ(message.find("marti run"), std::string::npos) << message;
+  }
+}
+
 TEST(Compare, RefusesWhatIsNoResult) {
   const TemporaryDirectory directory;
   const fs::path file = directory.path() / "result.json";
@@ -207,7 +362,6 @@ TEST(Compare, SaysWhatItExpects) {
   const RunResult run = run_of({});
   write_sweep(directory.path() / "sweep" / "results.sqlite", run);
   write(directory.path() / "run" / "result.json", json_of(run));
-  EXPECT_NE(message(place + "/sweep", place + "/run").find("is a whole sweep"), std::string::npos);
   EXPECT_NE(message(place + "/sweep:1", place + "/run").find("no such point; the sweep has 1"),
             std::string::npos);
   EXPECT_NE(message(place + "/sweep:-1", place + "/run").find("no such point"), std::string::npos);

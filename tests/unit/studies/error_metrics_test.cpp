@@ -72,26 +72,6 @@ RC_GTEST_PROP(Regret, IsOfTheChosenOne, (std::uint64_t seed)) {
   RC_ASSERT(regret(truth, estimate) == truth[chosen] / best - 1.0);
 }
 
-RC_GTEST_PROP(Pareto, TheFrontIsWhatNothingBeats, (std::uint64_t seed)) {
-  std::mt19937_64 random(seed);
-  std::vector<CostAndError> points(random() % 30);
-  for (CostAndError& point : points) {
-    point = {static_cast<double>(random() % 10), static_cast<double>(random() % 10)};
-  }
-  const std::vector<std::size_t> front = pareto_front(points);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    bool beaten = false;
-    for (std::size_t j = 0; j < points.size(); ++j) {
-      const bool no_worse = points[j].cost <= points[i].cost && points[j].error <= points[i].error;
-      const bool better = points[j].cost < points[i].cost || points[j].error < points[i].error;
-      beaten = beaten || (no_worse && (better || j < i));
-    }
-    RC_ASSERT(beaten == (std::find(front.begin(), front.end(), i) == front.end()));
-  }
-  RC_ASSERT(std::is_sorted(front.begin(), front.end(),
-                           [&](std::size_t a, std::size_t b) { return points[a].cost < points[b].cost; }));
-}
-
 TEST(Summary, MeanSizeAndWorst) {
   const std::vector<double> errors = {0.1, -0.3, 0.2};
   const ErrorSummary summary = summarise(errors);

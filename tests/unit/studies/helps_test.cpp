@@ -265,6 +265,42 @@ TEST(WhatHelps, TriesTwoStepsWhereNoneHelpsAlone) {
   expect_followed(one);
 }
 
+// What is no part of the machine costs nothing; parts of the machine may only lack a price.
+TEST(WhatHelps, SaysWhatCostsNothing) {
+  std::set<std::string> free;
+  for (const auto& [file, assignment] :
+       {std::pair("marti.toml", "build.sharing=none"), std::pair("dynamic.toml", "build.initial_level=2"),
+        std::pair("space.toml", "space.level=3")}) {
+    const std::vector<std::string> assignments = {"image.width=16", "image.height=12",
+                                                  "scene.source=teapot:2", assignment};
+    sim::Config config = sim::Config::from_file(
+        run_schema(), std::filesystem::path(MARTI_SOURCE) / "configs" / file, assignments);
+    const RunResult result = run(config, {.what_helps = Measuring::all, .prices = Prices()});
+    for (const Help& help : result.helps->helps) {
+      if (!help.step) {
+        continue;
+      }
+      const std::string text = gain_text(help);
+      const bool of_program =
+          help.name.starts_with("packets.") || help.name.starts_with("build.") || help.name == "space.level";
+      EXPECT_EQ(text.ends_with(", costs nothing"), of_program) << text;
+      EXPECT_EQ(text.ends_with(", without a price"), !of_program && *help.step->price == 0.0) << text;
+      if (of_program) {
+        EXPECT_EQ(*help.step->price, 0.0) << text;
+        free.insert(help.name);
+      }
+      Help unpriced = help;
+      unpriced.step->price.reset();
+      EXPECT_TRUE(text.starts_with(gain_text(unpriced))) << text;
+      EXPECT_EQ(gain_text(unpriced).find("cost"), std::string::npos) << gain_text(unpriced);
+    }
+  }
+  for (const char* name :
+       {"packets.width", "packets.height", "build.sharing", "build.initial_level", "space.level"}) {
+    EXPECT_TRUE(free.contains(name)) << name;
+  }
+}
+
 TEST(WhatHelps, ChoosesByPriceWherePricesAreGiven) {
   test::Random random(2);
   const processors::WorkLog log = test::random_log(random, 12, 12);

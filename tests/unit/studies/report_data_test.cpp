@@ -239,7 +239,7 @@ TEST(RunCharts, NameTheFileWhoseCountsAreTooLarge) {
       "some/result.json");
   ReportData report;
   const std::string error = user_error_of([&] { add_run_charts(run, report); });
-  EXPECT_EQ(error.find("some/result.json: its counts do not fit"), 0U) << error;
+  EXPECT_EQ(error.find("some/result.json: has counts that do not fit"), 0U) << error;
 }
 
 TEST(RunCharts, TakeWholeNumbersThatFit) {

@@ -3,16 +3,15 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "studies/sweep/store/sweep_reader.h"
+#include "studies/tables/run_json.h"
 
 namespace marti::studies {
 
 /// `name` is that of the point on the command line, for messages. Throws UserError when the point has not
 /// been run yet, or there is no such point.
-[[nodiscard]] nlohmann::ordered_json point_json(const SweepReader& sweep, std::int64_t ordinal,
-                                                const std::string& name);
+[[nodiscard]] RunJson point_result(const SweepReader& sweep, std::int64_t ordinal, const std::string& name);
 
 }  // namespace marti::studies

@@ -1,5 +1,5 @@
 // Prices, the best machine, the Pareto front, metrics.
-#include "studies/sweep/store/sweep_best.h"
+#include "studies/figures/best_offer.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

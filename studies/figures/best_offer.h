@@ -1,4 +1,4 @@
-// The best machine for a budget, and all machines that are the best for some budget.
+// The best choice for a budget, and all choices that are the best for some budget.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace marti::studies {
 
-/// A machine as a buyer sees it. Neither figure is NaN.
+/// What a choice costs and what it gives: of a machine its price and a figure. Neither is NaN.
 struct Offer {
   double cost = 0.0;
   double metric = 0.0;

@@ -1,7 +1,8 @@
-#include "studies/sweep/store/point_json.h"
+#include "studies/sweep/store/point_result.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "sim/error.h"
 #include "studies/figures/derived_figures.h"
@@ -46,7 +47,7 @@ Json waits_json(const SweepRow& row, std::string_view what) {
 
 }  // namespace
 
-Json point_json(const SweepReader& sweep, std::int64_t ordinal, const std::string& name) {
+RunJson point_result(const SweepReader& sweep, std::int64_t ordinal, const std::string& name) {
   const std::vector<StoredPoint> points = sweep.points();
   if (ordinal < 0 || static_cast<std::size_t>(ordinal) >= points.size()) {
     throw sim::UserError(name + ": there is no such point; the sweep has " + std::to_string(points.size()) +
@@ -68,10 +69,12 @@ Json point_json(const SweepReader& sweep, std::int64_t ordinal, const std::strin
   const Json waits = {{"interconnect", waits_json(*row, "interconnect_wait")},
                       {"banks", {waits_json(*row, "bank_wait")}},
                       {"distributed", {{"network", waits_json(*row, "network_wait")}}}};
-  return {{"marti", {{"version", sweep.version()}}},
-          {"config", {{"file", name}, {"keys", keys}}},
-          {"figures", {{"frame", frame_json(*frame)}, {"machine", machine_figures(sweep, *row, point.base)}}},
-          {"machine", {{"per_cluster", Json::array({waits})}}}};
+  Json result = {
+      {"marti", {{"version", sweep.version()}}},
+      {"config", {{"file", name}, {"keys", keys}}},
+      {"figures", {{"frame", frame_json(*frame)}, {"machine", machine_figures(sweep, *row, point.base)}}},
+      {"machine", {{"per_cluster", Json::array({waits})}}}};
+  return {std::move(result), name, MadeBy::sweep};
 }
 
 }  // namespace marti::studies

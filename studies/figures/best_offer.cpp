@@ -1,4 +1,4 @@
-#include "studies/sweep/store/sweep_best.h"
+#include "studies/figures/best_offer.h"
 
 #include <algorithm>
 #include <cmath>
