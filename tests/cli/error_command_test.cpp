@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 // The shipped study with scenes and machines that take no time.
 const std::string small_errors =
     quoted(fs::path(MARTI_SOURCE) / "configs" / "error.toml") +
-    " --set image.width=24 --set image.height=16 --set 'error.scenes=[\"tetra:2\",\"teapot:2:pot\"]'"
+    " --set error.sides=[16,24] --set 'error.scenes=[\"tetra:2\",\"teapot:2:pot\"]'"
     " --set error.nodes=[1,2,4] --set 'error.cache_sizes=[\"32 B\",\"1 KiB\",\"64 KiB\"]' --set "
     "error.repeats=2 --set scene.source=gears:1 --set error.rendering.side=12 "
     "--set error.rendering.samples=[1,2] --set error.rendering.reference_samples=32 "
@@ -28,7 +28,7 @@ TEST(StudyError, WritesTheSameTablesAgainButForRunTimes) {
   const fs::path b = directory.path() / "b";
   const Outcome outcome = marti("study error " + small_errors + " -o " + quoted(a));
   ASSERT_EQ(outcome.status, 0) << outcome.output;
-  for (const char* text : {"full warming", "quantum of 10 misses", "all nodes walked", "node counts, linear",
+  for (const char* text : {"16 windows", "128 windows", "all nodes walked", "node counts, linear",
                            "paper's formula", "The fastest method for an error", "results.sqlite"}) {
     EXPECT_NE(outcome.output.find(text), std::string::npos) << text;
   }
@@ -43,12 +43,12 @@ TEST(StudyError, WritesTheSameTablesAgainButForRunTimes) {
     }
   }
   EXPECT_GE(compared, 7);
-  for (const char* name : {"host_error_time.csv", "host_error_measured.csv", "host_error_end.vl.json"}) {
+  for (const char* name : {"host_error_time.csv", "error_measured.csv", "host_error_front.vl.json"}) {
     EXPECT_TRUE(fs::exists(a / name)) << name;
   }
   // Exact replay has no error.
   const std::string methods = read(a / "error_methods.csv");
-  EXPECT_NE(methods.find("\nexact,replay,18,0.0,0.0,0.0,,0.0,0.0,0.0,0.0,1.0,0.0,0.0,"), std::string::npos)
+  EXPECT_NE(methods.find("\nexact,replay,36,0.0,0.0,0.0,,0.0,0.0,0.0,0.0,1.0,0.0,0.0,"), std::string::npos)
       << methods;
 }
 
@@ -61,6 +61,8 @@ TEST(StudyError, WrongInputIsTwo) {
     EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
   };
   refused(" --set error.nodes=[2,4]", "error.nodes");
+  refused(" --set error.sides=[]", "error.sides");
+  refused(" --set error.sides=[0]", "error.sides");
   refused(" --set error.scenes=[]", "error.scenes");
   refused(" --set error.cache_sizes=[]", "error.cache_sizes");
   refused(" --set 'error.cache_sizes=[\"48 B\"]'", "error.cache_sizes");
@@ -75,14 +77,14 @@ TEST(StudyError, WrongInputIsTwo) {
 
 const std::string machine =
     quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") +
-    " --set scene.source=teapot:2 --set image.width=128 --set image.height=128 --set packets.width=4 "
+    " --set scene.source=teapot:2 --set image.width=256 --set image.height=256 --set packets.width=4 "
     "--set packets.height=4 ";
 
 TEST(RunWithin, GivesAnEstimateWithErrorBarsOrAnExactRun) {
   const Outcome wide = marti("run " + machine + "--within '60 %'");
   ASSERT_EQ(wide.status, 0) << wide.output;
   for (const char* text :
-       {"estimate ", "not exact", "+- ", "frame time", "speed-up", "misses", "mean wait"}) {
+       {"left out ", "windows", "estimate ", "not exact", "+- ", "frame time", "speed-up", "misses", "mean wait"}) {
     EXPECT_NE(wide.output.find(text), std::string::npos) << text << "\n" << wide.output;
   }
   EXPECT_EQ(wide.output.find("bounds "), std::string::npos);
@@ -106,7 +108,7 @@ TEST(RunWithin, GivesTheSameToPrograms) {
   const auto json = nlohmann::json::parse(wide.output);
   const auto& estimate = json["estimate"];
   EXPECT_EQ(estimate["tolerance"], 0.6);
-  EXPECT_EQ(json["config"]["keys"]["image.width"]["value"], "128");
+  EXPECT_EQ(json["config"]["keys"]["image.width"]["value"], "256");
   EXPECT_FALSE(estimate["one_node"].contains("speed_up"));
   for (const char* figure : {"end", "speed_up", "misses", "use", "wait"}) {
     const auto& bar = estimate["machine"][figure];

@@ -9,32 +9,26 @@
 
 #include "processors/replay/replay.h"
 #include "sim/error.h"
-#include "studies/error/simulator_errors.h"
-#include "studies/estimate/simulator_methods.h"
 #include "studies/estimate/within.h"
-#include "tests/support/random_machine.h"
+#include "studies/run/prepared_frame.h"
 
 namespace marti::studies {
 namespace {
 
-TEST(MeasuredErrors, CoverEveryMethodThatAnswersAlone) {
+TEST(MeasuredErrors, CoverEveryClassOfLoad) {
   const std::vector<MeasuredError> errors = parse_measured_errors(measured_errors_csv());
-  for (std::size_t method = 0; method < simulator_methods().size(); ++method) {
-    for (const std::uint32_t nodes_to : node_classes) {
-      const auto count = std::count_if(errors.begin(), errors.end(), [&](const MeasuredError& error) {
-        return error.method == method && error.nodes_to == nodes_to;
-      });
-      EXPECT_EQ(count, answers_alone(simulator_methods()[method]) ? 1 : 0) << method << ' ' << nodes_to;
-    }
+  ASSERT_EQ(errors.size(), load_classes.size());
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    EXPECT_EQ(errors[i].use_to, load_classes[i]);
+    EXPECT_GE(errors[i].cases, 50U);
+    EXPECT_GE(errors[i].covered, 0.9);
+    EXPECT_LE(errors[i].covered, 1.0);
+    EXPECT_GE(errors[i].allowance[Figure::end], 0.0);
+    EXPECT_EQ(load_class_of(load_classes[i]), i);
   }
-  for (const MeasuredError& error : errors) {
-    EXPECT_GT(error.share, 0.0);
-    EXPECT_LE(error.covered, 1.0);
-    if (error.method == 0) {
-      EXPECT_EQ(error.share, 1.0);
-      EXPECT_EQ(error.allowance, MachineFigures());
-    }
-  }
+  EXPECT_EQ(load_class_of(0.0), 0U);
+  EXPECT_EQ(load_class_of(0.31), 1U);
+  EXPECT_EQ(load_class_of(1.01), load_classes.size() - 1);
 }
 
 TEST(MeasuredErrors, AnotherTableIsAFault) {
@@ -42,19 +36,22 @@ TEST(MeasuredErrors, AnotherTableIsAFault) {
   const auto refused = [](const std::string& text) {
     EXPECT_THROW((void)parse_measured_errors(text), sim::InternalError) << text.substr(0, 200);
   };
+  const std::string header = good.substr(0, good.find('\n') + 1);
+  const std::string first = "2,0.3,60,0.95,0.01,0.01,0.1,0.1,1\n";
+  const std::string second = "2,0.7,60,0.95,0.01,0.01,0.1,0.1,1\n";
+  const std::string third = "2,1,60,0.95,0.01,0.01,0.1,0.1,inf\n";
+  EXPECT_EQ(parse_measured_errors(header + first + second + third).size(), 3U);
   refused("");
   refused("a,b\n");
-  std::string other = good;
-  other.replace(other.find('\n') + 1, 1, "9");  // the version
-  refused(other);
-  refused(good + "1,2\n");
-  refused(good + "1,999,16,0.5,1,0,0,0,0,0,0,0,0,0,0\n");
-  refused(good + "1,1,17,0.5,1,0,0,0,0,0,0,0,0,0,0\n");
-  refused(good + "1,1,16,0.5,1,0,0,0,0,0,0,0,0,0,0,0\n");
-  refused(good + "1,1,16,half,1,0,0,0,0,0,0,0,0,0,0\n");
-  refused(good + "1,1,16,-0.5,1,0,0,0,0,0,0,0,0,0,0\n");
-  EXPECT_EQ(parse_measured_errors(good + "1,1,16,0.5,1,0,0,0,0,0,0,0,0,inf,0\n").size(),
-            parse_measured_errors(good).size() + 1);
+  refused(header);
+  refused(header + first + second);
+  refused(header + second + first + third);
+  refused(header + first + second + third + third);
+  refused(header + "9" + first.substr(1) + second + third);  // the version
+  refused(header + first + second + "2,1,60,half,0.01,0.01,0.1,0.1,1\n");
+  refused(header + first + second + "2,1,60,-0.5,0.01,0.01,0.1,0.1,1\n");
+  refused(header + first + second + "2,1,60,0.5,0.01,0.01,0.1,0.1\n");
+  refused(header + first + second + "2,1,60,0.5,0.01,0.01,0.1,0.1,1,1\n");
 }
 
 TEST(Within, TolerancesArePercentagesOrFractions) {
@@ -69,63 +66,82 @@ TEST(Within, TolerancesArePercentagesOrFractions) {
   }
 }
 
-TEST(Within, MachinesThatWereNotMeasuredAreOutside) {
-  const processors::MachineConfig machine;
-  constexpr std::uint64_t packets = 4096;
-  EXPECT_FALSE(outside_measured(machine, packets));
-  const auto outside = [&](auto change, const std::string& word, std::uint64_t count = 4096) {
-    processors::MachineConfig other = machine;
-    change(other);
-    const std::optional<std::string> reason = outside_measured(other, count);
-    ASSERT_TRUE(reason) << word;
-    EXPECT_NE(reason->find(word), std::string::npos) << *reason;
-  };
-  using processors::MachineConfig;
-  outside([](MachineConfig& m) { m.scheme = processors::Scheme::space; }, "scheme");
-  outside([](MachineConfig& m) { m.contexts = 2; }, "context");
-  outside([](MachineConfig& m) { m.build.sharing = processors::Sharing::shared; }, "build.sharing");
-  outside([](MachineConfig& m) { m.clusters = 2; }, "cluster");
-  outside([](MachineConfig& m) { m.nodes = 257; }, "256 nodes");
-  outside([](MachineConfig& m) { m.cache.organisation = processors::CacheOrganisation::none; }, "caches");
-  outside([](MachineConfig& m) { m.cache.cache.replacement = memory::Replacement::fifo; }, "LRU");
-  outside([](MachineConfig& m) { m.interconnect.kind = memory::InterconnectKind::ideal; }, "bus");
-  outside([](MachineConfig& m) { m.interconnect.mode = memory::BusMode::held; }, "split");
-  outside([](MachineConfig& m) { m.placement = processors::Placement::replicated; }, "placement");
-  outside([](MachineConfig&) {}, "packets", 1000);
+TEST(Within, WhatIsNotSampledSaysWhy) {
+  processors::MachineConfig machine;
+  EXPECT_FALSE(not_sampled(machine));
+  machine.scheme = processors::Scheme::pipeline;
+  ASSERT_TRUE(not_sampled(machine));
+  EXPECT_NE(not_sampled(machine)->find("scheme"), std::string::npos);
+  FrameConfig frame;
+  EXPECT_FALSE(not_sampled(frame));
+  frame.render.voxel_cut = 1.0;
+  EXPECT_TRUE(not_sampled(frame));
 }
 
-// By the measured errors the answer is within the tolerance; and no cheaper method is known to be
-// good enough.
-TEST(Within, AnEstimateIsNeverWiderThanAskedFor) {
-  test::Random random(3);
-  const processors::WorkLog log = test::random_log(random, 64, 64, 12);
+FrameConfig teapot(std::uint32_t side) {
+  FrameConfig frame;
+  frame.scene = "teapot:4";
+  frame.render.width = side;
+  frame.render.height = side;
+  frame.render.max_depth = 2;
+  frame.memory = sim::MemoryBudget(std::uint64_t{1} << 32U);
+  return frame;
+}
+
+WithinAnswer answer_of(const PreparedFrame& prepared, const processors::MachineConfig& machine,
+                       double tolerance, double* traced = nullptr) {
+  const processors::RenderOptions& render = prepared.config().render;
+  SampledFrame frame(render.width, render.height,
+                     [&](const processors::PixelSet& only, const processors::Frame* before) {
+                       return prepared.trace(&only, before);
+                     });
+  const processors::PacketList packets(render.width, render.height, machine.packets);
+  const WithinAnswer answer = estimate_within(frame, packets, machine, tolerance);
+  if (traced != nullptr && answer.estimate) {
+    *traced = frame.traced().pixels;
+  }
+  return answer;
+}
+
+// Estimates are never wider than asked for, need more pixels for less, and hold the exact figures.
+TEST(Within, AnEstimateIsNeverWiderThanAskedForAndHolds) {
+  const PreparedFrame prepared(teapot(256));
+  const processors::Frame whole = prepared.trace();
   processors::MachineConfig machine;
   machine.nodes = 4;
-  machine.packets = {2, 2, processors::PacketOrder::scanline};
-  const std::vector<MeasuredError> errors = parse_measured_errors(measured_errors_csv());
-  std::optional<double> last_share;
-  for (const double tolerance : {1.0, 0.3, 0.1, 0.03, 0.01, 0.001, 0.0}) {
-    const std::optional<EstimatedRun> run = estimate_within(log, machine, tolerance);
-    if (!run) {
+  machine.packets = {4, 4, processors::PacketOrder::scanline};
+  const MachineFigures exact = figures_of(machine, processors::replay(*whole.log, machine));
+  double last = 0.0;
+  int estimates = 0;
+  for (const double tolerance : {0.5, 0.2, 0.1, 0.05}) {
+    double traced = 0.0;
+    const WithinAnswer answer = answer_of(prepared, machine, tolerance, &traced);
+    if (!answer.estimate) {
+      EXPECT_NE(answer.reason, "");
       continue;
     }
-    EXPECT_NE(run->method, 0U);
-    EXPECT_EQ(run->nodes_to, 16U);
-    EXPECT_LE(run->machine.half_width[Figure::end], tolerance);
-    EXPECT_LE(run->machine.half_width[Figure::speed_up], tolerance);
-    const auto found = std::find_if(errors.begin(), errors.end(), [&](const MeasuredError& error) {
-      return error.method == run->method && error.nodes_to == 16;
-    });
-    ASSERT_NE(found, errors.end());
-    EXPECT_LT(found->share, 1.0);
-    EXPECT_GE(found->covered, 0.9);
-    for (std::size_t i = 0; i < figure_count; ++i) {
-      EXPECT_GE(run->machine.half_width[static_cast<Figure>(i)], found->allowance[static_cast<Figure>(i)]);
+    ++estimates;
+    const Estimate& found = answer.estimate->sampled.machine;
+    EXPECT_LE(found.half_width[Figure::end], tolerance);
+    EXPECT_LE(found.half_width[Figure::speed_up], tolerance);
+    EXPECT_GE(traced, last);
+    EXPECT_LE(traced, 0.5);
+    last = traced;
+    for (const Figure figure : {Figure::end, Figure::misses, Figure::use, Figure::wait}) {
+      EXPECT_LE(std::abs(error_of(figure, found.value[figure], exact[figure])), found.half_width[figure])
+          << figure_names[static_cast<std::size_t>(figure)] << ' ' << tolerance;
     }
-    EXPECT_TRUE(!last_share || found->share >= *last_share) << tolerance;
-    last_share = found->share;
   }
-  EXPECT_FALSE(estimate_within(log, machine, 0.0));
+  EXPECT_GE(estimates, 2);
+}
+
+TEST(Within, ASampleThatWouldBeMostOfTheFrameIsNotTaken) {
+  const PreparedFrame small(teapot(64));
+  processors::MachineConfig machine;
+  machine.nodes = 64;
+  EXPECT_FALSE(answer_of(small, machine, 0.2).estimate);
+  EXPECT_NE(answer_of(small, machine, 0.2).reason.find("of the pixels"), std::string::npos);
+  EXPECT_NE(answer_of(small, machine, 1e-6).reason.find("have been measured"), std::string::npos);
 }
 
 }  // namespace

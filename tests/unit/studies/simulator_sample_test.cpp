@@ -1,0 +1,310 @@
+// Samples of packets: which are drawn, what is estimated from them, and whether the intervals hold.
+#include "studies/estimate/simulator_sample.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "processors/replay/replay.h"
+#include "sim/error.h"
+#include "studies/estimate/sampled_frame.h"
+#include "tests/support/random_machine.h"
+
+namespace marti::studies {
+namespace {
+
+using processors::Frame;
+using processors::MachineConfig;
+using processors::PacketList;
+using processors::PixelSet;
+using processors::WorkLog;
+
+RC_GTEST_PROP(Strata, CoverAllUnitsAndDrawTwoOfEach, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const auto units = static_cast<std::uint64_t>(test::pick(random, 1, 300));
+  const auto count = static_cast<std::uint64_t>(test::pick(random, 1, static_cast<std::int64_t>(units)));
+  std::uint64_t next = 0;
+  for (const Stratum& stratum : draw_strata(units, count, seed)) {
+    RC_ASSERT(stratum.first == next);
+    next = stratum.end;
+    RC_ASSERT(stratum.chosen.size() == std::min<std::uint64_t>(2, stratum.size()));
+    for (std::size_t i = 0; i < stratum.chosen.size(); ++i) {
+      RC_ASSERT(stratum.chosen[i] >= stratum.first);
+      RC_ASSERT(stratum.chosen[i] < stratum.end);
+      RC_ASSERT(i == 0 || stratum.chosen[i - 1] < stratum.chosen[i]);
+    }
+    RC_ASSERT(stratum.size() >= units / count);
+    RC_ASSERT(stratum.size() <= units / count + 1);
+  }
+  RC_ASSERT(next == units);
+}
+
+RC_GTEST_PROP(Strata, TwiceAsManyKeepAllThatWereDrawn, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const auto count = static_cast<std::uint64_t>(test::pick(random, 1, 40));
+  const auto units = static_cast<std::uint64_t>(test::pick(random, static_cast<std::int64_t>(2 * count), 400));
+  std::vector<std::uint64_t> some;
+  std::vector<std::uint64_t> more;
+  for (const Stratum& stratum : draw_strata(units, count, seed)) {
+    some.insert(some.end(), stratum.chosen.begin(), stratum.chosen.end());
+  }
+  for (const Stratum& stratum : draw_strata(units, 2 * count, seed)) {
+    more.insert(more.end(), stratum.chosen.begin(), stratum.chosen.end());
+  }
+  RC_ASSERT(std::includes(more.begin(), more.end(), some.begin(), some.end()));
+}
+
+TEST(Strata, DrawEachUnitEquallyOften) {
+  constexpr int trials = 3000;
+  std::vector<int> drawn(20);
+  for (int seed = 0; seed < trials; ++seed) {
+    for (const Stratum& stratum : draw_strata(drawn.size(), 2, static_cast<std::uint64_t>(seed))) {
+      for (const std::uint64_t unit : stratum.chosen) {
+        ++drawn[unit];
+      }
+    }
+  }
+  for (const int count : drawn) {
+    EXPECT_NEAR(count, trials * 2 / 10, 100);  // some four standard deviations
+  }
+}
+
+double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+std::vector<double> chosen_of(const std::vector<Stratum>& strata, const std::vector<double>& values) {
+  std::vector<double> chosen;
+  for (const Stratum& stratum : strata) {
+    for (const std::uint64_t unit : stratum.chosen) {
+      chosen.push_back(values[unit]);
+    }
+  }
+  return chosen;
+}
+
+// The interval of the estimator itself, on units whose times nearly follow what is known of them.
+TEST(RatioEstimate, ItsIntervalCoversTheTotal) {
+  std::mt19937_64 random(11);
+  constexpr std::uint64_t units = 600;
+  std::vector<double> known(units);
+  std::vector<double> times(units);
+  std::normal_distribution<double> noise(0.0, 0.2);
+  for (std::uint64_t i = 0; i < units; ++i) {
+    known[i] = static_cast<double>(50 + i + random() % 400);
+    times[i] = 7.0 * known[i] * std::exp(noise(random));
+  }
+  for (const std::uint64_t count : {8, 30, 100}) {
+    int covered = 0;
+    constexpr int trials = 400;
+    for (int trial = 0; trial < trials; ++trial) {
+      const std::vector<Stratum> strata = draw_strata(units, count, static_cast<std::uint64_t>(trial));
+      const RatioEstimate estimate =
+          ratio_estimate(strata, chosen_of(strata, known), chosen_of(strata, times), sum(known));
+      covered += std::abs(sum(times) / estimate.total - 1.0) <= estimate.half_width ? 1 : 0;
+    }
+    EXPECT_GE(covered, trials * 9 / 10) << count;
+  }
+}
+
+TEST(RatioEstimate, AllUnitsAreTheTotal) {
+  const std::vector<double> known = {1.0, 2.0, 3.0, 4.0};
+  const std::vector<double> times = {9.0, 7.0, 1.0, 2.0};
+  const RatioEstimate estimate = ratio_estimate(draw_strata(4, 2, 1), known, times, 10.0);
+  EXPECT_EQ(estimate.total, 19.0);
+  EXPECT_EQ(estimate.half_width, 0.0);
+}
+
+TEST(RatioEstimate, WithoutAnythingKnownOrMeasuredNothingIsSure) {
+  const std::vector<Stratum> strata = draw_strata(10, 2, 1);
+  const std::vector<double> nothing(4, 0.0);
+  const std::vector<double> some(4, 1.0);
+  EXPECT_TRUE(std::isinf(ratio_estimate(strata, nothing, some, 10.0).half_width));
+  EXPECT_TRUE(std::isinf(ratio_estimate(strata, some, nothing, 10.0).half_width));
+  const std::vector<Stratum> one = draw_strata(1, 1, 1);
+  EXPECT_EQ(ratio_estimate(one, std::vector{2.0}, std::vector{3.0}, 2.0).total, 3.0);
+}
+
+// What a renderer would give of a log: the words of some pixels.
+Frame part_of(const WorkLog& log, const PixelSet& only, const Frame* before) {
+  auto part = std::make_shared<WorkLog>(log);
+  for (std::uint32_t y = 0; y < log.height; ++y) {
+    processors::LogRow& row = part->rows[y];
+    row = {};
+    for (std::uint32_t x = 0; x < log.width; ++x) {
+      row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+      const bool traced = only.has(x, y);
+      EXPECT_FALSE(traced && before != nullptr && !before->log->pixel(x, y).empty()) << "traced twice";
+      if (traced || (before != nullptr && !before->log->pixel(x, y).empty())) {
+        const auto words = log.pixel(x, y);
+        row.words.insert(row.words.end(), words.begin(), words.end());
+      }
+    }
+    row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+  }
+  Frame frame;
+  frame.log = part;
+  return frame;
+}
+
+SampledFrame sampled_frame(const WorkLog& log) {
+  return SampledFrame(log.width, log.height, [&log](const PixelSet& only, const Frame* before) {
+    return part_of(log, only, before);
+  });
+}
+
+MachineConfig machine_of(test::Random& random) {
+  MachineConfig machine;
+  machine.nodes = static_cast<std::uint32_t>(test::pick(random, 1, 9));
+  machine.packets = {static_cast<std::uint32_t>(test::pick(random, 1, 4)),
+                     static_cast<std::uint32_t>(test::pick(random, 1, 4)),
+                     static_cast<processors::PacketOrder>(test::pick(random, 0, 2))};
+  machine.cache.cache = {.size = 32ULL << test::pick(random, 0, 8), .line = 32, .ways = 1};
+  return machine;
+}
+
+RC_GTEST_PROP(Windows, AreCutOfAllPackets, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const PacketList packets(static_cast<std::uint32_t>(test::pick(random, 1, 60)),
+                           static_cast<std::uint32_t>(test::pick(random, 1, 60)), {2, 3});
+  const auto length = static_cast<std::uint64_t>(test::pick(random, 1, 100));
+  const PacketWindows windows(packets, length, static_cast<std::uint64_t>(test::pick(random, 1, 50)), seed);
+  RC_ASSERT(windows.first(0) == 0U);
+  RC_ASSERT(windows.end(windows.windows() - 1) == packets.size());
+  for (std::uint64_t window = 1; window < windows.windows(); ++window) {
+    RC_ASSERT(windows.first(window) == windows.end(window - 1));
+    RC_ASSERT(windows.first(window) - windows.first(window - 1) == std::min(length, packets.size()));
+  }
+  const std::vector<std::uint64_t> chosen = windows.chosen();
+  RC_ASSERT(std::is_sorted(chosen.begin(), chosen.end()));
+  RC_ASSERT(windows.has_all() == (chosen.size() == packets.size()));
+}
+
+// Each pixel takes the words of the lattice's pixel of its cell, or of the last cell's at the edges.
+RC_GTEST_PROP(Lattice, ExpectsTheWordsOfThePixelNextToEach, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 30)),
+                                       static_cast<std::uint32_t>(test::pick(random, 1, 30)));
+  const PixelLattice lattice(log.width, log.height);
+  PixelSet set(log.width, log.height);
+  lattice.add_to(set);
+  const auto nearest = [&](std::uint32_t at, std::uint32_t size, auto has) {
+    std::uint32_t best = size;
+    for (std::uint32_t place = 0; place < size; ++place) {
+      const auto distance = [&](std::uint32_t other) { return other > at ? other - at : at - other + 0U; };
+      if (has(place) && (best == size || distance(place) < distance(best))) {
+        best = place;
+      }
+    }
+    return best;
+  };
+  const PacketList packets(log.width, log.height, {1, 1});
+  const std::vector<std::uint64_t> words = lattice.expected_words(log, packets);
+  for (std::uint64_t packet = 0; packet < packets.size(); ++packet) {
+    const processors::Packet at = packets[packet];
+    std::uint32_t row = log.height;
+    for (std::uint32_t y = 0; y < log.height && row == log.height; ++y) {
+      for (std::uint32_t x = 0; x < log.width; ++x) {
+        row = set.has(x, y) ? y : row;
+      }
+    }
+    const std::uint32_t x = nearest(at.x0, log.width, [&](std::uint32_t place) { return set.has(place, row); });
+    // Cells are eight pixels wide, so nearest is right but for the cell's first pixel, as far from two.
+    if (at.x0 % 8 != 0 && at.y0 < 8) {
+      RC_ASSERT(words[packet] == log.pixel(x, row).size());
+    }
+  }
+  RC_ASSERT(set.count() >= 1U);
+}
+
+RC_GTEST_PROP(Sample, OfEverythingIsExact, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = test::random_log(random, 12, 10);
+  const MachineConfig machine = machine_of(random);
+  const MachineFigures exact = figures_of(machine, processors::replay(log, machine));
+  const PacketList packets(log.width, log.height, machine.packets);
+  const PacketWindows windows(packets, packets.size(), 1, seed);
+  const SampledRun run = estimate_by_sample(log, machine, windows, PixelLattice(log.width, log.height));
+  for (const Figure figure : {Figure::end, Figure::misses, Figure::use, Figure::wait}) {
+    RC_ASSERT(run.machine.value[figure] == exact[figure]);
+  }
+  RC_ASSERT(run.machine.half_width == MachineFigures());
+}
+
+// A sample sees only the pixels that it traces: from a log without the others it is the same.
+RC_GTEST_PROP(Sample, LooksAtNothingThatItDoesNotTrace, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = test::random_log(random, 40, 24, 10);
+  MachineConfig machine = machine_of(random);
+  machine.packets = {2, 2};
+  const PacketList packets(log.width, log.height, machine.packets);
+  SampledFrame frame = sampled_frame(log);
+  for (const std::uint64_t strata : {2, 4, 8}) {
+    const PacketWindows windows(packets, 8, strata, seed);
+    const double share = frame.share_with(windows);
+    const WorkLog& part = frame.with(windows);
+    RC_ASSERT(frame.traced().pixels == share);
+    const SampledRun run = estimate_by_sample(part, machine, windows, frame.lattice());
+    SampledFrame again = sampled_frame(log);
+    const SampledRun alone = estimate_by_sample(again.with(windows), machine, windows, again.lattice());
+    // With what was traced for smaller samples caches are warmer, but only those were.
+    RC_ASSERT(run.machine.references == alone.machine.references);
+    RC_ASSERT(run.machine.half_width[Figure::end] >= 0.0);
+  }
+  const Frame whole = std::move(frame).whole();
+  for (std::size_t y = 0; y < log.rows.size(); ++y) {
+    RC_ASSERT(whole.log->rows[y].words == log.rows[y].words);
+  }
+}
+
+// One node: only the error of sampling is left, which the interval covers.
+TEST(Sample, IntervalsOfManySeedsCoverTheTruth) {
+  test::Random random(5);
+  const WorkLog log = test::random_log(random, 64, 64, 20);
+  MachineConfig machine = machine_of(random);
+  machine.packets = {2, 2, processors::PacketOrder::scanline};
+  machine.nodes = 1;
+  const MachineFigures exact = figures_of(machine, processors::replay(log, machine));
+  const PacketList packets(log.width, log.height, machine.packets);
+  for (const std::uint64_t strata : {4, 8}) {
+    int times = 0;
+    int misses = 0;
+    constexpr int trials = 100;
+    for (int seed = 0; seed < trials; ++seed) {
+      const PacketWindows windows(packets, 16, strata, static_cast<std::uint64_t>(seed));
+      const Estimate estimate =
+          estimate_by_sample(log, machine, windows, PixelLattice(log.width, log.height)).machine;
+      const auto holds = [&](Figure figure) {
+        return std::abs(exact[figure] / estimate.value[figure] - 1.0) <= estimate.half_width[figure];
+      };
+      times += holds(Figure::end) ? 1 : 0;
+      misses += holds(Figure::misses) ? 1 : 0;
+    }
+    EXPECT_GE(times, 90) << strata;
+    EXPECT_GE(misses, 90) << strata;
+  }
+}
+
+TEST(Sample, MachinesThatCannotBeSampledAreRefused) {
+  test::Random random(1);
+  const auto refused = [&](auto change, std::string_view word) {
+    MachineConfig machine = machine_of(random);
+    change(machine);
+    try {
+      check_sample(machine);
+      ADD_FAILURE() << word;
+    } catch (const sim::UserError& error) {
+      EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+    }
+  };
+  refused([](MachineConfig& m) { m.scheme = processors::Scheme::space; }, "scheme");
+  refused([](MachineConfig& m) { m.contexts = 2; }, "context");
+  refused([](MachineConfig& m) { m.build.sharing = processors::Sharing::shared; }, "build.sharing");
+  refused([](MachineConfig& m) { m.clusters = 2; }, "cluster");
+  refused([](MachineConfig& m) { m.placement = processors::Placement::replicated; }, "placement");
+}
+
+}  // namespace
+}  // namespace marti::studies
