@@ -7,6 +7,7 @@
 #include "processors/node/node_array.h"
 #include "processors/path/path_recorder.h"
 #include "processors/replay/bounds.h"
+#include "processors/replay/energy_counts.h"
 #include "processors/replay/pipeline.h"
 #include "processors/replay/replay_parts.h"
 #include "processors/replay/space.h"
@@ -75,51 +76,7 @@ std::uint64_t pixels_of(const PacketList& packets, const WorkLog& log, const Pac
   return pixels;
 }
 
-}  // namespace
-
-StepCounts MachineResult::steps() const {
-  StepCounts sum;
-  for (const NodeStatistics& node : nodes) {
-    sim::merge(sum, node.steps);
-  }
-  return sum;
-}
-
-ReferenceCounts MachineResult::references() const {
-  ReferenceCounts sum;
-  for (const NodeStatistics& node : nodes) {
-    sum += node.references;
-  }
-  return sum;
-}
-
-TimeDivision MachineResult::time() const {
-  TimeDivision sum{};
-  for (const NodeStatistics& node : nodes) {
-    for (std::size_t i = 0; i < activities; ++i) {
-      sum[i] = sim::add_ticks(sum[i], node.time[i]);
-    }
-  }
-  return sum;
-}
-
-MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
-  check(config);
-  check_prefetch(config.prefetch, log.traversal);
-  if (options.sample != nullptr) {
-    check_sampled(config);
-  }
-  if (options.quantum > 1) {
-    check_relaxed(config);
-  }
-  switch (config.scheme) {
-    case Scheme::image:
-      break;
-    case Scheme::pipeline:
-      return replay_pipeline(log, config, options);
-    case Scheme::space:
-      return replay_space(log, config, options);
-  }
+MachineResult replay_image(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
   std::optional<TreePlan> plan = plan_of(log, config, options);
   const memory::Layout layout = layout_of(log, config, plan);
   const PacketList all_packets(log.width, log.height, config.packets);
@@ -183,6 +140,63 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   result.packet_figures = nodes->packet_figures();
   check_conservation(log, config, result);
   check_bounds(config, result);
+  return result;
+}
+
+MachineResult replay_scheme(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
+  switch (config.scheme) {
+    case Scheme::image:
+      break;
+    case Scheme::pipeline:
+      return replay_pipeline(log, config, options);
+    case Scheme::space:
+      return replay_space(log, config, options);
+  }
+  return replay_image(log, config, options);
+}
+
+}  // namespace
+
+StepCounts MachineResult::steps() const {
+  StepCounts sum;
+  for (const NodeStatistics& node : nodes) {
+    sim::merge(sum, node.steps);
+  }
+  return sum;
+}
+
+ReferenceCounts MachineResult::references() const {
+  ReferenceCounts sum;
+  for (const NodeStatistics& node : nodes) {
+    sum += node.references;
+  }
+  return sum;
+}
+
+TimeDivision MachineResult::time() const {
+  TimeDivision sum{};
+  for (const NodeStatistics& node : nodes) {
+    for (std::size_t i = 0; i < activities; ++i) {
+      sum[i] = sim::add_ticks(sum[i], node.time[i]);
+    }
+  }
+  return sum;
+}
+
+MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
+  check(config);
+  check_prefetch(config.prefetch, log.traversal);
+  check_energy(config);
+  if (options.sample != nullptr) {
+    check_sampled(config);
+  }
+  if (options.quantum > 1) {
+    check_relaxed(config);
+  }
+  MachineResult result = replay_scheme(log, config, options);
+  if (config.energy.on()) {
+    result.energy = energy_of(config, energy_counts(log, config, result));
+  }
   return result;
 }
 
