@@ -17,6 +17,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double ms_a_ps = 1e-9;
 constexpr double us_a_ps = 1e-6;
+constexpr double mj_a_j = 1e3;
 
 Json error_json(const ModelError* errors) {
   Json json = Json::object();
@@ -79,6 +80,7 @@ std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
       {"efficiency", "fraction", "speed-up by the number of nodes", 1.0, true},
       {"times_faster", "1", "frame time of the machine of [sweep.compare] by this one's"},
       {"price", "1", sweep.priced ? "cost by [prices]" : "number of nodes"},
+      {"energy", "mJ", "energy of the frame", mj_a_j, true},
       {"hit_ratio", "fraction", "hits by all references"},
       {"hit_ratio_node", "fraction", "of node records"},
       {"hit_ratio_list", "fraction", "of lists"},
@@ -178,7 +180,7 @@ Json explorer_json(const ReportPoints& sweep, std::span<const AxisModel> models,
     ordinals.push_back(point.ordinal);
   }
   json["ordinal"] = std::move(ordinals);
-  json["front"] = chosen.front;
+  json["fronts"] = {{"price", chosen.front}, {"energy", chosen.energy_front}};
   json["fields"] = Json::array();
   json["columns"] = Json::object();
   for (const ExplorerField& field : explorer_fields(sweep)) {
