@@ -17,7 +17,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double ms_a_ps = 1e-9;
 constexpr double us_a_ps = 1e-6;
-constexpr double mj_a_j = 1e3;
 
 Json error_json(const ModelError* errors) {
   Json json = Json::object();
@@ -80,7 +79,7 @@ std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
       {"efficiency", "fraction", "speed-up by the number of nodes", 1.0, true},
       {"times_faster", "1", "frame time of the machine of [sweep.compare] by this one's"},
       {"price", "1", sweep.priced ? "cost by [prices]" : "number of nodes"},
-      {"energy", "mJ", "energy of the frame", mj_a_j, true},
+      {"energy", "mJ", "energy of the frame", 1.0, true},
       {"hit_ratio", "fraction", "hits by all references"},
       {"hit_ratio_node", "fraction", "of node records"},
       {"hit_ratio_list", "fraction", "of lists"},

@@ -70,7 +70,7 @@ void refuse_what_is_not_modelled(const processors::MachineConfig& config) {
   [[maybe_unused]] const auto& [clusters, nodes, clock, operations, word_bytes, write_buffer, contexts,
                                 switch_cycles, prefetch, layout, cache, l2, placement, distribution, local,
                                 interconnect, banks, packets, host, build, scheme, network, messages,
-                                pipeline, space, count] = config;
+                                pipeline, space, count, energy] = config;
   sim::ensure(contexts == 1 && !prefetch.on(), "a node of the SystemC model has one context and no prefetch");
   sim::ensure(l2.sharing == processors::SecondLevel::none, "the SystemC model has no second-level caches");
   sim::ensure(!count.any(), "the SystemC model does not classify misses");
