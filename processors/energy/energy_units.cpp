@@ -150,7 +150,7 @@ EnergyUnits energy_units(const MachineConfig& config) {
   constexpr double square = square_micrometres_a_square_millimetre;
   units.node_area += whole("node_area", figures.node_area, square) +
                      Wide{config.contexts - 1} * whole("context_area", figures.context_area, square);
-  units.leakage = whole("leakage", figures.leakage, picowatts_of_milliwatts);
+  units.leakage = whole("leakage_density", figures.leakage_density, picowatts_of_milliwatts);
   return units;
 }
 

@@ -42,7 +42,7 @@ struct EnergyFigures {
   double memory_write = 0.0;         ///< pJ of a byte written there
   double node_area = 0.0;            ///< mm2 of a node without its caches
   double context_area = 0.0;         ///< mm2 of each context beyond the first
-  double leakage = 0.0;              ///< mW of a mm2, at all times
+  double leakage_density = 0.0;      ///< mW of a mm2, at all times
 };
 
 struct EnergyConfig {

@@ -56,7 +56,7 @@ constexpr std::array<FigureKey, 18> figure_keys = {{
     {"energy.node_area", &EnergyFigures::node_area, most_length, "mm2", "area of a node without its caches"},
     {"energy.context_area", &EnergyFigures::context_area, most_length, "mm2",
      "area of each context of a node beyond the first"},
-    {"energy.leakage", &EnergyFigures::leakage, 100'000.0, "mW",
+    {"energy.leakage_density", &EnergyFigures::leakage_density, 100'000.0, "mW",
      "power that a mm2 of nodes and caches takes at all times"},
 }};
 

@@ -43,7 +43,8 @@ inline const std::vector<WrongConfiguration>& wrong_configurations() {
       {"[energy]\npreset = \"45nm\"\nl2_read = 1.0\n", {"wrong.toml:3", "energy.l2_read", "l2.sharing"}},
       {"[energy]\npreset = \"45nm\"\n[cache]\nsize = \"8 MiB\"\n",
        {"wrong.toml:4", "cache.size", "8 MiB", "2 KiB to 4 MiB", "energy.l1_read"}},
-      {"[energy]\npreset = \"22nm\"\nleakage = 1e5\nnode_area = 1e4\n[image]\nwidth = 24\nheight = 16\n",
+      {"[energy]\npreset = \"22nm\"\nleakage_density = 1e5\nnode_area = 1e4\n[image]\nwidth = 24\nheight = "
+       "16\n",
        {"wrong.toml:2", "energy.preset", "9,223 J"}},
       {"[machine]\nnodes = 0\n", {"wrong.toml:2", "machine.nodes"}},
       {"[machine]\nnodes = -5\n", {"wrong.toml:2", "machine.nodes"}},

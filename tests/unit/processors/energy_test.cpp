@@ -114,7 +114,7 @@ TEST(Energy, OfAMachineThatDoesNothingIsLeakage) {
   figures.context_area = 0.125;
   figures.l1.area = 0.25;
   figures.l2.area = 1.5;
-  figures.leakage = 1000.0;
+  figures.leakage_density = 1000.0;
   EnergyCounts counts;
   counts.end = 7;
   const EnergyResult energy = energy_of(machine, counts);
@@ -290,8 +290,8 @@ TEST(Energy, RefusesFiguresOutOfRange) {
   EXPECT_EQ(refusal([](EnergyConfig& e) { e.figures.add = -1.0; }), "energy.add: must be from 0 to 1e+05");
   EXPECT_TRUE(refusal([](EnergyConfig& e) { e.figures.wire = std::nan(""); }).starts_with("energy.wire"));
   EXPECT_TRUE(refusal([](EnergyConfig& e) {
-                e.figures.leakage = std::numeric_limits<double>::infinity();
-              }).starts_with("energy.leakage"));
+                e.figures.leakage_density = std::numeric_limits<double>::infinity();
+              }).starts_with("energy.leakage_density"));
   EXPECT_TRUE(refusal([](EnergyConfig& e) { e.voltage = 11.0; }).starts_with("energy.voltage"));
 }
 

@@ -35,10 +35,10 @@ TEST(EnergyKeys, ReplaceThePresetsFiguresOneByOne) {
   EXPECT_EQ(kept.divide, usual.divide);
   EXPECT_EQ(kept.l1.read, processors::by_fit);
   const processors::EnergyFigures changed =
-      read_machine_of(preset + "divide = 0.0\nl1_area = 2.5\nleakage = 7\n").energy.figures;
+      read_machine_of(preset + "divide = 0.0\nl1_area = 2.5\nleakage_density = 7\n").energy.figures;
   EXPECT_EQ(changed.divide, 0.0);
   EXPECT_EQ(changed.l1.area, 2.5);
-  EXPECT_EQ(changed.leakage, 7.0);
+  EXPECT_EQ(changed.leakage_density, 7.0);
   EXPECT_EQ(changed.square_root, usual.square_root);
   EXPECT_EQ(changed.l1.read, processors::by_fit);
   EXPECT_EQ(read_machine_of(preset + "voltage = 0.5\n").energy.voltage, 0.5);
