@@ -76,6 +76,36 @@ std::uint64_t pixels_of(const PacketList& packets, const WorkLog& log, const Pac
   return pixels;
 }
 
+}  // namespace
+
+StepCounts MachineResult::steps() const {
+  StepCounts sum;
+  for (const NodeStatistics& node : nodes) {
+    sim::merge(sum, node.steps);
+  }
+  return sum;
+}
+
+ReferenceCounts MachineResult::references() const {
+  ReferenceCounts sum;
+  for (const NodeStatistics& node : nodes) {
+    sum += node.references;
+  }
+  return sum;
+}
+
+TimeDivision MachineResult::time() const {
+  TimeDivision sum{};
+  for (const NodeStatistics& node : nodes) {
+    for (std::size_t i = 0; i < activities; ++i) {
+      sum[i] = sim::add_ticks(sum[i], node.time[i]);
+    }
+  }
+  return sum;
+}
+
+namespace {
+
 MachineResult replay_image(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
   std::optional<TreePlan> plan = plan_of(log, config, options);
   const memory::Layout layout = layout_of(log, config, plan);
@@ -156,32 +186,6 @@ MachineResult replay_scheme(const WorkLog& log, const MachineConfig& config, con
 }
 
 }  // namespace
-
-StepCounts MachineResult::steps() const {
-  StepCounts sum;
-  for (const NodeStatistics& node : nodes) {
-    sim::merge(sum, node.steps);
-  }
-  return sum;
-}
-
-ReferenceCounts MachineResult::references() const {
-  ReferenceCounts sum;
-  for (const NodeStatistics& node : nodes) {
-    sum += node.references;
-  }
-  return sum;
-}
-
-TimeDivision MachineResult::time() const {
-  TimeDivision sum{};
-  for (const NodeStatistics& node : nodes) {
-    for (std::size_t i = 0; i < activities; ++i) {
-      sum[i] = sim::add_ticks(sum[i], node.time[i]);
-    }
-  }
-  return sum;
-}
 
 MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
   check(config);
