@@ -21,9 +21,11 @@ class CountedNetwork : public Network {
     if (from == to) {
       return {now, 0, 0};
     }
+    const std::int64_t hops_before = statistics_.hops;
     const Delivery delivery = carry(now, from, to, beats(bytes));
     ++statistics_.messages;
     statistics_.bytes += bytes;
+    statistics_.link_bytes += bytes * (statistics_.hops - hops_before);
     statistics_.waits.add(delivery.wait);
     return delivery;
   }

@@ -48,6 +48,7 @@ struct NetworkStatistics {
   std::int64_t messages = 0;
   std::int64_t bytes = 0;
   std::int64_t hops = 0;
+  std::int64_t link_bytes = 0;
   std::int64_t links = 0;
   sim::Ticks busy = 0;
   WaitStatistics waits;  ///< one for each message, the sum over its links
@@ -58,6 +59,8 @@ struct NetworkStatistics {
         C{"messages", "1", "messages between different ports", &NetworkStatistics::messages},
         C{"bytes", "byte", "bytes of these messages", &NetworkStatistics::bytes},
         C{"hops", "1", "links that they crossed; ideal: none", &NetworkStatistics::hops},
+        C{"link_bytes", "byte", "bytes times the links that they crossed; ideal: none",
+          &NetworkStatistics::link_bytes},
         C{"links", "1", "transfers possible at the same time", &NetworkStatistics::links, sim::MergeRule::sum,
           sim::Better::neither},
         C{"busy", "ps", "time that messages held links, all together", &NetworkStatistics::busy}};

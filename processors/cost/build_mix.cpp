@@ -6,6 +6,7 @@
 
 #include "accel/octree.h"
 #include "accel/octree_sort.h"
+#include "processors/cost/step_time.h"
 #include "sim/time.h"
 
 namespace marti::processors {
@@ -113,14 +114,7 @@ BuildCycles build_cycles(const OperationCycles& cycles, const RecordWords& words
 }
 
 BuildTicks build_ticks(const MachineConfig& config) {
-  const auto words = [&](std::uint32_t bytes) {
-    return (std::int64_t{bytes} + config.word_bytes - 1) / config.word_bytes;
-  };
-  const memory::LayoutConfig& layout = config.layout;
-  const BuildCycles cycles = build_cycles(
-      config.operations, {words(layout.node_bytes), words(layout.entry_bytes), words(layout.primitive_bytes),
-                          words(layout.quadric_bytes), words(layout.material_bytes),
-                          words(layout.texel_bytes), words(layout.pixel_bytes)});
+  const BuildCycles cycles = build_cycles(config.operations, record_words(config));
   const sim::Clock& clock = config.clock;
   return {.lock = clock.cycles(cycles.lock),
           .listed = clock.cycles(cycles.listed),

@@ -2,23 +2,19 @@
 
 namespace marti::processors {
 
-namespace {
-
-std::int64_t words(std::uint32_t bytes, std::uint32_t word_bytes) {
-  return (std::int64_t{bytes} + word_bytes - 1) / word_bytes;
+RecordWords record_words(const MachineConfig& config) {
+  const auto words = [&config](std::uint32_t bytes) {
+    return (std::int64_t{bytes} + config.word_bytes - 1) / config.word_bytes;
+  };
+  const memory::LayoutConfig& layout = config.layout;
+  return {words(layout.node_bytes),    words(layout.entry_bytes),    words(layout.primitive_bytes),
+          words(layout.quadric_bytes), words(layout.material_bytes), words(layout.texel_bytes),
+          words(layout.pixel_bytes)};
 }
 
-}  // namespace
-
 StepTicks step_ticks(const MachineConfig& config, const WorkLog& log) {
-  const memory::LayoutConfig& layout = config.layout;
-  const std::uint32_t word = config.word_bytes;
-  const StepCycles cycles = step_cycles(
-      config.operations,
-      {words(layout.node_bytes, word), words(layout.entry_bytes, word), words(layout.primitive_bytes, word),
-       words(layout.quadric_bytes, word), words(layout.material_bytes, word), words(layout.texel_bytes, word),
-       words(layout.pixel_bytes, word)},
-      log.traversal, log.mailboxes);
+  const StepCycles cycles =
+      step_cycles(config.operations, record_words(config), log.traversal, log.mailboxes);
   StepTicks ticks;
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
     ticks.ray[kind] = config.clock.cycles(cycles.ray[kind]);
@@ -45,21 +41,7 @@ void add_counted_time(const StepTicks& ticks, const StepCounts& steps, std::int6
     sim::Ticks& sum = time[static_cast<std::size_t>(activity)];
     sum = sim::add_ticks(sum, sim::multiply_ticks(each, count));
   };
-  for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
-    add(Activity::traversal, ticks.ray[kind], steps.*ray_counters[kind]);
-  }
-  add(Activity::traversal, ticks.branch, steps.branches);
-  add(Activity::traversal, ticks.leaf, steps.leaves);
-  add(Activity::traversal, ticks.cut, steps.cuts);
-  add(Activity::traversal, ticks.pass, steps.passes);
-  add(Activity::intersection, ticks.lookup, steps.lookups);
-  add(Activity::intersection, ticks.test, steps.tests - steps.sphere_tests - steps.cone_tests);
-  add(Activity::intersection, ticks.sphere_test, steps.sphere_tests);
-  add(Activity::intersection, ticks.cone_test, steps.cone_tests);
-  add(Activity::shading, ticks.shade, steps.shades);
-  add(Activity::shading, ticks.light, steps.lights);
-  add(Activity::shading, ticks.texel, steps.texels);
-  add(Activity::shading, ticks.pixel, steps.pixels);
+  for_each_step(ticks, steps, add);
   add(Activity::cache_access, ticks.hit, hits);
 }
 

@@ -28,6 +28,30 @@ struct StepTicks {
 /// The times on this machine of the steps of the traversal that made `log`.
 [[nodiscard]] StepTicks step_ticks(const MachineConfig& config, const WorkLog& log);
 
+/// The words of each record, as this machine's layout has it.
+[[nodiscard]] RecordWords record_words(const MachineConfig& config);
+
+/// Calls visit(activity, cost of one such step, number of steps) for each kind of step. `costs` is StepTicks
+/// or StepCycles.
+template <class Costs, class Visit>
+void for_each_step(const Costs& costs, const StepCounts& steps, Visit&& visit) {
+  for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
+    visit(Activity::traversal, costs.ray[kind], steps.*ray_counters[kind]);
+  }
+  visit(Activity::traversal, costs.branch, steps.branches);
+  visit(Activity::traversal, costs.leaf, steps.leaves);
+  visit(Activity::traversal, costs.cut, steps.cuts);
+  visit(Activity::traversal, costs.pass, steps.passes);
+  visit(Activity::intersection, costs.lookup, steps.lookups);
+  visit(Activity::intersection, costs.test, steps.tests - steps.sphere_tests - steps.cone_tests);
+  visit(Activity::intersection, costs.sphere_test, steps.sphere_tests);
+  visit(Activity::intersection, costs.cone_test, steps.cone_tests);
+  visit(Activity::shading, costs.shade, steps.shades);
+  visit(Activity::shading, costs.light, steps.lights);
+  visit(Activity::shading, costs.texel, steps.texels);
+  visit(Activity::shading, costs.pixel, steps.pixels);
+}
+
 /// Adds traversal, intersection, shading and cache access of `counts` to `time`.
 void add_counted_time(const StepTicks& ticks, const StepCounts& steps, std::int64_t hits, TimeDivision& time);
 

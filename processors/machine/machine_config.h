@@ -14,6 +14,7 @@
 #include "processors/machine/build_config.h"
 #include "processors/machine/context_config.h"
 #include "processors/machine/count_config.h"
+#include "processors/machine/energy_config.h"
 #include "processors/machine/flow_config.h"
 #include "processors/machine/host_config.h"
 #include "processors/machine/operation_cycles.h"
@@ -88,6 +89,7 @@ struct MachineConfig {
   PipelineConfig pipeline;
   SpaceConfig space;
   CountConfig count;
+  EnergyConfig energy;
 
   [[nodiscard]] std::uint32_t all_nodes() const { return clusters * nodes; }
   /// Bytes that one reference reads at most: a cache line, or an interleave of the banks without a cache.

@@ -145,12 +145,7 @@ void add_building_time(const BuildTicks& ticks, const BuildCounts& counts, TimeD
   const auto add = [&](sim::Ticks each, std::int64_t count) {
     building = sim::add_ticks(building, sim::multiply_ticks(each, count));
   };
-  add(ticks.lock, counts.locks);
-  add(ticks.listed, counts.listed);
-  add(ticks.overlap, counts.overlaps);
-  add(ticks.child, counts.children);
-  add(ticks.entry, counts.entries);
-  add(ticks.publish, counts.all_splits());
+  for_each_build_part(ticks, counts, add);
 }
 
 void check_build(const WorkLog& log, const MachineConfig& config, const BuildResult& result) {

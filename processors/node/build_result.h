@@ -49,6 +49,17 @@ struct BuildCounts {
 };
 static_assert(sim::declares_every_member<BuildCounts>());
 
+/// Calls visit(cost of one, number) for each part of the work. `costs` is BuildTicks or BuildCycles.
+template <class Costs, class Visit>
+void for_each_build_part(const Costs& costs, const BuildCounts& counts, Visit&& visit) {
+  visit(costs.lock, counts.locks);
+  visit(costs.listed, counts.listed);
+  visit(costs.overlap, counts.overlaps);
+  visit(costs.child, counts.children);
+  visit(costs.entry, counts.entries);
+  visit(costs.publish, counts.all_splits());
+}
+
 /// One level of all trees together, at the end of the frame. With private trees, nodes of the initial tree
 /// count once for each database; its P nodes and all nodes below count once for each processor node.
 struct BuildLevel {

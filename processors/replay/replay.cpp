@@ -7,6 +7,7 @@
 #include "processors/node/node_array.h"
 #include "processors/path/path_recorder.h"
 #include "processors/replay/bounds.h"
+#include "processors/replay/energy_counts.h"
 #include "processors/replay/pipeline.h"
 #include "processors/replay/replay_parts.h"
 #include "processors/replay/space.h"
@@ -103,20 +104,9 @@ TimeDivision MachineResult::time() const {
   return sum;
 }
 
-MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
-  check(config);
-  check_prefetch(config.prefetch, log.traversal);
-  if (options.sample != nullptr) {
-    check_sampled(config);
-  }
-  switch (config.scheme) {
-    case Scheme::image:
-      break;
-    case Scheme::pipeline:
-      return replay_pipeline(log, config, options);
-    case Scheme::space:
-      return replay_space(log, config, options);
-  }
+namespace {
+
+MachineResult replay_image(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
   std::optional<TreePlan> plan = plan_of(log, config, options);
   const memory::Layout layout = layout_of(log, config, plan);
   const PacketList all_packets(log.width, log.height, config.packets);
@@ -179,6 +169,34 @@ MachineResult replay(const WorkLog& log, const MachineConfig& config, const Repl
   result.packet_figures = nodes->packet_figures();
   check_conservation(log, config, result);
   check_bounds(config, result);
+  return result;
+}
+
+MachineResult replay_scheme(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
+  switch (config.scheme) {
+    case Scheme::image:
+      break;
+    case Scheme::pipeline:
+      return replay_pipeline(log, config, options);
+    case Scheme::space:
+      return replay_space(log, config, options);
+  }
+  return replay_image(log, config, options);
+}
+
+}  // namespace
+
+MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
+  check(config);
+  check_prefetch(config.prefetch, log.traversal);
+  check_energy(config);
+  if (options.sample != nullptr) {
+    check_sampled(config);
+  }
+  MachineResult result = replay_scheme(log, config, options);
+  if (config.energy.on()) {
+    result.energy = energy_of(config, energy_counts(log, config, result));
+  }
   return result;
 }
 

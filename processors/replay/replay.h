@@ -8,6 +8,7 @@
 #include "memory/distributed.h"
 #include "memory/interconnect.h"
 #include "processors/cost/accounting.h"
+#include "processors/energy/energy.h"
 #include "processors/flow/flow_result.h"
 #include "processors/machine/machine_config.h"
 #include "processors/node/build_result.h"
@@ -57,6 +58,7 @@ struct MachineResult {
   std::uint64_t database_bytes = 0;           ///< of one copy, when the frame begins
   std::uint64_t copies = 0;                   ///< one for each cluster, or for each node when replicated
   std::uint64_t events = 0;
+  std::optional<EnergyResult> energy;  ///< where MachineConfig::energy is on
   LeftOut left_out;
   std::size_t host_bytes_per_node = 0;
   sim::Ticks unloaded_miss = 0;  ///< time of a miss that meets no other transaction

@@ -124,6 +124,25 @@ void add_memory(std::vector<FigureEntry>& all) {
   }
 }
 
+// Units: 1 mJ is 1e12 fJ, 1 s is 1e12 ps, hence 1 W is 1e3 fJ a ps.
+void add_energy(std::vector<FigureEntry>& all) {
+  const auto add = [&all](std::string_view name, std::string_view unit, std::string_view text, Better better,
+                          const Formula& formula) {
+    all.push_back({std::string(name), std::string(unit), std::string(text), Merge::ratio, better, formula});
+  };
+  const Formula total = own("energy_total");
+  const Formula energy = total / Formula(1e12);
+  const Formula rays = own("steps_camera_rays") + own("steps_shadow_rays") + own("steps_reflection_rays") +
+                       own("steps_refraction_rays");
+  add("energy", "mJ", "energy of the frame, where [energy] is on", Better::lower, energy);
+  add("power", "W", "mean power: energy by frame time", Better::lower,
+      total / (own("end") * Formula(1000.0)));
+  add("rays_a_joule", "1", "rays of all kinds for a joule", Better::higher, rays / (total / Formula(1e15)));
+  add("energy_delay", "uJ s", "energy times frame time", Better::lower,
+      total / Formula(1e9) * (own("end") / Formula(1e12)));
+  add("area", "mm2", "area of nodes and caches", Better::lower, own("energy_area") / Formula(1e6));
+}
+
 const std::map<std::string, const FigureEntry*, std::less<>>& figures_by_name() {
   static const std::map<std::string, const FigureEntry*, std::less<>> all = [] {
     std::map<std::string, const FigureEntry*, std::less<>> made;
@@ -144,6 +163,7 @@ std::span<const FigureEntry> derived_figures() {
     std::vector<FigureEntry> made;
     add_speed(made);
     add_memory(made);
+    add_energy(made);
     return made;
   }();
   return figures;

@@ -18,10 +18,11 @@ namespace {
 using processors::MachineConfig;
 using processors::StrippedLog;
 
-// Counting changes no time.
+// Neither counting nor energy changes a time.
 MachineConfig without_counting(const MachineConfig& machine) {
   MachineConfig plain = machine;
   plain.count = {};
+  plain.energy = {};
   return plain;
 }
 

@@ -9,12 +9,14 @@
 #include <vector>
 
 #include "processors/cost/cost_model.h"
+#include "processors/energy/energy.h"
 #include "sim/config_errors.h"
 #include "sim/error.h"
 #include "studies/keys/build_keys.h"
 #include "studies/keys/cache_detail_keys.h"
 #include "studies/keys/combination_keys.h"
 #include "studies/keys/context_keys.h"
+#include "studies/keys/energy_keys.h"
 #include "studies/keys/flow_keys.h"
 #include "studies/keys/key_parts.h"
 #include "studies/keys/network_keys.h"
@@ -358,6 +360,7 @@ void declare_machine_keys(sim::Schema& schema) {
   declare_count_keys(schema);
   declare_flow_keys(schema);
   declare_space_keys(schema);
+  declare_energy_keys(schema);
 }
 
 processors::MachineConfig read_machine(sim::Config& config) {
@@ -389,6 +392,7 @@ processors::MachineConfig read_machine(sim::Config& config) {
   read_network_if_used(config, machine);
   read_space(config, machine);
   read_count(config, machine);
+  read_energy(config, machine);
   machine.packets = {count(config, "packets.width"), count(config, "packets.height"),
                      config.choice_as<processors::PacketOrder>("packets.order")};
   if (image) {
@@ -406,7 +410,10 @@ processors::MachineConfig read_machine(sim::Config& config) {
 }
 
 void check_machine(const sim::Config& config, const processors::MachineConfig& machine) {
-  sim::with_places(config, [&] { processors::check(machine); });
+  sim::with_places(config, [&] {
+    processors::check(machine);
+    processors::check_energy(machine);
+  });
 }
 
 }  // namespace marti::studies

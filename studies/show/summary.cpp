@@ -13,6 +13,7 @@
 #include "studies/show/context_output.h"
 #include "studies/show/count_output.h"
 #include "studies/show/critical_path_output.h"
+#include "studies/show/energy_output.h"
 #include "studies/show/flow_output.h"
 #include "studies/show/helps_output.h"
 #include "studies/show/scaling_output.h"
@@ -238,6 +239,7 @@ std::string summary_of(const RunResult& r) {
   text += loss_lines(r);
   time_lines(out, r);
   memory_lines(out, r);
+  text += energy_lines(r);
   text += counts_lines(r);
   if (r.working_set) {
     text += working_set_lines(*r.working_set);

@@ -17,6 +17,16 @@ std::string seconds(sim::Ticks ticks) {
   return fmt::format("{:.3f} us", s * 1e6);
 }
 
+std::string joules(double j) {
+  if (j >= 1.0) {
+    return fmt::format("{:.3f} J", j);
+  }
+  if (j >= 1e-3) {
+    return fmt::format("{:.3f} mJ", j * 1e3);
+  }
+  return j >= 1e-6 ? fmt::format("{:.3f} uJ", j * 1e6) : fmt::format("{:.3f} nJ", j * 1e9);
+}
+
 std::string bytes(double count) {
   if (count >= 1024.0 * 1024.0) {
     return fmt::format("{:.1f} MiB", count / (1024.0 * 1024.0));

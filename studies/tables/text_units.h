@@ -13,6 +13,9 @@ namespace marti::studies {
 /// "1.234 s", "1.234 ms", "1.234 us".
 [[nodiscard]] std::string seconds(sim::Ticks ticks);
 
+/// "1.234 J", "1.234 mJ", "1.234 uJ", "1.234 nJ".
+[[nodiscard]] std::string joules(double j);
+
 /// Of real time: "1.2 s", "2 min 05 s", "3 h 20 min".
 [[nodiscard]] std::string duration_text(double seconds);
 

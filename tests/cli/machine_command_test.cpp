@@ -64,6 +64,41 @@ TEST(MachineCommand, MoreNodesOfItsSlowestStageHelpAPipeline) {
   EXPECT_GT(end(few), 1.5 * end(more));
 }
 
+// Energy is worked out for every scheme, adds up, and changes nothing else.
+TEST(MachineCommand, EnergyAddsUpAndChangesNoOtherFigure) {
+  for (const char* config : {"marti.toml", "pipeline.toml", "space.toml", "distributed.toml"}) {
+    const std::string arguments =
+        "run --no-what-helps " + quoted(fs::path(MARTI_SOURCE) / "configs" / config) + small_teapot;
+    const auto figures_of = [&](const std::string& more) {
+      const Outcome outcome = marti(arguments + " --json" + more);
+      EXPECT_EQ(outcome.status, 0) << outcome.output;
+      return nlohmann::json::parse(outcome.output)["figures"]["machine"];
+    };
+    const nlohmann::json without = figures_of("");
+    nlohmann::json with = figures_of(" --set energy.preset=22nm");
+    std::int64_t sum = 0;
+    for (const char* part : {"operations", "l1", "l2", "interconnect", "memory", "leakage"}) {
+      sum += with["energy_" + std::string(part)].get<std::int64_t>();
+      with.erase("energy_" + std::string(part));
+    }
+    const auto total = with["energy_total"].get<std::int64_t>();
+    EXPECT_EQ(sum, total) << config;
+    EXPECT_GT(total, 0);
+    const auto end = with["end"].get<double>();
+    EXPECT_DOUBLE_EQ(with["energy"].get<double>(), static_cast<double>(total) * 1e-12);
+    EXPECT_DOUBLE_EQ(with["power"].get<double>(), static_cast<double>(total) * 1e-15 / (end * 1e-12));
+    EXPECT_DOUBLE_EQ(with["energy_delay"].get<double>(), static_cast<double>(total) * 1e-9 * end * 1e-12);
+    for (const char* figure :
+         {"energy_total", "energy_area", "energy", "power", "rays_a_joule", "energy_delay", "area"}) {
+      EXPECT_EQ(with.erase(figure), 1U) << figure;
+    }
+    EXPECT_EQ(with, without) << config;
+    const Outcome summary = marti(arguments + " --set energy.preset=22nm");
+    EXPECT_TRUE(says(summary, "\nenergy        ")) << summary.output;
+    EXPECT_FALSE(says(marti(arguments), "\nenergy        "));
+  }
+}
+
 TEST(MachineCommand, ADistributedDatabaseReportsItsMessagesAndMemories) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "distributed.toml";
   for (const char* kind : {"mesh", "ideal"}) {

@@ -32,6 +32,11 @@ cache.size = ["1 KiB", "2 KiB", "4 KiB"]
 [prices]
 node = 1
 cache_kib = 0.25
+[energy]
+preset = "22nm"
+l1_read = 2
+l1_write = 3
+l1_area = 0.01
 )";
 
 // The data that the page gives to its scripts.
@@ -95,7 +100,7 @@ class ReportCommand : public testing::Test {
 TEST_F(ReportCommand, ReportsARun) {
   const fs::path run = made_run(
       " --set count.attribution=true --set count.working_set=true --set record.heat_maps=true"
-      " --set record.critical_path=true");
+      " --set record.critical_path=true --set energy.preset=45nm");
   const Outcome made = marti("report " + quoted(run));
   ASSERT_EQ(made.status, 0) << made.output;
   const json result = json::parse(read(run / "result.json"));
@@ -110,7 +115,7 @@ TEST_F(ReportCommand, ReportsARun) {
   EXPECT_NE(page.find("Heat map: misses"), std::string::npos);
   for (const char* name :
        {"run_cycles", "run_loss", "run_nodes", "run_references", "run_level_accesses", "run_level_hit_ratio",
-        "run_waits", "run_tree", "run_level_memory", "run_memory", "run_path", "working_set"}) {
+        "run_waits", "run_tree", "run_level_memory", "run_memory", "run_path", "run_energy", "working_set"}) {
     EXPECT_TRUE(has_chart(data, name)) << name;
     EXPECT_NE(page.find("id=\"chart-" + std::string(name) + "\""), std::string::npos) << name;
   }
@@ -129,7 +134,7 @@ TEST_F(ReportCommand, ReportsASweepWithItsModel) {
   EXPECT_NE(made.output.find("The fastest of 24 machines"), std::string::npos) << made.output;
   const json data = data_of(place("page.html"));
   for (const char* name : {"frame_time", "speed_up", "efficiency", "cycles", "utilisation", "waits",
-                           "hit_ratio_cache_size", "price"}) {
+                           "hit_ratio_cache_size", "price", "energy"}) {
     EXPECT_TRUE(has_chart(data, name)) << name;
   }
   const json& explorer = data["explorer"];

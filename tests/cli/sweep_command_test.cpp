@@ -241,6 +241,28 @@ TEST_F(SweepCommand, ASceneFileIsPartOfTheFrame) {
   EXPECT_TRUE(says(gone, scene.string())) << gone.output;
 }
 
+TEST_F(SweepCommand, HasTheEnergyOfEachPoint) {
+  write(config,
+        "[scene]\nsource = \"teapot:2\"\n[image]\nwidth = 16\nheight = 16\n[energy]\n"
+        "preset = \"22nm\"\nnode_area = 0.5\n[sweep.axes]\nenergy.voltage = [0.5, 1.0, 2.0]\n"
+        "energy.leakage_density = [0.0, 100.0]\n");
+  const Outcome best = sweep(config, out, "--best energy");
+  ASSERT_EQ(best.status, 0) << best.output;
+  EXPECT_TRUE(says(best, "energy.voltage = 0.5, energy.leakage_density = 0")) << best.output;
+  // Nothing but what switches and what leaks differs among the points, and each by its axis; beside them are
+  // the machines of one node that they are measured against.
+  EXPECT_EQ(rows_of(store,
+                    "SELECT COUNT(DISTINCT \"end\"), COUNT(DISTINCT energy_memory), "
+                    "COUNT(DISTINCT energy_operations), COUNT(DISTINCT energy_leakage), "
+                    "COUNT(DISTINCT energy_total), SUM(energy_total - energy_operations - energy_l1 - "
+                    "energy_l2 - energy_interconnect - energy_memory - energy_leakage) "
+                    "FROM results WHERE nodes = 16"),
+            rows_of(store, "SELECT 1, 1, 3, 2, 6, 0"));
+  const Outcome huge = sweep(config, out, "--set energy.node_area=10000 --set node.clock=1kHz");
+  EXPECT_EQ(huge.status, 2);
+  EXPECT_TRUE(says(huge, "sweep.toml:7: energy.preset: the energy of ")) << huge.output;
+}
+
 TEST_F(SweepCommand, RefusesWhatItCannotDo) {
   expect_refused("sweep " + quoted(config), "-o DIR is missing");
   write(place("file"), "in the way");

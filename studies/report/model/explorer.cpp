@@ -78,6 +78,7 @@ std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
                                        {"efficiency", "1", 1.0, true},
                                        {"times_faster"},
                                        {"price"},
+                                       {"energy", "mJ", 1.0, true},
                                        {"hit_ratio"}};
   for (const std::string_view kind : memory::record_kind_names) {
     fields.push_back({"hit_ratio_" + std::string(kind)});
@@ -172,7 +173,7 @@ Json explorer_json(const ReportPoints& sweep, std::span<const AxisModel> models,
     ordinals.push_back(point.ordinal);
   }
   json["ordinal"] = std::move(ordinals);
-  json["front"] = chosen.front;
+  json["fronts"] = {{"price", chosen.front}, {"energy", chosen.energy_front}};
   json["fields"] = Json::array();
   json["columns"] = Json::object();
   for (const ExplorerField& field : explorer_fields(sweep)) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "processors/cost/accounting.h"
+#include "processors/energy/energy.h"
 #include "sim/error.h"
 #include "sim/units.h"
 #include "studies/figures/derived_figures.h"
@@ -56,6 +57,20 @@ Table cycles_table(const RunJson& run) {
     if (ps > 0) {
       table.add_row({std::string(activity), ps, static_cast<double>(ps) / all});
     }
+  }
+  return table;
+}
+
+Table energy_table(const RunJson& run) {
+  Table table("run_energy", "Where the energy goes",
+              {{"part", ColumnType::text, "", "see docs/model.md, Energy"},
+               {"fj", ColumnType::integer, "fJ", "energy of the frame"},
+               {"share", ColumnType::real, "fraction", "of all energy"}});
+  const double all = run.count("figures.machine.energy_total");
+  for (std::size_t i = 0; all > 0.0 && i < processors::energy_parts; ++i) {
+    const std::string part(processors::EnergyResult::counters().at(i).name);
+    const std::int64_t fj = whole(run, "figures.machine.energy_" + part);
+    table.add_row({part, fj, static_cast<double>(fj) / all});
   }
   return table;
 }
@@ -286,6 +301,7 @@ void add_all(const RunJson& run, ReportData& report) {
   add(report, cycles_table(run), "All nodes' time from 0 to the end of the frame, without remainder.");
   add(report, loss_table(run),
       "The parts add up to the number of nodes less the speed-up times the nodes of the base.");
+  add(report, energy_table(run), "The parts add up to the energy of the frame.");
   add(report, nodes_table(run), "Uneven bars are imbalance.");
   add(report, references_table(run));
   add_levels(run, report);

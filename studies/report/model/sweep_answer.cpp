@@ -114,6 +114,24 @@ std::string speed_text(const ReportPoint& point) {
                      point.figure("speed_up"), 100.0 * point.figure("efficiency"));
 }
 
+// Of the points of this frame that have the figure, those that no other beats in it and in frame time.
+std::vector<std::size_t> front_by(const ReportPoints& sweep, std::string_view figure, std::size_t frame) {
+  std::vector<Offer> offers;
+  std::vector<std::size_t> offered;
+  for (std::size_t i = 0; i < sweep.points.size(); ++i) {
+    const ReportPoint& point = sweep.points[i];
+    if (point.frame == frame && point.has(figure)) {
+      offers.push_back({point.figure(figure), point.figure("end")});
+      offered.push_back(i);
+    }
+  }
+  std::vector<std::size_t> front = pareto_front(offers, Better::lower);
+  for (std::size_t& i : front) {
+    i = offered[i];
+  }
+  return front;
+}
+
 }  // namespace
 
 Chosen choose(const ReportPoints& sweep) {
@@ -121,18 +139,8 @@ Chosen choose(const ReportPoints& sweep) {
       sweep.points.begin(), sweep.points.end(),
       [](const ReportPoint& a, const ReportPoint& b) { return a.figure("end") < b.figure("end"); });
   Chosen chosen;
-  std::vector<Offer> offers;
-  std::vector<std::size_t> offered;
-  for (std::size_t i = 0; i < sweep.points.size(); ++i) {
-    const ReportPoint& point = sweep.points[i];
-    if (point.frame == shortest->frame) {
-      offers.push_back({price_of(point), point.figure("end")});
-      offered.push_back(i);
-    }
-  }
-  for (const std::size_t i : pareto_front(offers, Better::lower)) {
-    chosen.front.push_back(offered[i]);
-  }
+  chosen.front = front_by(sweep, "price", shortest->frame);
+  chosen.energy_front = front_by(sweep, "energy", shortest->frame);
   chosen.fastest = chosen.front.back();
   chosen.knee = knee_of(sweep, chosen.front);
   return chosen;

@@ -15,6 +15,8 @@ struct Chosen {
   std::size_t fastest = 0;         ///< the shortest frame; of equal ones the cheapest, then the first
   std::size_t knee = 0;            ///< of the front, the machine where more money begins to buy less
   std::vector<std::size_t> front;  ///< that no other beats in price and frame time, ascending by price
+  /// That no other beats in energy and frame time, ascending by energy; empty if none has an energy.
+  std::vector<std::size_t> energy_front;
 };
 
 /// Among the machines of one frame, the one with the shortest time of all: frames of different work are not

@@ -141,17 +141,17 @@ void add_slice(const ReportPoints& sweep, const SliceChart& slice, std::size_t a
   report.charts.push_back(std::move(chart));
 }
 
-void add_prices(const ReportPoints& sweep, ReportData& report) {
-  ReportChart chart =
-      live_chart("price", "price", sweep.priced ? "Frame time and price" : "Frame time and number of nodes",
-                 {{"rows", "all"}});
+// Every machine by a figure and its frame time.
+void add_front(const ReportPoints& sweep, const std::string& figure, const std::string& title,
+               std::string_view axis, ReportData& report) {
+  ReportChart chart = live_chart("front", figure, "Frame time and " + title,
+                                 {{"rows", "all"}, {"by", figure}}, {{"FIGURE", figure}, {"TITLE", axis}});
   chart.note = "Every machine of the sweep; the line joins those that no other beats in both.";
-  Json& x = chart.spec["encoding"]["x"];
-  x["title"] = sweep.priced ? "price" : "nodes";
-  const bool has_free = std::any_of(sweep.points.begin(), sweep.points.end(),
-                                    [](const ReportPoint& point) { return point.figure("price") <= 0.0; });
+  const bool has_free = std::any_of(
+      sweep.points.begin(), sweep.points.end(),
+      [&figure](const ReportPoint& point) { return point.has(figure) && point.figure(figure) <= 0.0; });
   if (has_free) {
-    x["scale"] = {{"type", "linear"}, {"nice", false}};
+    chart.spec["encoding"]["x"]["scale"] = {{"type", "linear"}, {"nice", false}};
   }
   report.charts.push_back(std::move(chart));
 }
@@ -246,7 +246,11 @@ ReportData sweep_report(const ReportPoints& sweep) {
     }
   }
   if (sweep.points.size() > 1) {
-    add_prices(sweep, report);
+    add_front(sweep, "price", sweep.priced ? "price" : "number of nodes", sweep.priced ? "price" : "nodes",
+              report);
+    if (!chosen.energy_front.empty()) {
+      add_front(sweep, "energy", "energy", "energy of a frame, mJ", report);
+    }
   }
   constexpr std::size_t few = 12;
   report.tables.push_back({front_table(sweep, chosen), chosen.front.size() > few});

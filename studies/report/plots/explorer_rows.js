@@ -96,21 +96,22 @@ marti.rows = (() => {
     });
   }
 
-  /** Every point, by price and time. */
-  function all(explorer) {
-    const front = new Set(explorer.front);
-    return explorer.ordinal.map((ordinal, i) => ({
+  /** Every point that has the figure `live.by`, by that and time. */
+  function all(explorer, live) {
+    const front = new Set(explorer.fronts[live.by]);
+    const rows = explorer.ordinal.map((ordinal, i) => ({
       ordinal,
-      price: explorer.columns.price[i],
+      [live.by]: explorer.columns[live.by][i],
       ms: explorer.columns.end[i],
       front: front.has(i) ? 1 : 0,
     }));
+    return rows.filter((row) => row[live.by] !== null);
   }
 
   /** Rows of the chart with this `live`, for the machine at `place` and the curve along `axis`. */
   function of(explorer, live, axis, place) {
     if (live.rows === "explorer") return explore(explorer, axis, place);
-    return live.rows === "slice" ? slice(explorer, live, place) : all(explorer);
+    return live.rows === "slice" ? slice(explorer, live, place) : all(explorer, live);
   }
 
   return { line, samples, of };

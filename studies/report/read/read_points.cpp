@@ -55,7 +55,8 @@ constexpr std::string_view counters[] = {"end",
                                          "network_utilisation",
                                          "mean_interconnect_wait",
                                          "mean_bank_wait",
-                                         "finish_balance"};
+                                         "finish_balance",
+                                         "energy"};
 
 constexpr std::string_view waits[] = {"interconnect_wait", "bank_wait"};
 

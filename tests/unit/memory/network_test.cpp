@@ -140,6 +140,7 @@ TEST(Network, EveryPairOfSmallNetworksTakesItsHopsAndBeats) {
           EXPECT_EQ(network->unloaded(from, to, 9), delivery.transfer);
           EXPECT_EQ(network->statistics().hops, hops);
           EXPECT_EQ(network->statistics().bytes, 9);
+          EXPECT_EQ(network->statistics().link_bytes, 9 * hops);
           EXPECT_EQ(network->statistics().busy, kind == NetworkKind::bus ? 60 : hops * 30);
         }
       }

@@ -1,12 +1,15 @@
 // The catalogue of figures: formulas, and the parts of the lost speed-up.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 #include <string>
 
 #include "studies/figures/derived_figures.h"
 #include "studies/run/frame_figures.h"
+#include "studies/sweep/plan/sweep_keys.h"
 #include "studies/tables/sqlite_connection.h"
 #include "tests/support/random_machine.h"
 #include "tests/support/user_error.h"
@@ -95,6 +98,22 @@ TEST(Figures, AreDescribedOnce) {
   EXPECT_EQ(figure_named("end").better, Better::lower);
   EXPECT_NE(test::user_error_of([] { (void)figure_named("speedup"); }).find("\"speed_up\""),
             std::string::npos);
+}
+
+// A sweep has columns for its axes beside those of figures.
+TEST(Figures, HaveOtherNamesThanKeysAsColumns) {
+  std::set<std::string, std::less<>> figures;
+  for (const auto& entries : {counted_figures(), derived_figures(), frame_figures()}) {
+    for (const FigureEntry& entry : entries) {
+      figures.insert(entry.name);
+    }
+  }
+  const sim::Schema schema = sweep_schema();
+  for (const sim::Key& key : schema.keys()) {
+    std::string column = key.name;
+    std::replace(column.begin(), column.end(), '.', '_');
+    EXPECT_FALSE(figures.contains(column)) << key.name;
+  }
 }
 
 struct Pair {

@@ -136,14 +136,14 @@ TEST_F(Plots, AreDrawnWithTheirData) {
 TEST_F(Plots, HaveTheRowsOfTheExplorer) {
   ReportChart prices = chart("prices");
   prices.spec["data"]["values"] = nlohmann::ordered_json::array();
-  prices.live = {{"rows", "all"}};
+  prices.live = {{"rows", "all"}, {"by", "price"}};
   ReportChart slice = prices;
   slice.name = "slice";
   slice.live = {{"rows", "slice"}, {"axis", 0}, {"fields", {"end"}}};
   ReportData report = report_of({prices, slice});
   report.explorer = nlohmann::ordered_json::parse(
       R"({"axis": 0, "start": 2, "axes": [{"texts": ["1 KiB", "2 KiB"]}, {"texts": ["bus", "ideal"]}],
-          "place": [[0, 1, 0, 1], [0, 0, 1, 1]], "ordinal": [0, 1, 2, 4], "front": [3], "models": {},
+          "place": [[0, 1, 0, 1], [0, 0, 1, 1]], "ordinal": [0, 1, 2, 4], "fronts": {"price": [3]}, "models": {},
           "columns": {"end": [1.5, 2, null, 4], "price": [1, 2, 3, 4]}})");
   const std::vector<Plot> plots = draw_plots(report, directory_, /*pdf=*/false);
   ASSERT_EQ(plots.size(), 4U);

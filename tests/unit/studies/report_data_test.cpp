@@ -3,6 +3,9 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
+#include <set>
+#include <utility>
 
 #include "sim/base64.h"
 #include "sim/error.h"
@@ -116,6 +119,45 @@ TEST(Choose, FindsTheFastestTheFrontAndItsKnee) {
   EXPECT_EQ(chosen.front, (std::vector<std::size_t>{0, 1, 2, 3, 4}));
   EXPECT_EQ(chosen.fastest, 4U);
   EXPECT_EQ(chosen.knee, 2U);
+}
+
+// Of random points on few values, so that some are equal; a few have no energy.
+TEST(Choose, FindsTheFrontOfEnergyAsBruteForceDoes) {
+  std::mt19937_64 random(7);
+  for (int round = 0; round < 50; ++round) {
+    ReportPoints sweep;
+    for (int i = 0; i < 30; ++i) {
+      ReportPoint point;
+      const auto energy = static_cast<double>(random() % 12);
+      point.figures = {{"price", static_cast<double>(1 + random() % 9)},
+                       {"end", static_cast<double>(1 + random() % 12)}};
+      if (random() % 4 != 0) {
+        point.figures["energy"] = energy;
+      }
+      sweep.points.push_back(point);
+    }
+    const Chosen chosen = choose(sweep);
+    const auto place = [&](std::size_t i) {
+      return std::pair(sweep.points[i].figure("energy"), sweep.points[i].figure("end"));
+    };
+    std::set<std::pair<double, double>> unbeaten;
+    for (std::size_t i = 0; i < sweep.points.size(); ++i) {
+      bool beaten = !sweep.points[i].has("energy");
+      for (std::size_t other = 0; other < sweep.points.size(); ++other) {
+        beaten = beaten || (sweep.points[other].has("energy") && place(other) != place(i) &&
+                            place(other).first <= place(i).first && place(other).second <= place(i).second);
+      }
+      if (!beaten) {
+        unbeaten.insert(place(i));
+      }
+    }
+    std::set<std::pair<double, double>> front;
+    for (const std::size_t i : chosen.energy_front) {
+      EXPECT_TRUE(sweep.points[i].has("energy"));
+      EXPECT_TRUE(front.insert(place(i)).second);
+    }
+    EXPECT_EQ(front, unbeaten);
+  }
 }
 
 TEST(CycleGroups, AddUpToAllActivities) {

@@ -1,0 +1,157 @@
+#include "processors/energy/energy_units.h"
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "processors/energy/energy_presets.h"
+#include "sim/key_error.h"
+#include "sim/units.h"
+
+namespace marti::processors {
+
+namespace {
+
+constexpr double attojoules_a_picojoule = 1e6;
+constexpr double square_micrometres_a_square_millimetre = 1e6;
+constexpr double picowatts_of_milliwatts = 1e3;  // mW a mm2 in pW a um2
+
+// The largest figure; of operations less, so that what a step takes of many fits 64 bits.
+constexpr double most = 1e9;
+constexpr double most_of_operation = 1e5;
+constexpr double most_voltage = 10.0;
+
+void require_range(std::string_view key, double figure, double largest) {
+  if (!(figure >= 0.0 && figure <= largest)) {
+    throw sim::KeyError("energy." + std::string(key), "must be from 0 to " + sim::print_real(largest));
+  }
+}
+
+// A figure in a unit that is `times` smaller, rounded to the nearest.
+std::int64_t whole(std::string_view key, double figure, double times) {
+  require_range(key, figure, most);
+  return std::llround(figure * times);
+}
+
+// What switches takes the square of the voltage.
+std::int64_t switched(const EnergyConfig& energy, std::string_view key, double picojoules) {
+  require_range("voltage", energy.voltage, most_voltage);
+  const auto nominal = static_cast<double>(whole(key, picojoules, attojoules_a_picojoule));
+  return std::llround(nominal * energy.voltage * energy.voltage);
+}
+
+OperationCycles operations_of(const EnergyConfig& energy) {
+  const EnergyFigures& figures = energy.figures;
+  const auto operation = [&](std::string_view key, double picojoules) {
+    require_range(key, picojoules, most_of_operation);
+    return switched(energy, key, picojoules);
+  };
+  const std::int64_t instruction = operation("instruction", figures.instruction);
+  const auto of = [&](std::string_view key, double picojoules) {
+    return operation(key, picojoules) + instruction;
+  };
+  return {.add = of("add", figures.add),
+          .multiply = of("multiply", figures.multiply),
+          .divide = of("divide", figures.divide),
+          .square_root = of("square_root", figures.square_root),
+          .compare = of("compare", figures.compare),
+          .integer = of("integer", figures.integer),
+          .load = of("load", figures.load),
+          .store = of("store", figures.store)};
+}
+
+// One cache, with the keys that say its size and its figures.
+struct NamedCache {
+  memory::CacheConfig cache;
+  std::string size_key;
+  std::string_view level;  // "l1" or "l2"
+};
+
+// The cache's figures: those that are given, for the others the fit's.
+CacheFigures figures_of(const EnergyConfig& energy, const NamedCache& named) {
+  CacheFigures figures = named.level == "l1" ? energy.figures.l1 : energy.figures.l2;
+  if (figures.read != by_fit && figures.write != by_fit && figures.area != by_fit) {
+    return figures;
+  }
+  const std::optional<CacheFigures> fitted = fitted_cache(energy.preset, named.cache);
+  if (!fitted) {
+    const std::string level = "energy." + std::string(named.level);
+    throw sim::KeyError(
+        named.size_key,
+        "the energy of a cache of " + sim::print_size(static_cast<std::int64_t>(named.cache.size)) +
+            " with lines of " + std::to_string(named.cache.line) +
+            " bytes is not known: it is fitted to caches of " + sim::print_size(least_fitted_size) + " to " +
+            sim::print_size(most_fitted_size) + " with lines of " + std::to_string(least_fitted_line) +
+            " to " + std::to_string(most_fitted_line) + " bytes; give " + level + "_read, " + level +
+            "_write and " + level + "_area");
+  }
+  for (const auto member : {&CacheFigures::read, &CacheFigures::write, &CacheFigures::area}) {
+    if (figures.*member == by_fit) {
+      figures.*member = (*fitted).*member;
+    }
+  }
+  return figures;
+}
+
+// Adds the cache's area; returns its energies.
+CacheUnits add_cache(const EnergyConfig& energy, const NamedCache& named, Wide& area) {
+  const CacheFigures figures = figures_of(energy, named);
+  const std::string level(named.level);
+  area += whole(level + "_area", figures.area, square_micrometres_a_square_millimetre);
+  return {switched(energy, level + "_read", figures.read), switched(energy, level + "_write", figures.write)};
+}
+
+void add_first_level(const MachineConfig& config, EnergyUnits& units) {
+  const NodeCacheConfig& caches = config.cache;
+  switch (caches.organisation) {
+    case CacheOrganisation::none:
+      break;
+    case CacheOrganisation::unified:
+      units.l1[0] = add_cache(config.energy, {caches.cache, "cache.size", "l1"}, units.node_area);
+      break;
+    case CacheOrganisation::split:
+      for (std::size_t i = 0; i < split_caches; ++i) {
+        NamedCache named{caches.cache, "cache." + std::string(split_cache_names.at(i)) + "_size", "l1"};
+        named.cache.size = caches.split_sizes.at(i);
+        units.l1.at(i) = add_cache(config.energy, named, units.node_area);
+      }
+      break;
+  }
+}
+
+void add_second_level(const MachineConfig& config, EnergyUnits& units) {
+  if (config.l2.sharing != SecondLevel::none) {
+    Wide& area = config.l2.sharing == SecondLevel::shared ? units.cluster_area : units.node_area;
+    units.l2 = add_cache(config.energy, {second_level_cache(config), "l2.size", "l2"}, area);
+  }
+}
+
+}  // namespace
+
+EnergyUnits energy_units(const MachineConfig& config) {
+  const EnergyConfig& energy = config.energy;
+  const EnergyFigures& figures = energy.figures;
+  EnergyUnits units;
+  units.operations = operations_of(energy);
+  add_first_level(config, units);
+  add_second_level(config, units);
+  constexpr double bits = 8.0;
+  units.interconnect_byte = switched(energy, "wire", figures.wire * figures.interconnect_length * bits);
+  units.hop_byte = switched(energy, "wire", figures.wire * figures.hop_length * bits);
+  // Memory has a supply of its own.
+  const Wide line = config.reference_bytes();
+  const auto of_memory = [&](std::string_view key, double of_byte) {
+    return whole("memory_access", figures.memory_access, attojoules_a_picojoule) +
+           line * whole(key, of_byte, attojoules_a_picojoule);
+  };
+  units.memory_read = of_memory("memory_read", figures.memory_read);
+  units.memory_write = of_memory("memory_write", figures.memory_write);
+  constexpr double square = square_micrometres_a_square_millimetre;
+  units.node_area += whole("node_area", figures.node_area, square) +
+                     Wide{config.contexts - 1} * whole("context_area", figures.context_area, square);
+  units.leakage = whole("leakage_density", figures.leakage_density, picowatts_of_milliwatts);
+  return units;
+}
+
+}  // namespace marti::processors

@@ -1,0 +1,37 @@
+// What each thing that is counted takes on one machine, in integers.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "processors/machine/machine_config.h"
+#include "processors/machine/operation_cycles.h"
+
+namespace marti::processors {
+
+__extension__ using Wide = __int128;
+
+/// Of one cache, in aJ.
+struct CacheUnits {
+  std::int64_t read = 0;
+  std::int64_t write = 0;
+};
+
+/// Energies in aJ (1e-18 J, a millionth of a pJ) at the machine's voltage, areas in um2, leakage in pW a um2.
+struct EnergyUnits {
+  OperationCycles operations;  ///< aJ where the cost model has cycles
+  std::array<CacheUnits, split_caches> l1;
+  CacheUnits l2;
+  std::int64_t interconnect_byte = 0;
+  std::int64_t hop_byte = 0;
+  Wide memory_read = 0;   ///< of one access, with the bytes of a line
+  Wide memory_write = 0;  ///< of one access, with the bytes of a line
+  Wide node_area = 0;     ///< with its caches
+  Wide cluster_area = 0;  ///< beside its nodes
+  std::int64_t leakage = 0;
+};
+
+/// Throws KeyError when a figure that the machine needs is not known, or is out of range.
+[[nodiscard]] EnergyUnits energy_units(const MachineConfig& config);
+
+}  // namespace marti::processors

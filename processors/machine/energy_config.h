@@ -1,0 +1,56 @@
+// What the parts of a machine take of energy, as values.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace marti::processors {
+
+/// The technology whose figures hold where none is given. none: no energy is worked out.
+enum class EnergyPreset : std::uint8_t { none, nm45, nm22 };
+inline constexpr std::array<std::string_view, 3> energy_preset_names = {"none", "45nm", "22nm"};
+
+/// The value of a cache's figure that is to be taken from the fit for its size, ways and line.
+inline constexpr double by_fit = -1.0;
+
+/// Figures of one level of caches, each at least 0 or by_fit.
+struct CacheFigures {
+  double read = by_fit;   ///< pJ to look a line up and read it
+  double write = by_fit;  ///< pJ to bring a line in
+  double area = by_fit;   ///< mm2 of one cache
+};
+
+/// All at least 0. Of an operation in pJ.
+struct EnergyFigures {
+  double add = 0.0;
+  double multiply = 0.0;
+  double divide = 0.0;
+  double square_root = 0.0;
+  double compare = 0.0;
+  double integer = 0.0;
+  double load = 0.0;
+  double store = 0.0;
+  double instruction = 0.0;  ///< pJ, of each operation beside its own: fetching, decoding, registers
+  CacheFigures l1;
+  CacheFigures l2;
+  double wire = 0.0;                 ///< pJ to move a bit by a mm
+  double interconnect_length = 0.0;  ///< mm between nodes and shared memory
+  double hop_length = 0.0;           ///< mm of a link of the network
+  double memory_access = 0.0;        ///< pJ of an access of a bank or local memory, beside its bytes
+  double memory_read = 0.0;          ///< pJ of a byte read there
+  double memory_write = 0.0;         ///< pJ of a byte written there
+  double node_area = 0.0;            ///< mm2 of a node without its caches
+  double context_area = 0.0;         ///< mm2 of each context beyond the first
+  double leakage_density = 0.0;      ///< mW of a mm2, at all times
+};
+
+struct EnergyConfig {
+  EnergyPreset preset = EnergyPreset::none;
+  EnergyFigures figures;  ///< for the voltage of the preset's sources
+  double voltage = 1.0;   ///< as a multiple of that voltage: what switches takes its square
+
+  [[nodiscard]] bool on() const { return preset != EnergyPreset::none; }
+};
+
+}  // namespace marti::processors

@@ -1,0 +1,56 @@
+#include "processors/replay/energy_counts.h"
+
+#include "processors/replay/cache_laws.h"
+#include "processors/walk/node_caches.h"
+
+namespace marti::processors {
+
+namespace {
+
+// Adds the nodes' look-ups: without a cache there are none.
+void add_first_level(const MachineConfig& config, const MachineResult& result, EnergyCounts& counts) {
+  if (config.cache.organisation == CacheOrganisation::none) {
+    return;
+  }
+  const bool split = config.cache.organisation == CacheOrganisation::split;
+  const ReferenceCounts references = result.references();
+  for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
+    const std::size_t cache = split ? split_cache_of.at(kind) : 0;
+    sim::merge(counts.l1.at(cache), {references.hits.at(kind), references.misses.at(kind)});
+  }
+  counts.l1_prefetches = result.contexts.counts().issued;
+}
+
+}  // namespace
+
+EnergyCounts energy_counts(const WorkLog& log, const MachineConfig& config, const MachineResult& result) {
+  EnergyCounts counts;
+  counts.traversal = log.traversal;
+  counts.mailboxes = log.mailboxes;
+  counts.steps = result.steps();
+  counts.build = result.build.counts();
+  add_first_level(config, result, counts);
+  counts.l2 = result.l2.counters();
+  memory::NetworkStatistics network;
+  for (const ClusterResult& cluster : result.clusters) {
+    counts.memory_writes += cluster.interconnect.writes;
+    if (cluster.distributed) {
+      sim::merge(network, cluster.distributed->network);  // its messages carry what the nodes read and write
+    } else {
+      counts.interconnect_bytes += cluster.interconnect.bytes;
+    }
+  }
+  for (const memory::NetworkStatistics& part : result.flow.networks) {
+    sim::merge(network, part);
+  }
+  // An ideal network has no links: its messages cross one.
+  counts.hop_bytes = config.network.kind == memory::NetworkKind::ideal ? network.bytes : network.link_bytes;
+  // Every line that no cache holds is read from a bank or from the node's own memory, and each lock reads
+  // its branch.
+  const std::int64_t served = config.l2.sharing == SecondLevel::shared ? counts.l2.hits : 0;
+  counts.memory_reads = reads_beyond_caches(config, result) + counts.build.locks - served;
+  counts.end = result.end;
+  return counts;
+}
+
+}  // namespace marti::processors

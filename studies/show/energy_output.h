@@ -1,0 +1,13 @@
+// What the summary says about energy.
+#pragma once
+
+#include <string>
+
+#include "studies/run/run_result.h"
+
+namespace marti::studies {
+
+/// Energy and power of the frame, its parts, the machine's area; empty where no energy is worked out.
+[[nodiscard]] std::string energy_lines(const RunResult& result);
+
+}  // namespace marti::studies
