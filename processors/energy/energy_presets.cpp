@@ -34,8 +34,8 @@ struct CacheFits {
   Fit area;   // um2
 };
 
-// Fitted by least squares of logarithms to 87 caches of 2 KiB to 4 MiB, 1 to 8 ways and lines of 32 and 64
-// bytes, as CACTI gives them (github.com/HewlettPackard/cacti, commit 1ffd8df: cache.cfg with
+// Fitted by least squares of logarithms to 87 caches of 2 KiB to 4 MiB, 1 to 8 ways, lines of 32 and 64 bytes
+// and at least 32 sets, as CACTI gives them (github.com/HewlettPackard/cacti, commit 1ffd8df: cache.cfg with
 // high-performance transistors, ways read side by side, a bus of one line, no error correction). Mean and
 // largest error in percent, 45 nm: read 8 and 29, write 8 and 25, area 9 and 42; 22 nm: read 8 and 34, write
 // 8 and 21, area 11 and 46.
@@ -53,15 +53,15 @@ constexpr std::array<CacheFits, 2> fits = {{
 // integer addition 0.1. A division is 7.1 times a multiplication, as measured on a Cortex-M4F (table 3 of
 // ncbi.nlm.nih.gov/pmc/articles/PMC8934428). Conventions, for want of a figure: a square root is as a
 // division, as in SimTRaX (github.com/dkoptacs/simtrax, sim/ReadConfig.cc); a comparison is as an integer
-// addition, as there, and so is the address of a load or store, whose cache is counted apart. Wires, 40 nm:
-// 310 pJ for 256 bits over 10 mm: Keckler et al., GPUs and the future of parallel computing, IEEE Micro
-// 31(5), 2011, table 1. Their 10 mm is the interconnect's length; that of a hop is a convention. Memory: DDR4
-// 8 Gb x8 at 2400, a rank of 64 bits, from the currents in DRAMsim3 (github.com/umd-memsys/DRAMsim3,
-// DDR4_8Gb_x8_2400.ini): 3.45 nJ to activate and precharge, 2.93 nJ to read and 2.55 nJ to write 64 bytes.
-// Area of a node: SimTRaX's units of 65 nm (adder .003, multiplier .0165, divider .112, integer multiplier
-// .0117 and adder .00066, registers .0148 mm2), times the square of 45 / 65; of a context, its registers.
-// Leakage: the geometric mean over the caches that the fits were made of, at 360 K.
-// Horowitz, Keckler and, below, Dally are taken from later papers that quote them, not from the originals.
+// addition, within 7 % as there, and so is the address of a load or store, whose cache is counted apart.
+// Wires, 40 nm: 310 pJ for 256 bits over 10 mm: Keckler et al., GPUs and the future of parallel computing,
+// IEEE Micro 31(5), 2011, table 1. Their 10 mm is the interconnect's length; that of a hop is a convention.
+// Memory: DDR4 8 Gb x8 at 2400, a rank of 64 bits, from the currents in DRAMsim3
+// (github.com/umd-memsys/DRAMsim3, DDR4_8Gb_x8_2400.ini): 3.45 nJ to activate and precharge, 2.93 nJ to read
+// and 2.55 nJ to write 64 bytes. Area of a node: SimTRaX's units of 65 nm (adder .003, multiplier .0165,
+// divider .112, integer multiplier .0117 and adder .00066, registers .0148 mm2), times the square of 45 / 65;
+// of a context, its registers. Leakage: the geometric mean over the caches that the fits were made of, at 360
+// K. Horowitz, Keckler and, below, Dally are taken from later papers that quote them, not from the originals.
 constexpr EnergyFigures nm45 = {.add = 0.9,
                                 .multiply = 3.7,
                                 .divide = 26.3,
@@ -84,9 +84,9 @@ constexpr EnergyFigures nm45 = {.add = 0.9,
                                 .leakage_density = 226.0};
 
 // 22 nm. Operations: those of 45 nm times 0.29, the ratio of the two technologies' reads of caches (geometric
-// mean over the same 87). Wires: 100 fJ a bit and mm: Dally, Turakhia, Han, Domain-specific hardware
-// accelerators, Communications of the ACM 63(7), 2020. Lengths: half of those of 45 nm. Areas: times the
-// square of 22 / 65.
+// mean over the same 87). Wires: 100 fJ a bit and mm, said of about 14 nm and taken as it is: Dally,
+// Turakhia, Han, Domain-specific hardware accelerators, Communications of the ACM 63(7), 2020. Lengths: half
+// of those of 45 nm. Areas: times the square of 22 / 65.
 constexpr EnergyFigures nm22 = {.add = 0.261,
                                 .multiply = 1.073,
                                 .divide = 7.627,

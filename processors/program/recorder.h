@@ -75,8 +75,8 @@ class RowRecorder {
 
   /// The words of a pixel that was recorded before.
   void copy(std::span<const std::uint32_t> words) {
-    while (static_cast<std::size_t>(end_ - next_) < words.size()) {
-      grow();
+    if (static_cast<std::size_t>(end_ - next_) < words.size()) {
+      grow(words.size());
     }
     next_ = std::copy(words.begin(), words.end(), next_);
   }
@@ -96,7 +96,7 @@ class RowRecorder {
 
   void put(std::uint32_t word) {
     if (next_ == end_) [[unlikely]] {
-      grow();
+      grow(1);
     }
     *next_++ = word;
   }
@@ -105,9 +105,10 @@ class RowRecorder {
     put(second);
   }
 
-  [[gnu::noinline]] void grow() {
+  // Makes room for `more` words.
+  [[gnu::noinline]] void grow(std::size_t more) {
     const auto used = static_cast<std::size_t>(next_ - buffer_.get());
-    const std::size_t capacity = std::max<std::size_t>(std::size_t{1} << 16U, 2 * used);
+    const std::size_t capacity = std::max({std::size_t{1} << 16U, 2 * used, used + more});
     if (capacity > std::numeric_limits<std::uint32_t>::max()) {
       throw sim::UserError(
           "the work log of one image row exceeds 2^31 steps; lower image.max_depth, image.samples or the "

@@ -29,6 +29,7 @@
 #include "scenes/camera.h"
 #include "scenes/scene.h"
 #include "scenes/texture.h"
+#include "sim/mix.h"
 
 namespace marti::processors {
 
@@ -70,7 +71,7 @@ class Tracer {
     for (std::uint32_t sample = 0; sample < options_.samples; ++sample) {
       trace(points_.at(x, y, sample));
     }
-    hit_hash_ += mix(pixel_hash_ ^ (std::uint64_t{y} << 32U | x));
+    hit_hash_ += sim::mix(pixel_hash_ ^ (std::uint64_t{y} << 32U | x));
     recorder_.phase(Phase::pixel, RayKind::camera);
     return color_;
   }
@@ -299,15 +300,8 @@ class Tracer {
 
   void add(const Vec& weight, const Vec& light) { color_ = color_ + weight * light; }
 
-  /// The finaliser of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014).
-  static std::uint64_t mix(std::uint64_t h) {
-    h += 0x9e3779b97f4a7c15U;
-    h = (h ^ (h >> 30U)) * 0xbf58476d1ce4e5b9U;
-    h = (h ^ (h >> 27U)) * 0x94d049bb133111ebU;
-    return h ^ (h >> 31U);
-  }
   void note(std::uint32_t primitive, std::uint64_t t_bits) {
-    pixel_hash_ = mix((pixel_hash_ ^ t_bits) * 0x9e3779b97f4a7c15U + primitive);
+    pixel_hash_ = sim::mix((pixel_hash_ ^ t_bits) * 0x9e3779b97f4a7c15U + primitive);
   }
 
   const scenes::Scene& scene_;

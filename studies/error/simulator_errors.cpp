@@ -24,7 +24,9 @@ std::vector<Answer> answers_of(const SimulatorStudy& study, std::size_t method, 
     if (figure == Figure::speed_up && study.cases[number].nodes == 1) {
       continue;
     }
-    if (const std::optional<Estimate>& estimate = study.estimates[method][number]) {
+    const std::optional<Estimate>& estimate = study.estimates[method][number];
+    // An interval without bounds holds everything and says nothing.
+    if (estimate && std::isfinite(estimate->half_width[figure])) {
       answers.push_back({number, error_of(figure, estimate->value[figure], study.truth[number].value[figure]),
                          estimate->half_width[figure], load_class_of(estimate->value[Figure::use])});
     }
@@ -92,8 +94,7 @@ FigureErrors figure_errors(const SimulatorStudy& study, std::size_t method, Figu
 
 void add_ranks(const SimulatorStudy& study, std::size_t method, MethodErrors& errors) {
   const std::size_t frames = study.cases.back().frame + 1;
-  double taus = 0.0;
-  double ranked = 0.0;
+  bool ranked = false;
   errors.least_tau = std::numeric_limits<double>::infinity();
   for (std::size_t frame = 0; frame < frames; ++frame) {
     std::vector<double> truth;
@@ -115,15 +116,13 @@ void add_ranks(const SimulatorStudy& study, std::size_t method, MethodErrors& er
       found_power.push_back(end * end * nodes);
     }
     if (const std::optional<double> tau = kendall_tau(truth, found)) {
-      taus += *tau;
-      ranked += 1.0;
+      ranked = true;
       errors.least_tau = std::min(errors.least_tau, *tau);
     }
     errors.regret = std::max(errors.regret, regret(truth, found));
     errors.power_regret = std::max(errors.power_regret, regret(true_power, found_power));
   }
-  errors.tau = ranked > 0.0 ? taus / ranked : 1.0;
-  errors.least_tau = ranked > 0.0 ? errors.least_tau : 1.0;
+  errors.least_tau = ranked ? errors.least_tau : 1.0;
 }
 
 }  // namespace
@@ -150,8 +149,11 @@ std::vector<MeasuredError> measured_errors_of(const SimulatorStudy& study) {
   for (std::size_t i = 0; i < figure_count; ++i) {
     for (std::size_t method = 0; method < simulator_methods().size(); ++method) {
       if (simulator_methods()[method].kind == MethodKind::sampled) {
-        const std::vector<Answer> more = answers_of(study, method, static_cast<Figure>(i));
-        answers[i].insert(answers[i].end(), more.begin(), more.end());
+        for (const Answer& answer : answers_of(study, method, static_cast<Figure>(i))) {
+          if (2 * simulator_methods()[method].strata >= least_windows[answer.load_class]) {
+            answers[i].push_back(answer);
+          }
+        }
       }
     }
   }
@@ -159,7 +161,7 @@ std::vector<MeasuredError> measured_errors_of(const SimulatorStudy& study) {
   for (std::size_t load = 0; load < load_classes.size(); ++load) {
     MeasuredError error{load_classes[load], 0, 1.0, {}};
     for (std::size_t i = 0; i < figure_count; ++i) {
-      std::vector<Answer> of_class = answers[i];
+      std::vector<Answer> of_class = answers[i];  // coverage is counted of the class alone
       std::erase_if(of_class, [&](const Answer& answer) { return answer.load_class != load; });
       if (const std::optional<double> allowance = allowance_of(study, of_class, load, std::nullopt)) {
         error.allowance[static_cast<Figure>(i)] = *allowance;

@@ -28,8 +28,7 @@ struct FigureErrors {
 struct MethodErrors {
   bool any = false;  ///< there is an answer to a case
   std::array<FigureErrors, figure_count> figures;
-  double tau = 0.0;           ///< Kendall's, of frame times; mean over frames
-  double least_tau = 0.0;     ///< of all frames
+  double least_tau = 0.0;     ///< Kendall's, of frame times; the least of all frames
   double regret = 0.0;        ///< of choosing the shortest frame time; that of the worst frame
   double power_regret = 0.0;  ///< of choosing the most speed-up times efficiency; that of the worst frame
 };
@@ -39,8 +38,8 @@ struct MethodErrors {
 /// a number of nodes by ("Speedup versus efficiency in parallel systems", IEEE Trans. Computers 38(3), 1989).
 [[nodiscard]] std::vector<MethodErrors> errors_of(const SimulatorStudy& study);
 
-/// What `marti run --within` rests on: the errors of samples of all sizes together. Classes of load that no
-/// case is of are missing.
+/// What `marti run --within` rests on: the errors of samples of all sizes that it takes. Classes of load that
+/// no case is of are missing.
 [[nodiscard]] std::vector<MeasuredError> measured_errors_of(const SimulatorStudy& study);
 
 }  // namespace marti::studies

@@ -5,11 +5,11 @@
 #include "memory/cache_config.h"
 #include "sim/mix.h"
 #include "sim/units.h"
+#include "studies/estimate/sampled_frame.h"
 #include "studies/estimate/simulator_analytic.h"
+#include "studies/estimate/simulator_sample.h"
 #include "studies/host/cpu_time.h"
 #include "studies/paper/level_counts.h"
-#include "studies/estimate/sampled_frame.h"
-#include "studies/estimate/simulator_sample.h"
 #include "studies/run/prepared_frame.h"
 
 namespace marti::studies {
@@ -104,17 +104,21 @@ class FrameStudy {
     return machine_with(config_.machine, config_.nodes[node], config_.caches[cache]);
   }
 
-  // Answers by one method for all numbers of nodes, the first of which is 1: an answer needs that of one node.
+  // Answers by one method for all numbers of nodes, the first of which is 1: an answer needs that of one
+  // node.
   void run_method(std::size_t m, std::size_t cache, std::uint32_t repeat) {
     const Method& method = simulator_methods()[m];
     double one_node = 0.0;
     for (std::size_t node = 0; node < config_.nodes.size(); ++node) {
       const std::size_t number = index(cache, node);
       if (method.kind == MethodKind::sampled) {
-        study_.cpu_seconds[m][repeat] += preparing_ + run_sample(m, cache, node);
+        const double seconds = run_sample(m, cache, node);
+        // Where the sample would be the frame, the exact run answers.
+        study_.cpu_seconds[m][repeat] +=
+            study_.estimates[m][number] ? preparing_ + seconds : exact_seconds_[number - first_];
       } else if (answers_alone(method)) {
-        const double seconds = seconds_of(
-            [&] { study_.estimates[m][number] = estimate(method, log(), machine(cache, node)); });
+        const double seconds =
+            seconds_of([&] { study_.estimates[m][number] = estimate(method, log(), machine(cache, node)); });
         const double all = preparing_ + tracing_ + seconds + one_node;
         one_node = node == 0 ? seconds : one_node;
         study_.cpu_seconds[m][repeat] += all;
@@ -126,14 +130,15 @@ class FrameStudy {
     }
   }
 
-  // A sample of the frame, unless it would be all of it. Every case draws samples of its own.
+  // A sample of the frame, unless it would be all of it or there are not so many strata. Every case draws
+  // samples of its own. Returns the seconds that it took.
   double run_sample(std::size_t m, std::size_t cache, std::size_t node) {
     const std::size_t number = index(cache, node);
     const processors::MachineConfig config = machine(cache, node);
     const std::uint64_t seed = sim::mix(config_.seed ^ sim::mix(number));
     return seconds_of([&] {
       const PacketWindows windows(packets_, window_length(config.nodes), simulator_methods()[m].strata, seed);
-      if (windows.has_all()) {
+      if (windows.has_all() || windows.strata().size() < simulator_methods()[m].strata) {
         return;
       }
       const FrameConfig& frame = prepared_->config();
@@ -162,9 +167,10 @@ class FrameStudy {
       }
       std::vector<Estimate> found;
       // One run answers for all caches.
-      study_.cpu_seconds[m][repeat] += preparing_ + tracing_ + seconds_of([&] {
-        found = estimate_analytically(log(), machine(0, node), shapes, {methods[m].walked_nodes});
-      });
+      study_.cpu_seconds[m][repeat] +=
+          preparing_ + tracing_ + seconds_of([&] {
+            found = estimate_analytically(log(), machine(0, node), shapes, {methods[m].walked_nodes});
+          });
       for (std::size_t cache = 0; cache < found.size(); ++cache) {
         found[cache].words = cache == 0 ? found[cache].words : 0;  // one pass for all caches
         study_.estimates[m][index(cache, node)] = found[cache];

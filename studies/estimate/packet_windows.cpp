@@ -13,6 +13,13 @@ namespace {
 // Pixels between two of the lattice: one pixel of 64 is traced, and a packet of the usual 8 x 8 has one.
 constexpr std::uint32_t lattice_step = 8;
 
+std::uint64_t strata_of(std::uint64_t windows, std::uint64_t wanted) {
+  while (wanted > 1 && wanted > windows / 2) {
+    wanted /= 2;
+  }
+  return std::max<std::uint64_t>(1, wanted);
+}
+
 template <class Use>
 void for_each_pixel(const processors::Packet& packet, const Use& use) {
   for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
@@ -45,29 +52,26 @@ std::vector<Stratum> draw_strata(std::uint64_t units, std::uint64_t count, std::
   return strata;
 }
 
+bool all_chosen(std::span<const Stratum> strata) {
+  return std::all_of(strata.begin(), strata.end(),
+                     [](const Stratum& stratum) { return stratum.chosen.size() == stratum.size(); });
+}
+
 PacketWindows::PacketWindows(const processors::PacketList& packets, std::uint64_t length,
                              std::uint64_t strata, std::uint64_t seed)
     : packets_(packets),
       length_(std::min(length, packets.size())),
       windows_(packets.size() / length_),
-      strata_(draw_strata(windows_, std::clamp<std::uint64_t>(strata, 1, std::max<std::uint64_t>(1, windows_ / 2)),
-                          seed)) {}
+      strata_(draw_strata(windows_, strata_of(windows_, strata), seed)) {}
 
 std::vector<std::uint64_t> PacketWindows::chosen() const {
   std::vector<std::uint64_t> packets;
-  for (const Stratum& stratum : strata_) {
-    for (const std::uint64_t window : stratum.chosen) {
-      for (std::uint64_t packet = first(window); packet < end(window); ++packet) {
-        packets.push_back(packet);
-      }
+  for_each_drawn([&](std::uint64_t window) {
+    for (std::uint64_t packet = first(window); packet < end(window); ++packet) {
+      packets.push_back(packet);
     }
-  }
+  });
   return packets;
-}
-
-bool PacketWindows::has_all() const {
-  return std::all_of(strata_.begin(), strata_.end(),
-                     [](const Stratum& stratum) { return stratum.chosen.size() == stratum.size(); });
 }
 
 void PacketWindows::add_to(processors::PixelSet& pixels) const {
@@ -118,7 +122,8 @@ PixelLattice::ImageWork PixelLattice::expected_of_image(const processors::WorkLo
       }
     }
   }
-  const double pixels = static_cast<double>(rows_.places.size()) * static_cast<double>(columns_.places.size());
+  const double pixels =
+      static_cast<double>(rows_.places.size()) * static_cast<double>(columns_.places.size());
   const double scale = static_cast<double>(log.width) * static_cast<double>(log.height) / pixels;
   return {scale * work.rays, scale * work.words};
 }

@@ -17,7 +17,7 @@
 
 namespace marti::studies {
 
-/// A stratum: the units first .. end - 1, of which chosen[0 .. ] are in the sample.
+/// A stratum: the units first .. end - 1, of which the chosen ones are in the sample.
 struct Stratum {
   std::uint64_t first = 0;
   std::uint64_t end = 0;
@@ -25,16 +25,19 @@ struct Stratum {
   [[nodiscard]] std::uint64_t size() const { return end - first; }
 };
 
+/// Whether every unit is in the sample.
+[[nodiscard]] bool all_chosen(std::span<const Stratum> strata);
+
 /// Cuts units 0 .. units - 1 into `count` strata of nearly equal size and draws two units of each at random;
-/// all of a stratum that has fewer. With twice the strata, and the same seed, all units that were drawn before
-/// are drawn again. `count` is from 1 to `units`.
+/// all of a stratum that has fewer. With twice the strata, and the same seed, all units that were drawn
+/// before are drawn again. `count` is from 1 to `units`.
 [[nodiscard]] std::vector<Stratum> draw_strata(std::uint64_t units, std::uint64_t count, std::uint64_t seed);
 
 class PacketWindows {
  public:
   /// `length`: packets of a window, at least 1; the last window has up to twice as many less one. A window is
-  /// as long as the frame when that has fewer packets. `strata`: how many are wanted; there are never more
-  /// than half as many as windows, but at least one.
+  /// as long as the frame when that has fewer packets. `strata`: how many are wanted; halved until there are
+  /// at most half as many as windows, but at least one.
   PacketWindows(const processors::PacketList& packets, std::uint64_t length, std::uint64_t strata,
                 std::uint64_t seed);
 
@@ -45,9 +48,18 @@ class PacketWindows {
     return window + 1 == windows_ ? packets_.size() : (window + 1) * length_;
   }
   [[nodiscard]] const processors::PacketList& packets() const { return packets_; }
+  /// Calls use(window) for each window drawn, ascending.
+  template <class Use>
+  void for_each_drawn(const Use& use) const {
+    for (const Stratum& stratum : strata_) {
+      for (const std::uint64_t window : stratum.chosen) {
+        use(window);
+      }
+    }
+  }
   /// The packets of the windows drawn, ascending.
   [[nodiscard]] std::vector<std::uint64_t> chosen() const;
-  [[nodiscard]] bool has_all() const;
+  [[nodiscard]] bool has_all() const { return all_chosen(strata_); }
 
   /// Adds all pixels of the windows drawn.
   void add_to(processors::PixelSet& pixels) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "processors/replay/replay.h"
@@ -19,9 +20,8 @@ constexpr std::uint64_t shortest_window = 16;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 std::size_t chosen_units(std::span<const Stratum> strata) {
-  return std::accumulate(
-      strata.begin(), strata.end(), std::size_t{0},
-      [](std::size_t sum, const Stratum& stratum) { return sum + stratum.chosen.size(); });
+  return std::accumulate(strata.begin(), strata.end(), std::size_t{0},
+                         [](std::size_t sum, const Stratum& stratum) { return sum + stratum.chosen.size(); });
 }
 
 // The sum over all units that a sum over each stratum's chosen ones stands for.
@@ -71,19 +71,17 @@ WindowTotals totals_of_windows(const PacketWindows& windows,
                                std::span<const processors::PacketFigures> packets) {
   WindowTotals totals;
   std::size_t at = 0;
-  for (const Stratum& stratum : windows.strata()) {
-    for (const std::uint64_t window : stratum.chosen) {
-      processors::PacketFigures sum;
-      for (std::uint64_t packet = windows.first(window); packet < windows.end(window); ++packet, ++at) {
-        sum.time = sim::add_ticks(sum.time, packets[at].time);
-        sum.misses += packets[at].misses;
-        sum.references += packets[at].references;
-      }
-      totals.times.push_back(static_cast<double>(sum.time));
-      totals.misses.push_back(static_cast<double>(sum.misses));
-      totals.references.push_back(static_cast<double>(sum.references));
+  windows.for_each_drawn([&](std::uint64_t window) {
+    processors::PacketFigures sum;
+    for (std::uint64_t packet = windows.first(window); packet < windows.end(window); ++packet, ++at) {
+      sum.time = sim::add_ticks(sum.time, packets[at].time);
+      sum.misses += packets[at].misses;
+      sum.references += packets[at].references;
     }
-  }
+    totals.times.push_back(static_cast<double>(sum.time));
+    totals.misses.push_back(static_cast<double>(sum.misses));
+    totals.references.push_back(static_cast<double>(sum.references));
+  });
   return totals;
 }
 
@@ -98,21 +96,20 @@ KnownWork known_work(const processors::WorkLog& log, const PacketWindows& window
                      const PixelLattice& lattice) {
   KnownWork known;
   known.words = lattice.expected_words(log, windows.packets());
-  known.all_words = static_cast<double>(
-      std::accumulate(known.words.begin(), known.words.end(), std::uint64_t{0}));
-  for (const Stratum& stratum : windows.strata()) {
-    for (const std::uint64_t window : stratum.chosen) {
-      const auto first = known.words.begin() + static_cast<std::ptrdiff_t>(windows.first(window));
-      const auto end = known.words.begin() + static_cast<std::ptrdiff_t>(windows.end(window));
-      known.of_windows.push_back(static_cast<double>(std::accumulate(first, end, std::uint64_t{0})));
-    }
-  }
+  known.all_words =
+      static_cast<double>(std::accumulate(known.words.begin(), known.words.end(), std::uint64_t{0}));
+  windows.for_each_drawn([&](std::uint64_t window) {
+    const auto first = known.words.begin() + static_cast<std::ptrdiff_t>(windows.first(window));
+    const auto end = known.words.begin() + static_cast<std::ptrdiff_t>(windows.end(window));
+    known.of_windows.push_back(static_cast<double>(std::accumulate(first, end, std::uint64_t{0})));
+  });
   return known;
 }
 
 struct SampledMachine {
   Estimate estimate;
   std::vector<double> window_times;
+  bool full = false;  // the frame ends when the interconnect has carried all transfers
 };
 
 SampledMachine sample_machine(const processors::WorkLog& log, const processors::MachineConfig& machine,
@@ -151,15 +148,18 @@ SampledMachine sample_machine(const processors::WorkLog& log, const processors::
       static_cast<double>(result.references().all_misses()) + static_cast<double>(result.pixels);
   const double whole = missed.total + static_cast<double>(log.width) * static_cast<double>(log.height);
   const double busy = estimate.value[Figure::use] * static_cast<double>(result.end) * whole / part;
+  sampled.full = busy > end;
   estimate.half_width[Figure::end] =
-      busy > end ? std::max(time.half_width, missed.half_width) : time.half_width;
+      sampled.full ? std::max(time.half_width, missed.half_width) : time.half_width;
   end = std::max(end, busy);
   estimate.value[Figure::use] = end > 0.0 ? busy / end : 0.0;
   estimate.value[Figure::end] = end;
   estimate.value[Figure::misses] = missed.total;
   estimate.half_width[Figure::misses] = missed.half_width;
-  estimate.half_width[Figure::use] =
-      estimate.value[Figure::use] * std::max(time.half_width, missed.half_width);
+  if (busy > 0.0) {
+    estimate.half_width[Figure::use] =
+        estimate.value[Figure::use] * std::max(time.half_width, missed.half_width);
+  }
   sampled.window_times = std::move(totals.times);
   return sampled;
 }
@@ -169,12 +169,9 @@ SampledMachine sample_machine(const processors::WorkLog& log, const processors::
 RatioEstimate ratio_estimate(std::span<const Stratum> strata, std::span<const double> known,
                              std::span<const double> measured, double all_known) {
   const std::size_t chosen = chosen_units(strata);
-  const bool all = std::all_of(strata.begin(), strata.end(), [](const Stratum& stratum) {
-    return stratum.chosen.size() == stratum.size();
-  });
   const double sum_known = expand(strata, known);
   const double sum_measured = expand(strata, measured);
-  if (all) {
+  if (all_chosen(strata)) {
     return {sum_measured, 0.0};
   }
   if (sum_known <= 0.0) {
@@ -194,11 +191,10 @@ std::uint64_t window_length(std::uint32_t nodes) { return std::max<std::uint64_t
 void check_sample(const processors::MachineConfig& machine) {
   processors::check_sampled(machine);
   if (machine.clusters > 1) {
-    throw sim::KeyError("machine.clusters", "errors of samples have been measured with one cluster only");
+    throw sim::KeyError("machine.clusters", "a sample is taken with machine.clusters = 1 only");
   }
   if (machine.placement != processors::Placement::shared) {
-    throw sim::KeyError("database.placement",
-                        "errors of samples have been measured with database.placement = \"shared\" only");
+    throw sim::KeyError("database.placement", "a sample is taken with database.placement = \"shared\" only");
   }
 }
 
@@ -212,10 +208,13 @@ SampledRun estimate_by_sample(const processors::WorkLog& log, const processors::
     SampledMachine one = sample_machine(log, processors::one_node_of(machine), windows, known);
     run.one_node = one.estimate;
     add_speed_up(run.machine, run.one_node);
-    // The same packets were timed on both, so that most of what is chance in one is in the other, too.
-    const double all_times = expand(windows.strata(), sampled.window_times);
-    run.machine.half_width[Figure::speed_up] =
-        ratio_estimate(windows.strata(), sampled.window_times, one.window_times, all_times).half_width;
+    // The same packets were timed on both, so that most of what is chance in one is in the other, too. That
+    // holds for the packets' times only, not for a frame time that follows from the misses.
+    if (!sampled.full && !one.full) {
+      const double all_times = expand(windows.strata(), sampled.window_times);
+      run.machine.half_width[Figure::speed_up] =
+          ratio_estimate(windows.strata(), sampled.window_times, one.window_times, all_times).half_width;
+    }
   } else {
     add_speed_up(run.machine, run.one_node);
     run.machine.half_width[Figure::speed_up] = 0.0;

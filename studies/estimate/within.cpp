@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -25,17 +24,20 @@ constexpr std::uint64_t sample_seed = 1;
 // The first sample: with fewer strata its interval says little.
 constexpr std::uint64_t first_strata = 8;
 // The largest share of the pixels that the first sample may trace. If an exact run turns out to be cheaper,
-// its replays are for nothing; these cost less than half as much as tracing.
+// what was traced is not lost, but its packets were replayed in vain.
 constexpr double most_at_first = 0.10;
-// The largest share of the pixels that any sample may trace. Its packets are replayed in several steps, each
-// with all that the one before had, so that a share costs up to one and a half times as much as in an exact
-// run.
+// The largest share of the pixels that a later sample may trace. Each sample replays the packets of those
+// before it again, so that what it traces costs up to twice as much as in an exact run.
 constexpr double most_share = 0.5;
-// A sample is not made larger if it is expected to need as much as this in the end.
+// No larger sample is taken if it is expected to need this share of the pixels. It is more than all of them,
+// because few are needed less than the square root says when few are left out.
 constexpr double hopeless_share = 1.5;
 
-double width_of(const MachineFigures& half_width) {
-  return std::max(half_width[Figure::end], half_width[Figure::speed_up]);
+// The wider of the half-widths that are asked for: those of frame time and speed-up. One node has a speed-up
+// of exactly 1.
+double width_of(const MachineFigures& half_width, std::uint32_t nodes) {
+  return nodes == 1 ? half_width[Figure::end]
+                    : std::max(half_width[Figure::end], half_width[Figure::speed_up]);
 }
 
 // Adds the measured half-widths to the sample's own.
@@ -59,7 +61,9 @@ double times_as_many(double own, double wanted) { return own / wanted * (own / w
 
 // The next sample has twice or four times as many strata: the first ones' half-widths say only roughly how
 // many are needed.
-std::uint64_t next_strata(std::uint64_t strata, double times) { return times > 2.0 ? 4 * strata : 2 * strata; }
+std::uint64_t next_strata(std::uint64_t strata, double times) {
+  return times > 2.0 ? 4 * strata : 2 * strata;
+}
 
 }  // namespace
 
@@ -103,23 +107,27 @@ WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& 
                              const processors::MachineConfig& machine, double tolerance) {
   const std::vector<MeasuredError> errors = parse_measured_errors(measured_errors_csv());
   const auto not_known = [&](double allowance) {
-    return fmt::format("errors of samples of such machines have been measured to be up to {:.2g} % beside "
-                       "what a larger sample lessens",
-                       100.0 * allowance);
+    return fmt::format(
+        "errors of samples of such machines have been measured to be up to {:.2g} % beside "
+        "what a larger sample lessens",
+        100.0 * allowance);
   };
-  const auto least = std::min_element(errors.begin(), errors.end(), [](const auto& a, const auto& b) {
-    return width_of(a.allowance) < width_of(b.allowance);
+  const std::uint32_t nodes = machine.all_nodes();
+  const auto least = std::min_element(errors.begin(), errors.end(), [&](const auto& a, const auto& b) {
+    return width_of(a.allowance, nodes) < width_of(b.allowance, nodes);
   });
-  if (width_of(least->allowance) >= tolerance) {
-    return {std::nullopt, not_known(width_of(least->allowance))};
+  if (width_of(least->allowance, nodes) >= tolerance) {
+    return {std::nullopt, not_known(width_of(least->allowance, nodes))};
   }
-  const std::uint64_t length = window_length(machine.all_nodes());
+  const std::uint64_t length = window_length(nodes);
   double most = most_at_first;
   for (std::uint64_t strata = first_strata;;) {
     const PacketWindows windows(packets, length, strata, sample_seed);
     if (const double share = frame.share_with(windows); windows.has_all() || share > most) {
-      return {std::nullopt, fmt::format("a sample that can tell would trace {:.0f} % of the pixels",
-                                        100.0 * (windows.has_all() ? 1.0 : share))};
+      return {std::nullopt, fmt::format("{} would trace {:.0f} % of the pixels and replay its packets {}",
+                                        strata == first_strata ? "the smallest sample" : "a larger sample",
+                                        100.0 * (windows.has_all() ? 1.0 : share),
+                                        strata == first_strata ? "first" : "again")};
     }
     most = most_share;
     EstimatedRun run;
@@ -128,24 +136,30 @@ WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& 
     run.of_windows = windows.windows();
     run.packets = windows.chosen().size();
     run.of_packets = packets.size();
-    const MeasuredError& measured = errors[load_class_of(run.sampled.machine.value[Figure::use])];
+    const std::size_t load = load_class_of(run.sampled.machine.value[Figure::use]);
+    const MeasuredError& measured = errors[load];
     run.use_to = measured.use_to;
     const MachineFigures own = run.sampled.machine.half_width;
-    widen(run.sampled.machine, measured.allowance, machine.all_nodes());
-    widen(run.sampled.one_node, errors[0].allowance, 1);
-    if (width_of(run.sampled.machine.half_width) <= tolerance) {
+    const std::size_t load_of_one = load_class_of(run.sampled.one_node.value[Figure::use]);
+    widen(run.sampled.machine, measured.allowance, nodes);
+    widen(run.sampled.one_node, errors[load_of_one].allowance, 1);
+    if (run.windows >= least_windows[load] && width_of(run.sampled.machine.half_width, nodes) <= tolerance) {
       return {run, ""};
     }
-    double times = 1.0;
+    double times = static_cast<double>(least_windows[load]) / static_cast<double>(run.windows);
     for (const Figure figure : {Figure::end, Figure::speed_up}) {
+      if (nodes == 1 && figure == Figure::speed_up) {
+        continue;
+      }
       if (measured.allowance[figure] >= tolerance) {
         return {std::nullopt, not_known(measured.allowance[figure])};
       }
       times = std::max(times, times_as_many(own[figure], tolerance - measured.allowance[figure]));
     }
     if (const double share = frame.traced().pixels * times; share > hopeless_share) {
-      return {std::nullopt, fmt::format("a sample that can tell would trace about {:.0f} % of the pixels",
-                                        std::min(100.0, 100.0 * share))};
+      return {std::nullopt,
+              fmt::format("a sample that is large enough would trace about {:.0f} % of the pixels",
+                          std::min(100.0, 100.0 * share))};
     }
     strata = next_strata(strata, times);
   }

@@ -39,8 +39,9 @@ std::string bar(const Estimate& estimate, Figure figure, const Text& text, const
     return fmt::format("{:<14}error not known\n", text(value));
   }
   const auto [low, high] = interval(figure, value, half_width);
-  return fmt::format("{:<14}+- {:<8} {} to {}\n", text(value), fmt::format("{:.2g} %", 100.0 * half_width),
-                     text(low), std::isfinite(high) ? text(high) : unbounded);
+  const std::string percent = fmt::format("{:.{}g} %", 100.0 * half_width, half_width < 1.0 ? 2 : 3);
+  return fmt::format("{:<14}+- {:<8} {} to {}\n", text(value), percent, text(low),
+                     std::isfinite(high) ? text(high) : unbounded);
 }
 
 std::string time_bar(const Estimate& estimate, Figure figure) {

@@ -52,7 +52,7 @@ constexpr std::array<FigureKey, 18> figure_keys = {{
     {"energy.memory_read", &EnergyFigures::memory_read, most_of_operation, "pJ",
      "of a byte that a memory reads; each read is of a cache line"},
     {"energy.memory_write", &EnergyFigures::memory_write, most_of_operation, "pJ",
-     "of a byte that a memory writes; each write is of a cache line, as a burst is"},
+     "of a byte that a memory writes; each write is of a cache line"},
     {"energy.node_area", &EnergyFigures::node_area, most_length, "mm2", "area of a node without its caches"},
     {"energy.context_area", &EnergyFigures::context_area, most_length, "mm2",
      "area of each context of a node beyond the first"},
@@ -71,15 +71,15 @@ struct CacheKey {
 
 constexpr std::array<CacheKey, 6> cache_keys = {{
     {"energy.l1_read", &EnergyFigures::l1, &CacheFigures::read, most_of_access, "pJ",
-     "of a look-up in a node's cache, one line"},
+     "of a look-up in a node's cache, one line; the same for each of split caches"},
     {"energy.l1_write", &EnergyFigures::l1, &CacheFigures::write, most_of_access, "pJ",
-     "of a line brought into it"},
+     "of a line brought into a node's cache; the same for each of split caches"},
     {"energy.l1_area", &EnergyFigures::l1, &CacheFigures::area, most_length, "mm2",
      "area of the cache; of split caches, of each"},
     {"energy.l2_read", &EnergyFigures::l2, &CacheFigures::read, most_of_access, "pJ",
      "of a look-up in a second-level cache, one line"},
     {"energy.l2_write", &EnergyFigures::l2, &CacheFigures::write, most_of_access, "pJ",
-     "of a line brought into it"},
+     "of a line brought into a second-level cache"},
     {"energy.l2_area", &EnergyFigures::l2, &CacheFigures::area, most_length, "mm2",
      "area of a second-level cache"},
 }};
@@ -135,7 +135,8 @@ class FigureReader {
     }
     if (name == "energy.interconnect_length" &&
         (distributed || machine_.scheme == processors::Scheme::space)) {
-      return Reason{"this machine has a network instead", "machine.scheme"};
+      return Reason{"this machine has a network instead",
+                    distributed ? "database.placement" : "machine.scheme"};
     }
     return std::nullopt;
   }

@@ -14,6 +14,7 @@ namespace {
 constexpr std::uint32_t sample_side = 64;
 // if it also has at most this many samples a pixel.
 constexpr std::uint32_t sample_rays = 4;
+
 }  // namespace
 
 // FNV-1a (Fowler, Noll, Vo) over the bits of all pixels.

@@ -5,11 +5,12 @@
 #include <string_view>
 #include <utility>
 
-#include "accel/grid.h"
-#include "accel/octree.h"
 #include "accel/bsp.h"
+#include "accel/grid.h"
 #include "accel/grid_match.h"
+#include "accel/octree.h"
 #include "accel/precision.h"
+#include "sim/key_error.h"
 #include "sim/shown.h"
 #include "studies/host/image_file.h"
 #include "studies/run/open_frame.h"
@@ -167,8 +168,8 @@ FunctionalRun PreparedFrame::finish(processors::Frame frame) const {
     if (config_.exact_too) {
       processors::RenderOptions options = config_.render;
       options.voxel_cut = 0.0;
-      processors::Frame exact = with_scene_keys(
-          [&] { return processors::render(*scene_, *triangles_, *structure_, options); });
+      processors::Frame exact =
+          with_scene_keys([&] { return processors::render(*scene_, *triangles_, *structure_, options); });
       report.exact = {
           std::move(exact.image), processors::totals_of(*exact.log), database_use(*exact.log), {}};
       report.exact->error = image_error(run.frame.image, report.exact->image);

@@ -34,7 +34,7 @@ std::string energy_lines(const RunResult& result) {
     return energy.*a.member < energy.*b.member;
   });
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "\nenergy        {} a frame, {:.3g} W; most of it {} ({:.2f} %)\n",
+  fmt::format_to(out, "\nenergy        {} a frame, {:.3g} W; its largest part is {} ({:.2f} %)\n",
                  joules(in_joules(energy.total)), result.figure("power").value_or(0.0), largest->name,
                  share(energy.*largest->member, energy));
   for (const auto* part = counters.begin(); part != end; ++part) {

@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 // The shipped study with scenes and machines that take no time.
 const std::string small_errors =
     quoted(fs::path(MARTI_SOURCE) / "configs" / "error.toml") +
-    " --set error.sides=[16,24] --set 'error.scenes=[\"tetra:2\",\"teapot:2:pot\"]'"
+    " --set error.sides=[16,64] --set packets.width=2 --set packets.height=2 --set "
+    "'error.scenes=[\"tetra:2\",\"teapot:2:pot\"]'"
     " --set error.nodes=[1,2,4] --set 'error.cache_sizes=[\"32 B\",\"1 KiB\",\"64 KiB\"]' --set "
     "error.repeats=2 --set scene.source=gears:1 --set error.rendering.side=12 "
     "--set error.rendering.samples=[1,2] --set error.rendering.reference_samples=32 "
@@ -28,7 +29,7 @@ TEST(StudyError, WritesTheSameTablesAgainButForRunTimes) {
   const fs::path b = directory.path() / "b";
   const Outcome outcome = marti("study error " + small_errors + " -o " + quoted(a));
   ASSERT_EQ(outcome.status, 0) << outcome.output;
-  for (const char* text : {"16 windows", "128 windows", "all nodes walked", "node counts, linear",
+  for (const char* text : {"16 windows", "32 windows", "all nodes walked", "node counts, linear",
                            "paper's formula", "The fastest method for an error", "results.sqlite"}) {
     EXPECT_NE(outcome.output.find(text), std::string::npos) << text;
   }
@@ -83,8 +84,8 @@ const std::string machine =
 TEST(RunWithin, GivesAnEstimateWithErrorBarsOrAnExactRun) {
   const Outcome wide = marti("run " + machine + "--within '60 %'");
   ASSERT_EQ(wide.status, 0) << wide.output;
-  for (const char* text :
-       {"left out ", "windows", "estimate ", "not exact", "+- ", "frame time", "speed-up", "misses", "mean wait"}) {
+  for (const char* text : {"left out ", "windows", "estimate ", "not exact", "+- ", "frame time", "speed-up",
+                           "misses", "mean wait"}) {
     EXPECT_NE(wide.output.find(text), std::string::npos) << text << "\n" << wide.output;
   }
   EXPECT_EQ(wide.output.find("bounds "), std::string::npos);

@@ -1,9 +1,14 @@
 // Frames that are rendered in parts: the parts together are the whole, byte for byte.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <optional>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "processors/program/pixel_set.h"
+#include "processors/program/recorder.h"
 #include "program_scenes.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
@@ -84,6 +89,24 @@ TEST_P(PartialRender, PartsTogetherAreTheWhole) {
 INSTANTIATE_TEST_SUITE_P(OfAllKinds, PartialRender,
                          testing::Values(RenderOptions{}, RenderOptions{.samples = 3},
                                          RenderOptions{.floats = true}, RenderOptions{.mailboxes = true}));
+
+// A pixel of many samples may have more words than the recorder's first buffer.
+TEST(PartialRender, PixelsOfAnyLengthAreTakenOver) {
+  for (const std::size_t first : {0, 40'000}) {
+    RowRecorder recorder;
+    recorder.begin_row(2);
+    recorder.begin_pixel();
+    recorder.copy(std::vector<std::uint32_t>(first, 1));
+    recorder.begin_pixel();
+    recorder.copy(std::vector<std::uint32_t>(200'000, 2));
+    LogRow row;
+    recorder.end_row(row);
+    ASSERT_EQ(row.words.size(), first + 200'000);
+    EXPECT_EQ(row.words.back(), 2U);
+    EXPECT_EQ(row.begin[1], first);
+    EXPECT_EQ(row.begin[2], first + 200'000);
+  }
+}
 
 TEST(PartialRender, ASetOrFrameOfAnotherImageIsAFault) {
   const Built built(scenes::make_procedural("tetra:1"), "octree");

@@ -159,7 +159,7 @@ TEST_F(Plots, HaveTheCurveOfTheExplorer) {
   curve.live = {{"rows", "explorer"}};
   ReportData report = report_of({curve});
   report.explorer = nlohmann::ordered_json::parse(
-      R"({"axis": 0, "start": 0, "place": [[0, 1, 2]], "ordinal": [0, 1, 2], "front": [],
+      R"({"axis": 0, "start": 0, "place": [[0, 1, 2]], "ordinal": [0, 1, 2],
           "axes": [{"name": "machine.nodes", "texts": ["1", "2", "4"], "values": [1, 2, 4]}],
           "columns": {"end": [8, 4, 2], "speed_up": [1, 2, 4], "efficiency": [1, 1, 1]},
           "models": {"0": {"x": [1, 2, 4, 8],

@@ -6,8 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <random>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "processors/replay/replay.h"
 #include "sim/error.h"
@@ -46,7 +51,8 @@ RC_GTEST_PROP(Strata, CoverAllUnitsAndDrawTwoOfEach, (std::uint64_t seed)) {
 RC_GTEST_PROP(Strata, TwiceAsManyKeepAllThatWereDrawn, (std::uint64_t seed)) {
   test::Random random(seed);
   const auto count = static_cast<std::uint64_t>(test::pick(random, 1, 40));
-  const auto units = static_cast<std::uint64_t>(test::pick(random, static_cast<std::int64_t>(2 * count), 400));
+  const auto units =
+      static_cast<std::uint64_t>(test::pick(random, static_cast<std::int64_t>(2 * count), 400));
   std::vector<std::uint64_t> some;
   std::vector<std::uint64_t> more;
   for (const Stratum& stratum : draw_strata(units, count, seed)) {
@@ -103,7 +109,7 @@ TEST(RatioEstimate, ItsIntervalCoversTheTotal) {
       const std::vector<Stratum> strata = draw_strata(units, count, static_cast<std::uint64_t>(trial));
       const RatioEstimate estimate =
           ratio_estimate(strata, chosen_of(strata, known), chosen_of(strata, times), sum(known));
-      covered += std::abs(sum(times) / estimate.total - 1.0) <= estimate.half_width ? 1 : 0;
+      covered += std::abs(estimate.total / sum(times) - 1.0) <= estimate.half_width ? 1 : 0;
     }
     EXPECT_GE(covered, trials * 9 / 10) << count;
   }
@@ -182,7 +188,18 @@ RC_GTEST_PROP(Windows, AreCutOfAllPackets, (std::uint64_t seed)) {
   RC_ASSERT(windows.has_all() == (chosen.size() == packets.size()));
 }
 
-// Each pixel takes the words of the lattice's pixel of its cell, or of the last cell's at the edges.
+// The one of the places that is nearest to `at`, among those that are marked.
+std::uint32_t nearest(std::uint32_t at, const std::vector<bool>& marked) {
+  std::optional<std::uint32_t> best;
+  const auto distance = [at](std::uint32_t place) { return place > at ? place - at : at - place; };
+  for (std::uint32_t place = 0; place < marked.size(); ++place) {
+    if (marked[place] && (!best || distance(place) < distance(*best))) {
+      best = place;
+    }
+  }
+  return *best;
+}
+
 RC_GTEST_PROP(Lattice, ExpectsTheWordsOfThePixelNextToEach, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 30)),
@@ -190,33 +207,29 @@ RC_GTEST_PROP(Lattice, ExpectsTheWordsOfThePixelNextToEach, (std::uint64_t seed)
   const PixelLattice lattice(log.width, log.height);
   PixelSet set(log.width, log.height);
   lattice.add_to(set);
-  const auto nearest = [&](std::uint32_t at, std::uint32_t size, auto has) {
-    std::uint32_t best = size;
-    for (std::uint32_t place = 0; place < size; ++place) {
-      const auto distance = [&](std::uint32_t other) { return other > at ? other - at : at - other + 0U; };
-      if (has(place) && (best == size || distance(place) < distance(best))) {
-        best = place;
-      }
+  std::vector<bool> columns(log.width);
+  std::vector<bool> rows(log.height);
+  double words_of_lattice = 0.0;
+  for (std::uint32_t y = 0; y < log.height; ++y) {
+    for (std::uint32_t x = 0; x < log.width; ++x) {
+      columns[x] = columns[x] || set.has(x, y);
+      rows[y] = rows[y] || set.has(x, y);
+      words_of_lattice += set.has(x, y) ? static_cast<double>(log.pixel(x, y).size()) : 0.0;
     }
-    return best;
-  };
+  }
+  RC_ASSERT(set.count() == static_cast<std::uint64_t>(std::count(columns.begin(), columns.end(), true) *
+                                                      std::count(rows.begin(), rows.end(), true)));
   const PacketList packets(log.width, log.height, {1, 1});
   const std::vector<std::uint64_t> words = lattice.expected_words(log, packets);
   for (std::uint64_t packet = 0; packet < packets.size(); ++packet) {
     const processors::Packet at = packets[packet];
-    std::uint32_t row = log.height;
-    for (std::uint32_t y = 0; y < log.height && row == log.height; ++y) {
-      for (std::uint32_t x = 0; x < log.width; ++x) {
-        row = set.has(x, y) ? y : row;
-      }
-    }
-    const std::uint32_t x = nearest(at.x0, log.width, [&](std::uint32_t place) { return set.has(place, row); });
-    // Cells are eight pixels wide, so nearest is right but for the cell's first pixel, as far from two.
-    if (at.x0 % 8 != 0 && at.y0 < 8) {
-      RC_ASSERT(words[packet] == log.pixel(x, row).size());
+    // A cell's first column, and row, is as far from the pixel of the cell before.
+    if (at.x0 % 8 != 0 && at.y0 % 8 != 0) {
+      RC_ASSERT(words[packet] == log.pixel(nearest(at.x0, columns), nearest(at.y0, rows)).size());
     }
   }
-  RC_ASSERT(set.count() >= 1U);
+  const double expected = words_of_lattice / static_cast<double>(set.count()) * log.width * log.height;
+  RC_ASSERT(std::abs(lattice.expected_of_image(log).words - expected) <= 1e-9 * expected);
 }
 
 RC_GTEST_PROP(Sample, OfEverythingIsExact, (std::uint64_t seed)) {
@@ -225,38 +238,60 @@ RC_GTEST_PROP(Sample, OfEverythingIsExact, (std::uint64_t seed)) {
   const MachineConfig machine = machine_of(random);
   const MachineFigures exact = figures_of(machine, processors::replay(log, machine));
   const PacketList packets(log.width, log.height, machine.packets);
-  const PacketWindows windows(packets, packets.size(), 1, seed);
-  const SampledRun run = estimate_by_sample(log, machine, windows, PixelLattice(log.width, log.height));
-  for (const Figure figure : {Figure::end, Figure::misses, Figure::use, Figure::wait}) {
-    RC_ASSERT(run.machine.value[figure] == exact[figure]);
+  const MachineConfig one = processors::one_node_of(machine);
+  const double alone = figures_of(one, processors::replay(log, one))[Figure::end];
+  for (const std::uint64_t length : {packets.size(), (packets.size() + 1) / 2}) {
+    const PacketWindows windows(packets, length, 1, seed);
+    const SampledRun run = estimate_by_sample(log, machine, windows, PixelLattice(log.width, log.height));
+    for (const Figure figure : {Figure::end, Figure::misses, Figure::use, Figure::wait}) {
+      RC_ASSERT(run.machine.value[figure] == exact[figure]);
+    }
+    RC_ASSERT(run.machine.value[Figure::speed_up] == alone / exact[Figure::end]);
+    RC_ASSERT(run.machine.half_width == MachineFigures());
   }
-  RC_ASSERT(run.machine.half_width == MachineFigures());
 }
 
-// A sample sees only the pixels that it traces: from a log without the others it is the same.
-RC_GTEST_PROP(Sample, LooksAtNothingThatItDoesNotTrace, (std::uint64_t seed)) {
+// Samples that grow trace each pixel once, and have the words of the pixels that they traced and no others.
+RC_GTEST_PROP(Sample, TracesWhatItNeedsOnce, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_log(random, 40, 24, 10);
-  MachineConfig machine = machine_of(random);
-  machine.packets = {2, 2};
-  const PacketList packets(log.width, log.height, machine.packets);
+  const PacketList packets(log.width, log.height, {2, 2});
   SampledFrame frame = sampled_frame(log);
+  PixelSet wanted(log.width, log.height);
+  frame.lattice().add_to(wanted);
   for (const std::uint64_t strata : {2, 4, 8}) {
     const PacketWindows windows(packets, 8, strata, seed);
+    windows.add_to(wanted);
     const double share = frame.share_with(windows);
     const WorkLog& part = frame.with(windows);
     RC_ASSERT(frame.traced().pixels == share);
-    const SampledRun run = estimate_by_sample(part, machine, windows, frame.lattice());
-    SampledFrame again = sampled_frame(log);
-    const SampledRun alone = estimate_by_sample(again.with(windows), machine, windows, again.lattice());
-    // With what was traced for smaller samples caches are warmer, but only those were.
-    RC_ASSERT(run.machine.references == alone.machine.references);
-    RC_ASSERT(run.machine.half_width[Figure::end] >= 0.0);
+    RC_ASSERT(share == static_cast<double>(wanted.count()) / (40.0 * 24.0));
+    for (std::uint32_t y = 0; y < log.height; ++y) {
+      for (std::uint32_t x = 0; x < log.width; ++x) {
+        RC_ASSERT(part.pixel(x, y).size() == (wanted.has(x, y) ? log.pixel(x, y).size() : 0U));
+      }
+    }
   }
   const Frame whole = std::move(frame).whole();
   for (std::size_t y = 0; y < log.rows.size(); ++y) {
     RC_ASSERT(whole.log->rows[y].words == log.rows[y].words);
   }
+}
+
+// Of half of the packets the machine's time and misses depend on those and on the lattice alone.
+RC_GTEST_PROP(Sample, DoesNotLookAtOtherPixels, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = test::random_log(random, 40, 24, 10);
+  MachineConfig machine = machine_of(random);
+  machine.packets = {2, 2};
+  const PacketWindows windows(PacketList(log.width, log.height, machine.packets), 8, 4, seed);
+  SampledFrame frame = sampled_frame(log);
+  const SampledRun run = estimate_by_sample(frame.with(windows), machine, windows, frame.lattice());
+  // Words anywhere else change what caches are warmed with, but not what the windows do.
+  const SampledRun whole = estimate_by_sample(log, machine, windows, frame.lattice());
+  RC_ASSERT(run.machine.references == whole.machine.references);
+  RC_ASSERT(run.machine.events > 0U);
+  RC_ASSERT(std::isfinite(run.machine.value[Figure::end]));
 }
 
 // One node: only the error of sampling is left, which the interval covers.
@@ -268,16 +303,18 @@ TEST(Sample, IntervalsOfManySeedsCoverTheTruth) {
   machine.nodes = 1;
   const MachineFigures exact = figures_of(machine, processors::replay(log, machine));
   const PacketList packets(log.width, log.height, machine.packets);
-  for (const std::uint64_t strata : {4, 8}) {
+  for (const std::uint64_t strata : {8, 16}) {
     int times = 0;
     int misses = 0;
     constexpr int trials = 100;
     for (int seed = 0; seed < trials; ++seed) {
       const PacketWindows windows(packets, 16, strata, static_cast<std::uint64_t>(seed));
+      SampledFrame frame = sampled_frame(log);
       const Estimate estimate =
-          estimate_by_sample(log, machine, windows, PixelLattice(log.width, log.height)).machine;
+          estimate_by_sample(frame.with(windows), machine, windows, frame.lattice()).machine;
       const auto holds = [&](Figure figure) {
-        return std::abs(exact[figure] / estimate.value[figure] - 1.0) <= estimate.half_width[figure];
+        return std::abs(error_of(figure, estimate.value[figure], exact[figure])) <=
+               estimate.half_width[figure];
       };
       times += holds(Figure::end) ? 1 : 0;
       misses += holds(Figure::misses) ? 1 : 0;
