@@ -71,7 +71,7 @@ struct Costs {
 };
 
 void compare(const studies::FrameConfig& frame, const processors::MachineConfig& machine, double tolerance,
-             Score& score, Costs& costs) {
+             std::uint64_t seed, Score& score, Costs& costs) {
   const processors::MachineConfig one = processors::one_node_of(machine);
   double begin = studies::process_cpu_seconds();
   const studies::PreparedFrame whole(frame);
@@ -92,7 +92,7 @@ void compare(const studies::FrameConfig& frame, const processors::MachineConfig&
                                   return prepared.trace(&only, before);
                                 });
   const processors::PacketList packets(frame.render.width, frame.render.height, machine.packets);
-  const studies::WithinAnswer answer = estimate_within(sampled, packets, machine, tolerance);
+  const studies::WithinAnswer answer = estimate_within(sampled, packets, machine, tolerance, seed);
   if (!answer.estimate) {
     const studies::FunctionalRun filled = prepared.finish(std::move(sampled).whole());
     (void)processors::replay(*filled.frame.log, machine);
@@ -134,6 +134,7 @@ int main(int argc, char** argv) {
   std::mt19937_64 random(argc > 4 ? static_cast<std::uint64_t>(std::atoi(argv[4])) : 1);
   Score score;
   Costs all;
+  std::uint64_t seed = 0;
   for (const char* scene : {"teapot:12", "gears:4", "tree:8", "mount:6", "rings:5", "balls:4"}) {
     studies::FrameConfig frame;
     frame.scene = scene;
@@ -146,10 +147,10 @@ int main(int argc, char** argv) {
     processors::MachineConfig full = default_machine();
     full.cache.cache = {.size = 4096, .line = 32, .ways = 1};
     for (const processors::MachineConfig& machine : {default_machine(), full}) {
-      compare(frame, machine, tolerance, score, all);
+      compare(frame, machine, tolerance, ++seed, score, all);
     }
     for (int i = 0; i < machines; ++i) {
-      compare(frame, random_machine(random), tolerance, score, all);
+      compare(frame, random_machine(random), tolerance, ++seed, score, all);
     }
   }
   std::printf("\n%d of them estimated; processor time of all: %.3f of exact, of the worst: %.3f\n",

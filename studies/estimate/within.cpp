@@ -20,7 +20,6 @@ namespace marti::studies {
 
 namespace {
 
-constexpr std::uint64_t sample_seed = 1;
 // The first sample: with fewer strata its interval says little.
 constexpr std::uint64_t first_strata = 8;
 // The largest share of the pixels that the first sample may trace. If an exact run turns out to be cheaper,
@@ -29,9 +28,10 @@ constexpr double most_at_first = 0.10;
 // The largest share of the pixels that a later sample may trace. Each sample replays the packets of those
 // before it again, so that what it traces costs up to twice as much as in an exact run.
 constexpr double most_share = 0.5;
-// No larger sample is taken if it is expected to need this share of the pixels. It is more than all of them,
-// because few are needed less than the square root says when few are left out.
-constexpr double hopeless_share = 1.5;
+// A sample that traces less than this share may turn out too small without costing much.
+constexpr double cheap_share = 0.10;
+// Half-widths of small samples say only roughly what a larger one must be.
+constexpr double margin = 1.3;
 
 // The wider of the half-widths that are asked for: those of frame time and speed-up. One node has a speed-up
 // of exactly 1.
@@ -56,13 +56,10 @@ std::string exact_output(const RunResult& result, const std::string& reason, boo
               : summary_of(result) + fmt::format("\nmethod        exact replay, no error: {}\n", reason);
 }
 
-// By how many times as many windows will do, if a half-width falls with their square root.
-double times_as_many(double own, double wanted) { return own / wanted * (own / wanted); }
-
-// The next sample has twice or four times as many strata: the first ones' half-widths say only roughly how
-// many are needed.
-std::uint64_t next_strata(std::uint64_t strata, double times) {
-  return times > 2.0 ? 4 * strata : 2 * strata;
+// The share of all windows that will do where a share `drawn` has the half-width `own`: its square goes with
+// 1 / drawn - 1.
+double share_for(double drawn, double own, double wanted) {
+  return 1.0 / (1.0 + wanted / own * (wanted / own) * (1.0 / drawn - 1.0));
 }
 
 }  // namespace
@@ -104,7 +101,7 @@ std::optional<std::string> not_sampled(const processors::MachineConfig& machine)
 }
 
 WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& packets,
-                             const processors::MachineConfig& machine, double tolerance) {
+                             const processors::MachineConfig& machine, double tolerance, std::uint64_t seed) {
   const std::vector<MeasuredError> errors = parse_measured_errors(measured_errors_csv());
   const auto not_known = [&](double allowance) {
     return fmt::format(
@@ -122,7 +119,7 @@ WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& 
   const std::uint64_t length = window_length(nodes);
   double most = most_at_first;
   for (std::uint64_t strata = first_strata;;) {
-    const PacketWindows windows(packets, length, strata, sample_seed);
+    const PacketWindows windows(packets, length, strata, seed);
     if (const double share = frame.share_with(windows); windows.has_all() || share > most) {
       return {std::nullopt, fmt::format("{} would trace {:.0f} % of the pixels and replay its packets {}",
                                         strata == first_strata ? "the smallest sample" : "a larger sample",
@@ -146,22 +143,29 @@ WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& 
     if (run.windows >= least_windows[load] && width_of(run.sampled.machine.half_width, nodes) <= tolerance) {
       return {run, ""};
     }
-    double times = static_cast<double>(least_windows[load]) / static_cast<double>(run.windows);
+    const double drawn = static_cast<double>(run.windows) / static_cast<double>(run.of_windows);
+    double wanted_share =
+        std::max(2.0 * drawn, static_cast<double>(least_windows[load]) / static_cast<double>(run.of_windows));
     for (const Figure figure : {Figure::end, Figure::speed_up}) {
       if (nodes == 1 && figure == Figure::speed_up) {
         continue;
       }
-      if (measured.allowance[figure] >= tolerance) {
+      const double left = tolerance - measured.allowance[figure];
+      if (left <= 0.0) {
         return {std::nullopt, not_known(measured.allowance[figure])};
       }
-      times = std::max(times, times_as_many(own[figure], tolerance - measured.allowance[figure]));
+      wanted_share = std::max(wanted_share, share_for(drawn, margin * own[figure], left));
     }
-    if (const double share = frame.traced().pixels * times; share > hopeless_share) {
-      return {std::nullopt,
-              fmt::format("a sample that is large enough would trace about {:.0f} % of the pixels",
-                          std::min(100.0, 100.0 * share))};
+    if (wanted_share > most_share) {
+      return {std::nullopt, fmt::format("a sample that is large enough would trace {:.0f} % of the pixels",
+                                        100.0 * wanted_share)};
     }
-    strata = next_strata(strata, times);
+    // The number of strata doubles, so that all that was drawn is drawn again.
+    const double within_reach =
+        wanted_share > cheap_share ? wanted_share : std::min(wanted_share, 4.0 * drawn);
+    for (double share = drawn; share < 0.99 * within_reach; share *= 2.0) {
+      strata *= 2;
+    }
   }
 }
 

@@ -26,7 +26,7 @@ namespace marti::studies {
 
 /// An estimate that is good enough.
 struct EstimatedRun {
-  SampledRun sampled;  ///< half-widths: the sample's own and what was measured
+  SampledRun sampled;         ///< half-widths: the sample's own and what was measured
   double use_to = 1.0;        ///< the class of load (measured_errors.h) that the latter are of
   std::uint64_t windows = 0;  ///< drawn
   std::uint64_t of_windows = 0;
@@ -42,9 +42,11 @@ struct WithinAnswer {
 
 /// Traces and times samples of `frame`, each larger than the one before, until the half-widths of frame time
 /// and speed-up are at most `tolerance`. Gives up as soon as an exact run is expected to be cheaper: what was
-/// traced till then is not lost. Both not_sampled() must be std::nullopt.
+/// traced till then is not lost. `seed` is that of the windows drawn. Both not_sampled() must be
+/// std::nullopt.
 [[nodiscard]] WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& packets,
-                                           const processors::MachineConfig& machine, double tolerance);
+                                           const processors::MachineConfig& machine, double tolerance,
+                                           std::uint64_t seed = 1);
 
 /// Runs a configuration and gives what to print: an estimate with error bars, or the summary of an exact run
 /// and the reason for it; as JSON, an object with `estimate`, or the exact run's result. `exact`: how an
