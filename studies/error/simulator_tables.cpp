@@ -182,7 +182,8 @@ Table time_table(const SimulatorStudy& study, std::span<const MethodErrors> erro
       {method_column,
        knob_column,
        {"figure", ColumnType::text, "", "whose error is meant"},
-       {"cpu", ColumnType::real, "s", "processor time for answers to all machines, tracing included, median of the repeats"},
+       {"cpu", ColumnType::real, "s",
+        "processor time for answers to all machines, tracing included, median of the repeats"},
        {"cpu_low", ColumnType::real, "s", "the least of the repeats"},
        {"cpu_high", ColumnType::real, "s", "the largest"},
        {"confidence", ColumnType::real, "fraction", "that the true median lies between them"},
@@ -264,7 +265,8 @@ Table measured_table(const SimulatorStudy& study) {
        "machines whose interconnect is busy up to this share of the frame, more than the class before"},
       {"cases", ColumnType::integer, "1", "samples measured"},
       {"covered", ColumnType::real, "fraction",
-       "share of them in intervals widened by what the other scenes say, of the figure of which it is least"}};
+       "share of them in intervals widened by what the other scenes say, of the figure of which it is "
+       "least"}};
   for (const std::string_view name : figure_names) {
     columns.push_back({std::string(name), ColumnType::real, "fraction",
                        "half-width to add to a sample's own, so that 95 % of errors are covered"});

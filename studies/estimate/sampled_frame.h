@@ -13,16 +13,17 @@ namespace marti::studies {
 
 /// What was traced of a frame, and what the whole would have been by the pixels of the lattice.
 struct TracedPart {
-  double pixels = 0.0;      ///< share
-  double rays = 0.0;        ///< of the whole frame
-  double log_bytes = 0.0;   ///< of the whole frame
+  double pixels = 0.0;     ///< share
+  double rays = 0.0;       ///< of the whole frame
+  double log_bytes = 0.0;  ///< of the whole frame
 };
 
 /// Each pixel is traced at most once.
 class SampledFrame {
  public:
   /// Traces the pixels of a set and adds them to a frame that has others already, if that is not null.
-  using Trace = std::function<processors::Frame(const processors::PixelSet& only, const processors::Frame* before)>;
+  using Trace =
+      std::function<processors::Frame(const processors::PixelSet& only, const processors::Frame* before)>;
 
   SampledFrame(std::uint32_t width, std::uint32_t height, Trace trace);
 

@@ -19,9 +19,9 @@ struct RatioEstimate {
 
 /// The combined ratio estimator (W. G. Cochran, "Sampling techniques", 3rd ed. 1977, section 6.11): `known`
 /// and `measured` of the strata's chosen units, in order, `all_known` the sum of what is known of all units.
-/// Its variance is 6.51 there; the interval takes Student's distribution, with chosen units less strata as its
-/// degrees of freedom. If all units are chosen, the result is the total, with half-width 0; without a degree
-/// of freedom, or where nothing is known or measured, the half-width is infinite.
+/// Its variance is 6.51 there; the interval takes Student's distribution, with chosen units less strata as
+/// its degrees of freedom. If all units are chosen, the result is the total, with half-width 0; without a
+/// degree of freedom, or where nothing is known or measured, the half-width is infinite.
 [[nodiscard]] RatioEstimate ratio_estimate(std::span<const Stratum> strata, std::span<const double> known,
                                            std::span<const double> measured, double all_known);
 
@@ -35,9 +35,9 @@ struct SampledRun {
   Estimate one_node;
 };
 
-/// Replays the packets of the windows drawn, on the machine and on one node. `log` must hold the pixels of the
-/// windows and of the lattice; its other pixels are not looked at, or have no words. Before a node begins a
-/// packet it takes its caches through what the log has of the packets left out since its last one
+/// Replays the packets of the windows drawn, on the machine and on one node. `log` must hold the pixels of
+/// the windows and of the lattice; its other pixels are not looked at, or have no words. Before a node begins
+/// a packet it takes its caches through what the log has of the packets left out since its last one
 /// (processors/walk/packet_sample.h). The frame time is that of a host that hands out packets of the
 /// estimated times, or the time that the interconnect needs for all transfers, if that is longer. If all
 /// windows are drawn and the log is whole, the result is exact. Throws UserError for a machine that

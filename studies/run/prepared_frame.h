@@ -14,8 +14,8 @@
 
 namespace marti::studies {
 
-/// A frame of which all is ready to be traced: the scene is open, what the frame does not need is left out, and
-/// the structure is built. Parts of it can be traced one after another.
+/// A frame of which all is ready to be traced: the scene is open, what the frame does not need is left out,
+/// and the structure is built. Parts of it can be traced one after another.
 class PreparedFrame {
  public:
   /// Throws UserError when the scene cannot be used or the frame would take more than the memory limit, which
