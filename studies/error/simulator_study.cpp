@@ -151,7 +151,7 @@ class FrameStudy {
       for (const processors::LogRow& row : part.rows) {
         run.machine.words += row.words.size();
       }
-      study_.estimates[m][number] = std::move(run.machine);
+      study_.estimates[m][number] = run.machine;
     });
   }
 
