@@ -161,9 +161,8 @@ WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& 
                                         100.0 * wanted_share)};
     }
     // The number of strata doubles, so that all that was drawn is drawn again.
-    const double within_reach =
-        wanted_share > cheap_share ? wanted_share : std::min(wanted_share, 4.0 * drawn);
-    for (double share = drawn; share < 0.99 * within_reach; share *= 2.0) {
+    const double next = 4.0 * drawn <= cheap_share ? std::min(wanted_share, 4.0 * drawn) : wanted_share;
+    for (double share = drawn; share < 0.99 * next; share *= 2.0) {
       strata *= 2;
     }
   }
