@@ -87,10 +87,7 @@ void compare(const studies::FrameConfig& frame, const processors::MachineConfig&
 
   begin = studies::process_cpu_seconds();
   const studies::PreparedFrame prepared(frame);
-  studies::SampledFrame sampled(frame.render.width, frame.render.height,
-                                [&](const processors::PixelSet& only, const processors::Frame* before) {
-                                  return prepared.trace(&only, before);
-                                });
+  studies::SampledFrame sampled = studies::sampled_frame(prepared);
   const processors::PacketList packets(frame.render.width, frame.render.height, machine.packets);
   const studies::WithinAnswer answer = estimate_within(sampled, packets, machine, tolerance, seed);
   if (!answer.estimate) {

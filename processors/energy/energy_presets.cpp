@@ -84,9 +84,9 @@ constexpr EnergyFigures nm45 = {.add = 0.9,
                                 .leakage_density = 226.0};
 
 // 22 nm. Operations: those of 45 nm times 0.29, the ratio of the two technologies' reads of caches (geometric
-// mean over the same 87). Wires: 100 fJ a bit and mm, said of about 14 nm and taken as it is: Dally,
-// Turakhia, Han, Domain-specific hardware accelerators, Communications of the ACM 63(7), 2020. Lengths: half
-// of those of 45 nm. Areas: times the square of 22 / 65.
+// mean over the same 87). Wires: 100 fJ a bit and mm (Dally, Turakhia, Han, Domain-specific hardware
+// accelerators, Communications of the ACM 63(7), 2020). Their figure is for wires of about 14 nm; no
+// correction to 22 nm is made. Lengths: half of those of 45 nm. Areas: times the square of 22 / 65.
 constexpr EnergyFigures nm22 = {.add = 0.261,
                                 .multiply = 1.073,
                                 .divide = 7.627,

@@ -17,10 +17,8 @@ constexpr double attojoules_a_picojoule = 1e6;
 constexpr double square_micrometres_a_square_millimetre = 1e6;
 constexpr double picowatts_of_milliwatts = 1e3;  // mW a mm2 in pW a um2
 
-// The largest figure; of operations less, so that what a step takes of many fits 64 bits.
+// The largest figure of all others.
 constexpr double most = 1e9;
-constexpr double most_of_operation = 1e5;
-constexpr double most_voltage = 10.0;
 
 void require_range(std::string_view key, double figure, double largest) {
   if (!(figure >= 0.0 && figure <= largest)) {

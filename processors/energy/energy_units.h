@@ -11,6 +11,12 @@ namespace marti::processors {
 
 __extension__ using Wide = __int128;
 
+/// The largest energy of an operation, pJ: a step has up to some 100,000 operations, whose sum in aJ must fit
+/// 64 bits.
+inline constexpr double most_of_operation = 1e5;
+/// The largest voltage, as a multiple of the preset's.
+inline constexpr double most_voltage = 10.0;
+
 /// Of one cache, in aJ.
 struct CacheUnits {
   std::int64_t read = 0;

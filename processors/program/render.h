@@ -54,8 +54,9 @@ struct RenderOptions {
   /// The pixels that are traced; null for all. The others are those of `before`, or else black and without
   /// words in the log. Must be of the image's size.
   const PixelSet* only = nullptr;
-  /// A rendering of other pixels of this image, by the same options, which becomes part of the frame: its
-  /// pixels outside `only`, its rays and its hashes. Pixels of `only` must not be in it. Null: there is none.
+  /// A frame in which other pixels of this image were traced with equal options. The new frame takes over its
+  /// colours, log and counts of rays. No pixel of `only` may have been traced in it. Null: nothing is taken
+  /// over.
   const Frame* before = nullptr;
 };
 

@@ -32,9 +32,9 @@ class PacketSample {
 
   /// Calls use(packet), in ascending order, for each packet that a node warms its caches with before packet
   /// `next`: had every packet been handed out, the node would have had one in every round of `nodes` packets.
-  /// Which one of a round is drawn at random, but always alike: nodes that take packets of different lengths
-  /// as they fall idle soon come in any order, and packets at equal distances would lie in the same columns
-  /// of the image, which no node meets. `last` is one past the node's previous packet, 0 when there is none.
+  /// Which packet of a round it would have had depends on when the nodes fall idle, so a pseudo-random one is
+  /// taken. (Every `nodes`-th packet would lie in few columns of the image, and caches would hit too often.)
+  /// `last` is the number of the node's previous packet plus one, or 0 when there is none.
   template <class Use>
   void for_each_warmed(std::uint64_t last, std::uint64_t next, std::uint64_t nodes, const Use& use) const {
     for (std::uint64_t back = std::min((next - last) / nodes, warm_up_); back > 0; --back) {

@@ -141,11 +141,7 @@ class FrameStudy {
       if (windows.has_all() || windows.strata().size() < simulator_methods()[m].strata) {
         return;
       }
-      const FrameConfig& frame = prepared_->config();
-      SampledFrame sampled(frame.render.width, frame.render.height,
-                           [&](const processors::PixelSet& only, const processors::Frame* before) {
-                             return prepared_->trace(&only, before);
-                           });
+      SampledFrame sampled = sampled_frame(*prepared_);
       const processors::WorkLog& part = sampled.with(windows);
       SampledRun run = estimate_by_sample(part, config, windows, sampled.lattice());
       for (const processors::LogRow& row : part.rows) {

@@ -48,4 +48,12 @@ void SampledFrame::trace(const processors::PixelSet& wanted) {
   traced_ = wanted;
 }
 
+SampledFrame sampled_frame(const PreparedFrame& prepared) {
+  const processors::RenderOptions& render = prepared.config().render;
+  return {render.width, render.height,
+          [&prepared](const processors::PixelSet& only, const processors::Frame* before) {
+            return prepared.trace(&only, before);
+          }};
+}
+
 }  // namespace marti::studies

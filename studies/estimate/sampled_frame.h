@@ -8,6 +8,7 @@
 #include "processors/program/pixel_set.h"
 #include "processors/program/render.h"
 #include "studies/estimate/packet_windows.h"
+#include "studies/run/prepared_frame.h"
 
 namespace marti::studies {
 
@@ -49,5 +50,8 @@ class SampledFrame {
   double pixels_;
   std::optional<processors::Frame> frame_;  // empty before anything is traced
 };
+
+/// Of a frame that is ready to be traced; it must outlive what is returned.
+[[nodiscard]] SampledFrame sampled_frame(const PreparedFrame& prepared);
 
 }  // namespace marti::studies

@@ -19,11 +19,6 @@ namespace {
 constexpr std::uint64_t shortest_window = 16;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-std::size_t chosen_units(std::span<const Stratum> strata) {
-  return std::accumulate(strata.begin(), strata.end(), std::size_t{0},
-                         [](std::size_t sum, const Stratum& stratum) { return sum + stratum.chosen.size(); });
-}
-
 // The sum over all units that a sum over each stratum's chosen ones stands for.
 double expand(std::span<const Stratum> strata, std::span<const double> values) {
   double sum = 0.0;
@@ -168,7 +163,6 @@ SampledMachine sample_machine(const processors::WorkLog& log, const processors::
 
 RatioEstimate ratio_estimate(std::span<const Stratum> strata, std::span<const double> known,
                              std::span<const double> measured, double all_known) {
-  const std::size_t chosen = chosen_units(strata);
   const double sum_known = expand(strata, known);
   const double sum_measured = expand(strata, measured);
   if (all_chosen(strata)) {
@@ -179,8 +173,8 @@ RatioEstimate ratio_estimate(std::span<const Stratum> strata, std::span<const do
   }
   const double ratio = sum_measured / sum_known;
   RatioEstimate estimate{ratio * all_known, infinite};
-  if (chosen > strata.size() && sum_measured > 0.0) {
-    estimate.half_width = student_95(chosen - strata.size()) *
+  if (measured.size() > strata.size() && sum_measured > 0.0) {
+    estimate.half_width = student_95(measured.size() - strata.size()) *
                           std::sqrt(variance_of(strata, known, measured, ratio)) / sum_measured;
   }
   return estimate;

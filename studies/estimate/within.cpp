@@ -193,10 +193,7 @@ std::string run_within(sim::Config& config, double tolerance, bool json, RunOpti
   }
   return sim::with_places(config, [&] {
     const PreparedFrame prepared(frame);
-    SampledFrame sampled(frame.render.width, frame.render.height,
-                         [&](const processors::PixelSet& only, const processors::Frame* before) {
-                           return prepared.trace(&only, before);
-                         });
+    SampledFrame sampled = sampled_frame(prepared);
     const processors::PacketList packets(frame.render.width, frame.render.height, machine.packets);
     const WithinAnswer answer = estimate_within(sampled, packets, machine, tolerance);
     if (!answer.estimate) {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "processors/energy/energy_presets.h"
+#include "processors/energy/energy_units.h"
 #include "studies/keys/key_parts.h"
 
 namespace marti::studies {
@@ -14,6 +15,7 @@ namespace {
 
 using processors::CacheFigures;
 using processors::EnergyFigures;
+using processors::most_of_operation;
 
 // A key that is not given, and one of -1, leave the preset's figure.
 constexpr double preset_figure = -1.0;
@@ -26,7 +28,7 @@ struct FigureKey {
   std::string_view meaning;
 };
 
-constexpr double most_of_operation = 100'000.0;
+constexpr double most_of_byte = 100'000.0;
 constexpr double most_of_access = 1'000'000.0;
 constexpr double most_length = 10'000.0;
 
@@ -49,9 +51,9 @@ constexpr std::array<FigureKey, 18> figure_keys = {{
      "way of each byte over a link of the network"},
     {"energy.memory_access", &EnergyFigures::memory_access, most_of_access, "pJ",
      "of an access of a bank or a node's own memory beside its bytes: activating and precharging a row"},
-    {"energy.memory_read", &EnergyFigures::memory_read, most_of_operation, "pJ",
+    {"energy.memory_read", &EnergyFigures::memory_read, most_of_byte, "pJ",
      "of a byte that a memory reads; each read is of a cache line"},
-    {"energy.memory_write", &EnergyFigures::memory_write, most_of_operation, "pJ",
+    {"energy.memory_write", &EnergyFigures::memory_write, most_of_byte, "pJ",
      "of a byte that a memory writes; each write is of a cache line"},
     {"energy.node_area", &EnergyFigures::node_area, most_length, "mm2", "area of a node without its caches"},
     {"energy.context_area", &EnergyFigures::context_area, most_length, "mm2",
@@ -152,7 +154,7 @@ void declare_energy_keys(sim::Schema& schema) {
                  "the energy of the frame, worked out from what was counted; changes no other figure");
   schema.choice("energy.preset", "none", names(processors::energy_preset_names),
                 "the technology whose figures are taken (sources: energy.md); none: no energy is worked out");
-  schema.real("energy.voltage", 1.0, {0.0, 10.0}, "",
+  schema.real("energy.voltage", 1.0, {0.0, processors::most_voltage}, "",
               "supply voltage by that of the preset's sources: operations, caches and wires take its square");
   for (const FigureKey& key : figure_keys) {
     declare_figure(schema, key.name, key.most, key.unit, std::string(key.meaning), "the preset's");

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "plain_machine.h"
 #include "processors/passes/one_pass.h"
 #include "processors/replay/replay.h"
 #include "sim/error.h"
@@ -19,21 +20,10 @@ namespace {
 
 using processors::MachineConfig;
 
-// A machine that every method can estimate.
-MachineConfig plain_machine(test::Random& random) {
-  MachineConfig machine;
-  machine.nodes = static_cast<std::uint32_t>(test::pick(random, 1, 9));
-  machine.packets = {static_cast<std::uint32_t>(test::pick(random, 1, 4)),
-                     static_cast<std::uint32_t>(test::pick(random, 1, 4)),
-                     static_cast<processors::PacketOrder>(test::pick(random, 0, 2))};
-  machine.cache.cache = {.size = 32ULL << test::pick(random, 0, 8), .line = 32, .ways = 1};
-  return machine;
-}
-
 RC_GTEST_PROP(Schedule, OfIndependentPacketsIsTheReplay, (std::uint64_t seed)) {
   test::Random random(seed);
   const processors::WorkLog log = test::random_log(random, 12, 10);
-  MachineConfig machine = plain_machine(random);
+  MachineConfig machine = test::plain_machine(random);
   machine.host.occupancy_cycles = test::pick(random, 0, 50);
   machine.interconnect.kind = memory::InterconnectKind::ideal;
   const std::uint64_t packets = processors::PacketList(12, 10, machine.packets).size();
@@ -55,7 +45,7 @@ RC_GTEST_PROP(Schedule, OfIndependentPacketsIsTheReplay, (std::uint64_t seed)) {
 RC_GTEST_PROP(OnePass, FindsTheStepsAndMissesOfTheReplay, (std::uint64_t seed)) {
   test::Random random(seed);
   const processors::WorkLog log = test::random_log(random, 11, 9);
-  MachineConfig machine = plain_machine(random);
+  MachineConfig machine = test::plain_machine(random);
   machine.host.assignment = processors::Assignment::interleaved;
   const std::uint64_t packets = processors::PacketList(11, 9, machine.packets).size();
   std::vector<std::vector<std::uint64_t>> of_node(machine.nodes);
@@ -89,7 +79,7 @@ RC_GTEST_PROP(OnePass, FindsTheStepsAndMissesOfTheReplay, (std::uint64_t seed)) 
 RC_GTEST_PROP(Analytic, OneNodeWithAnIdealInterconnectIsExact, (std::uint64_t seed)) {
   test::Random random(seed);
   const processors::WorkLog log = test::random_log(random, 12, 10);
-  MachineConfig machine = plain_machine(random);
+  MachineConfig machine = test::plain_machine(random);
   machine.nodes = 1;
   machine.interconnect.kind = memory::InterconnectKind::ideal;
   machine.interconnect.latency_cycles = test::pick(random, 0, 90);
@@ -105,7 +95,7 @@ RC_GTEST_PROP(Analytic, OneNodeWithAnIdealInterconnectIsExact, (std::uint64_t se
 RC_GTEST_PROP(Analytic, AllNodesWalkedGiveTheMissesOfInterleavedAssignment, (std::uint64_t seed)) {
   test::Random random(seed);
   const processors::WorkLog log = test::random_log(random, 12, 10);
-  MachineConfig machine = plain_machine(random);
+  MachineConfig machine = test::plain_machine(random);
   const memory::CacheShape shape = memory::shape_of(machine.cache.cache);
   const Estimate estimate = estimate_analytically(log, machine, {&shape, 1}, {.walked_nodes = 1000})[0];
   MachineConfig interleaved = machine;
@@ -119,7 +109,7 @@ RC_GTEST_PROP(Analytic, AllNodesWalkedGiveTheMissesOfInterleavedAssignment, (std
 TEST(Methods, AreNamedApartAndRefuseWhatTheyCannotDo) {
   std::vector<std::string> names;
   test::Random random(1);
-  MachineConfig pipeline = plain_machine(random);
+  MachineConfig pipeline = test::plain_machine(random);
   pipeline.scheme = processors::Scheme::pipeline;
   for (const Method& method : simulator_methods()) {
     names.push_back(method.name() + ": " + method.knob());

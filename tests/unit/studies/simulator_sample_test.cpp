@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "plain_machine.h"
 #include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "studies/estimate/sampled_frame.h"
@@ -161,16 +162,6 @@ SampledFrame sampled_frame(const WorkLog& log) {
   });
 }
 
-MachineConfig machine_of(test::Random& random) {
-  MachineConfig machine;
-  machine.nodes = static_cast<std::uint32_t>(test::pick(random, 1, 9));
-  machine.packets = {static_cast<std::uint32_t>(test::pick(random, 1, 4)),
-                     static_cast<std::uint32_t>(test::pick(random, 1, 4)),
-                     static_cast<processors::PacketOrder>(test::pick(random, 0, 2))};
-  machine.cache.cache = {.size = 32ULL << test::pick(random, 0, 8), .line = 32, .ways = 1};
-  return machine;
-}
-
 RC_GTEST_PROP(Windows, AreCutOfAllPackets, (std::uint64_t seed)) {
   test::Random random(seed);
   const PacketList packets(static_cast<std::uint32_t>(test::pick(random, 1, 60)),
@@ -235,7 +226,7 @@ RC_GTEST_PROP(Lattice, ExpectsTheWordsOfThePixelNextToEach, (std::uint64_t seed)
 RC_GTEST_PROP(Sample, OfEverythingIsExact, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_log(random, 12, 10);
-  const MachineConfig machine = machine_of(random);
+  const MachineConfig machine = test::plain_machine(random);
   const MachineFigures exact = figures_of(machine, processors::replay(log, machine));
   const PacketList packets(log.width, log.height, machine.packets);
   const MachineConfig one = processors::one_node_of(machine);
@@ -282,7 +273,7 @@ RC_GTEST_PROP(Sample, TracesWhatItNeedsOnce, (std::uint64_t seed)) {
 RC_GTEST_PROP(Sample, DoesNotLookAtOtherPixels, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_log(random, 40, 24, 10);
-  MachineConfig machine = machine_of(random);
+  MachineConfig machine = test::plain_machine(random);
   machine.packets = {2, 2};
   const PacketWindows windows(PacketList(log.width, log.height, machine.packets), 8, 4, seed);
   SampledFrame frame = sampled_frame(log);
@@ -298,7 +289,7 @@ RC_GTEST_PROP(Sample, DoesNotLookAtOtherPixels, (std::uint64_t seed)) {
 TEST(Sample, IntervalsOfManySeedsCoverTheTruth) {
   test::Random random(5);
   const WorkLog log = test::random_log(random, 64, 64, 20);
-  MachineConfig machine = machine_of(random);
+  MachineConfig machine = test::plain_machine(random);
   machine.packets = {2, 2, processors::PacketOrder::scanline};
   machine.nodes = 1;
   const MachineFigures exact = figures_of(machine, processors::replay(log, machine));
@@ -327,7 +318,7 @@ TEST(Sample, IntervalsOfManySeedsCoverTheTruth) {
 TEST(Sample, MachinesThatCannotBeSampledAreRefused) {
   test::Random random(1);
   const auto refused = [&](auto change, std::string_view word) {
-    MachineConfig machine = machine_of(random);
+    MachineConfig machine = test::plain_machine(random);
     change(machine);
     try {
       check_sample(machine);

@@ -1,4 +1,5 @@
-// Estimates that are as narrow as was asked for, and when there is none.
+// `marti run --within`: its estimates are as narrow as was asked for, and it gives none where none may be
+// given.
 #include "studies/estimate/within.h"
 
 #include <gtest/gtest.h>
@@ -54,10 +55,7 @@ FrameConfig teapot(std::uint32_t side) {
 WithinAnswer answer_of(const PreparedFrame& prepared, const processors::MachineConfig& machine,
                        double tolerance, double* traced = nullptr, std::uint64_t seed = 1) {
   const processors::RenderOptions& render = prepared.config().render;
-  SampledFrame frame(render.width, render.height,
-                     [&](const processors::PixelSet& only, const processors::Frame* before) {
-                       return prepared.trace(&only, before);
-                     });
+  SampledFrame frame = sampled_frame(prepared);
   const processors::PacketList packets(render.width, render.height, machine.packets);
   const WithinAnswer answer = estimate_within(frame, packets, machine, tolerance, seed);
   if (traced != nullptr && answer.estimate) {
