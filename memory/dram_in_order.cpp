@@ -1,0 +1,112 @@
+#include "memory/dram_in_order.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace marti::memory {
+
+DramInOrder::DramInOrder(const DramConfig& config)
+    : timing_(config.timing),
+      period_(config.period),
+      ranks_(config.ranks),
+      burst_bytes_(config.burst_bytes),
+      shared_bus_(config.two_command_buses ? 0 : 1),
+      close_(config.page == DramPage::closed),
+      device_(config),
+      refresh_due_(config.timing.refi > 0 ? config.timing.refi : std::numeric_limits<DramCycle>::max()) {}
+
+DramService DramInOrder::serve(const DramRequest& request) {
+  DramService service;
+  for (std::int64_t i = 0; i < request.bursts; ++i) {
+    const Issued issued = burst(request, i + 1 == request.bursts);
+    if (i == 0) {
+      service.first = issued.first;
+    }
+  }
+  service.end = device_.end_of_data(request.write ? DramCommand::write : DramCommand::read, last_column_);
+  (request.write ? statistics_.write_bursts : statistics_.read_bursts) += request.bursts;
+  statistics_.bytes += request.bursts * burst_bytes_;
+  statistics_.data_busy += period_ * timing_.bl * request.bursts;
+  statistics_.queued = sim::add_ticks(statistics_.queued, period_ * (last_column_ - request.arrival));
+  return service;
+}
+
+DramInOrder::Issued DramInOrder::burst(const DramRequest& request, bool last) {
+  DramCycle from = std::max(prepared_, request.arrival + 1);
+  Issued issued;
+  bool begun = false;
+  bool opened = false;
+  for (;;) {
+    const DramCommand command = device_.next_command(request.place, request.write);
+    const bool column = command == DramCommand::read || command == DramCommand::write;
+    DramCycle cycle = std::max(from, device_.earliest(command, request.place));
+    cycle = column ? std::max(cycle, last_column_ + 1) : free_slot(cycle);
+    if (cycle >= refresh_due_ && !opened) {
+      const DramCycle due = refresh_due_;
+      refresh(cycle);
+      // What the refresh costs this access: until its row may be opened again.
+      const DramCycle again = device_.earliest(DramCommand::activate, request.place);
+      statistics_.refresh_stall += period_ * std::max<DramCycle>(0, again - std::max(cycle, due));
+      from = std::max(from, prepared_);
+      continue;
+    }
+    if (!begun) {
+      begun = true;
+      issued.first = cycle;
+      ++(column                             ? statistics_.row_hits
+         : command == DramCommand::activate ? statistics_.row_misses
+                                            : statistics_.row_conflicts);
+    }
+    device_.issue(command, request.place, cycle, column && close_ && last);
+    if (column) {
+      prepared_ = opened ? prepared_ : cycle + shared_bus_;
+      last_column_ = cycle;
+      columns_.push_back(cycle);
+      while (!columns_.empty() && columns_.front() < prepared_) {
+        columns_.pop_front();
+      }
+      issued.column = cycle;
+      return issued;
+    }
+    from = cycle + 1;
+    if (command == DramCommand::activate) {
+      ++statistics_.activations;
+      opened = true;
+      prepared_ = from;
+    }
+  }
+}
+
+DramCycle DramInOrder::free_slot(DramCycle cycle) const {
+  if (shared_bus_ > 0) {
+    for (const DramCycle taken : columns_) {
+      cycle += taken == cycle ? 1 : 0;
+    }
+  }
+  return cycle;
+}
+
+void DramInOrder::refresh(DramCycle cycle) {
+  DramCycle end = std::max(last_column_ + shared_bus_, prepared_);
+  for (std::uint32_t rank = 0; rank < ranks_; ++rank) {
+    DramCycle start = std::max(refresh_due_, end);
+    if (device_.has_open_row(rank)) {
+      start = std::max(start, device_.earliest_precharge_all(rank));
+      device_.precharge_all(rank, start);
+    }
+    start = std::max(start, device_.earliest_refresh(rank));
+    device_.refresh(rank, start);
+    end = start + 1;
+  }
+  statistics_.refreshes += ranks_;
+  prepared_ = end;
+  refresh_due_ += timing_.refi;
+  // While nothing is asked for, each further refresh begins when it is due: only the last one matters.
+  const std::int64_t skipped = (cycle - refresh_due_) / timing_.refi;
+  if (cycle > refresh_due_ && skipped > 0) {
+    statistics_.refreshes += skipped * ranks_;
+    refresh_due_ += skipped * timing_.refi;
+  }
+}
+
+}  // namespace marti::memory
