@@ -35,7 +35,13 @@ void check_counts(const DramConfig& config) {
 
 void check_timing(const DramConfig& config) {
   const DramTiming& timing = config.timing;
-  if (timing.refi > 0 && timing.refi <= timing.rfc + timing.rc + timing.rp + timing.cl + timing.wr) {
+  if (timing.bl == 0) {
+    refuse("dram.tbl", "must not be 0");
+  }
+  // Each rank may have rows to close, and then an access must be possible.
+  const std::int64_t refresh = timing.rfc + std::int64_t{config.ranks} * (timing.rp + 2);
+  if (timing.refi > 0 &&
+      timing.refi <= refresh + timing.rc + timing.cl + timing.cwl + timing.bl + timing.wr) {
     refuse("dram.trefi", "must leave time for an access between two refreshes of " +
                              std::to_string(timing.rfc) + " cycles (dram.trfc)");
   }
@@ -66,7 +72,7 @@ DramTiming DramConfig::timing_of_commands() const {
 }
 
 double DramConfig::peak_bandwidth() const {
-  return static_cast<double>(sim::ticks_per_second) * burst_bytes * channels /
+  return static_cast<double>(sim::ticks_per_second) * burst_bytes * channels * (pseudo_channels ? ranks : 1) /
          (static_cast<double>(period) * static_cast<double>(timing.bl));
 }
 

@@ -71,6 +71,8 @@ struct DramConfig {
   std::uint32_t burst_bytes = 64;
   /// Whether commands that open and close rows have a command bus of their own, as in HBM.
   bool two_command_buses = false;
+  /// Whether each rank has a data bus of its own, as the pseudo channels of HBM, which share command buses.
+  bool pseudo_channels = false;
   std::int64_t activate_cycles = 1;  ///< that an activation has the command bus
   std::int64_t column_cycles = 1;    ///< that a read or write has it
   DramPolicy policy = DramPolicy::fcfs;
@@ -85,6 +87,8 @@ struct DramConfig {
   /// The times from the first cycle of one command to the first cycle of the next. The standards count them
   /// from the last cycle of a command that takes several.
   [[nodiscard]] DramTiming timing_of_commands() const;
+  /// For which a burst has the data bus of a channel; of pseudo channels a part of all their buses.
+  [[nodiscard]] sim::Ticks burst_time() const { return period * timing.bl / (pseudo_channels ? ranks : 1); }
   [[nodiscard]] std::uint32_t columns() const { return row_bytes / burst_bytes; }
   [[nodiscard]] std::uint32_t banks_of_rank() const { return bank_groups * banks; }
   /// Bytes a second over all channels, if data are moved without a pause.

@@ -13,6 +13,7 @@ constexpr DramCycle long_ago = std::numeric_limits<DramCycle>::min() / 4;
 
 DramDevice::DramDevice(const DramConfig& config)
     : timing_(config.timing_of_commands()),
+      one_data_bus_(!config.pseudo_channels),
       banks_of_rank_(config.banks_of_rank()),
       banks_(std::size_t{config.ranks} * config.banks_of_rank()),
       groups_(std::size_t{config.ranks} * config.bank_groups),
@@ -84,10 +85,12 @@ void DramDevice::issue_column(DramCommand command, const DramPlace& place, DramC
       raise(of(rank, other), write ? end + timing_.wtr_s : cycle + turn_read_to_write);
       continue;
     }
-    // Another rank's data must not come before the data bus is free again.
-    const DramCycle free = end + timing_.rank_gap;
-    raise(of(rank, DramCommand::read), free - timing_.cl);
-    raise(of(rank, DramCommand::write), free - timing_.cwl);
+    if (one_data_bus_) {
+      // Another rank's data must not come before the bus is free again.
+      const DramCycle free = end + timing_.rank_gap;
+      raise(of(rank, DramCommand::read), free - timing_.cl);
+      raise(of(rank, DramCommand::write), free - timing_.cwl);
+    }
   }
 }
 

@@ -75,6 +75,7 @@ class DramDevice {
   void issue_column(DramCommand command, const DramPlace& place, DramCycle cycle);
 
   DramTiming timing_;
+  bool one_data_bus_;
   std::uint32_t banks_of_rank_;
   std::vector<Bank> banks_;
   std::vector<Times> groups_;

@@ -8,9 +8,10 @@ namespace marti::memory {
 DramInOrder::DramInOrder(const DramConfig& config)
     : timing_(config.timing),
       period_(config.period),
+      burst_time_(config.burst_time()),
       ranks_(config.ranks),
       burst_bytes_(config.burst_bytes),
-      shared_bus_(config.two_command_buses ? 0 : 1),
+      column_cycles_(config.column_cycles),activate_cycles_(config.activate_cycles),two_command_buses_(config.two_command_buses),
       close_(config.page == DramPage::closed),
       device_(config),
       refresh_due_(config.timing.refi > 0 ? config.timing.refi : std::numeric_limits<DramCycle>::max()) {}
@@ -26,7 +27,8 @@ DramService DramInOrder::serve(const DramRequest& request) {
   service.end = device_.end_of_data(request.write ? DramCommand::write : DramCommand::read, last_column_);
   (request.write ? statistics_.write_bursts : statistics_.read_bursts) += request.bursts;
   statistics_.bytes += request.bursts * burst_bytes_;
-  statistics_.data_busy += period_ * timing_.bl * request.bursts;
+  statistics_.data_busy =
+      sim::add_ticks(statistics_.data_busy, sim::multiply_ticks(burst_time_, request.bursts));
   statistics_.queued = sim::add_ticks(statistics_.queued, period_ * (last_column_ - request.arrival));
   return service;
 }
@@ -40,7 +42,8 @@ DramInOrder::Issued DramInOrder::burst(const DramRequest& request, bool last) {
     const DramCommand command = device_.next_command(request.place, request.write);
     const bool column = command == DramCommand::read || command == DramCommand::write;
     DramCycle cycle = std::max(from, device_.earliest(command, request.place));
-    cycle = column ? std::max(cycle, last_column_ + 1) : free_slot(cycle);
+    const DramCycle length = command == DramCommand::activate ? activate_cycles_ : column ? column_cycles_ : 1;
+    cycle = column ? std::max(cycle, last_column_ + length) : free_slot(cycle, length);
     if (cycle >= refresh_due_ && !opened) {
       const DramCycle due = refresh_due_;
       refresh(cycle);
@@ -59,16 +62,16 @@ DramInOrder::Issued DramInOrder::burst(const DramRequest& request, bool last) {
     }
     device_.issue(command, request.place, cycle, column && close_ && last);
     if (column) {
-      prepared_ = opened ? prepared_ : cycle + shared_bus_;
+      prepared_ = opened ? prepared_ : cycle + (two_command_buses_ ? 0 : length);
       last_column_ = cycle;
       columns_.push_back(cycle);
-      while (!columns_.empty() && columns_.front() < prepared_) {
+      while (!columns_.empty() && columns_.front() + column_cycles_ <= prepared_) {
         columns_.pop_front();
       }
       issued.column = cycle;
       return issued;
     }
-    from = cycle + 1;
+    from = cycle + length;
     if (command == DramCommand::activate) {
       ++statistics_.activations;
       opened = true;
@@ -77,17 +80,19 @@ DramInOrder::Issued DramInOrder::burst(const DramRequest& request, bool last) {
   }
 }
 
-DramCycle DramInOrder::free_slot(DramCycle cycle) const {
-  if (shared_bus_ > 0) {
+DramCycle DramInOrder::free_slot(DramCycle cycle, DramCycle length) const {
+  if (!two_command_buses_) {
     for (const DramCycle taken : columns_) {
-      cycle += taken == cycle ? 1 : 0;
+      if (taken < cycle + length && cycle < taken + column_cycles_) {
+        cycle = taken + column_cycles_;
+      }
     }
   }
   return cycle;
 }
 
 void DramInOrder::refresh(DramCycle cycle) {
-  DramCycle end = std::max(last_column_ + shared_bus_, prepared_);
+  DramCycle end = std::max(last_column_ + (two_command_buses_ ? 0 : column_cycles_), prepared_);
   for (std::uint32_t rank = 0; rank < ranks_; ++rank) {
     DramCycle start = std::max(refresh_due_, end);
     if (device_.has_open_row(rank)) {

@@ -27,7 +27,7 @@ struct DramService {
 /// the oldest whose row is not open yet; those before it may still wait for their data. An access that
 /// arrives in a cycle has its first command in the next one at the earliest. When a refresh is due, accesses
 /// whose rows were opened before end first, then all rows are closed and all ranks are refreshed. One command
-/// is issued in a cycle, and a read or write goes before a command of a younger access.
+/// is issued in a cycle, and none keeps the bus from a read or write of an older access.
 ///
 /// No access moves the commands of one that arrived before it, so the whole course of an access is known when
 /// it arrives.
@@ -48,16 +48,19 @@ class DramInOrder {
     DramCycle column = 0;
   };
   Issued burst(const DramRequest& request, bool last);
-  // The first cycle from `cycle` on in which no older access reads or writes.
-  [[nodiscard]] DramCycle free_slot(DramCycle cycle) const;
+  // The first cycle from `cycle` on in which a command of `length` keeps the bus from no older access.
+  [[nodiscard]] DramCycle free_slot(DramCycle cycle, DramCycle length) const;
   // Does the refreshes that are due up to `cycle`.
   void refresh(DramCycle cycle);
 
   DramTiming timing_;
   sim::Ticks period_;
+  sim::Ticks burst_time_;
   std::uint32_t ranks_;
   std::uint32_t burst_bytes_;
-  DramCycle shared_bus_;  // cycles for which a read or write keeps the bus from other commands: 1 or 0
+  DramCycle column_cycles_;    // that a read or write has its command bus
+  DramCycle activate_cycles_;  // that an activation has its bus
+  bool two_command_buses_;
   bool close_;
   DramDevice device_;
   DramStatistics statistics_;

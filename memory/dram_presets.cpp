@@ -85,9 +85,9 @@ DramConfig ddr5_4800() {
   return config;
 }
 
-// HBM2_2000, 8 Gb: JEDEC JESD235D. A channel here is a pseudo channel, 64 bits wide with bursts of 4; two of
-// them are a channel of the standard. Rows are opened and closed over a command bus of their own, on which an
-// activation takes two cycles.
+// HBM2_2000, 8 Gb: JEDEC JESD235D. The ranks are the two pseudo channels of a channel, 64 bits wide with
+// bursts of
+// 4. Rows are opened and closed over a command bus of their own, on which an activation takes two cycles.
 DramConfig hbm2_2000() {
   DramConfig config;
   config.period = 1000;
@@ -113,7 +113,8 @@ DramConfig hbm2_2000() {
                    .rank_gap = 2,
                    .refi = 3900,
                    .rfc = 350};
-  config.channels = 2;
+  config.ranks = 2;
+  config.pseudo_channels = true;
   config.bank_groups = 4;
   config.banks = 4;
   config.rows = 65536;

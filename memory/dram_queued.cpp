@@ -9,11 +9,14 @@ namespace marti::memory {
 DramQueued::DramQueued(const DramConfig& config)
     : timing_(config.timing),
       period_(config.period),
+      burst_time_(config.burst_time()),
       ranks_(config.ranks),
       burst_bytes_(config.burst_bytes),
       queue_(config.queue),
       cap_(config.reorder_cap),
       two_command_buses_(config.two_command_buses),
+      activate_cycles_(config.activate_cycles),
+      column_cycles_(config.column_cycles),
       close_(config.page == DramPage::closed),
       device_(config),
       refresh_due_(config.timing.refi > 0 ? config.timing.refi : never) {}
@@ -178,10 +181,14 @@ std::optional<DramDone> DramQueued::step() {
 }
 
 void DramQueued::use_slot(const Pick& pick) {
+  const bool column = is_column(pick.command);
+  const DramCycle free = pick.cycle + (column                                  ? column_cycles_
+                                       : pick.command == DramCommand::activate ? activate_cycles_
+                                                                               : 1);
   if (!two_command_buses_) {
-    next_column_ = next_row_ = pick.cycle + 1;
+    next_column_ = next_row_ = free;
   } else {
-    (is_column(pick.command) ? next_column_ : next_row_) = pick.cycle + 1;
+    (column ? next_column_ : next_row_) = free;
   }
 }
 
@@ -230,7 +237,7 @@ std::optional<DramDone> DramQueued::issue(std::vector<Burst>& from, const Pick& 
   }
   ++(leaving.write ? statistics_.write_bursts : statistics_.read_bursts);
   statistics_.bytes += burst_bytes_;
-  statistics_.data_busy += period_ * timing_.bl;
+  statistics_.data_busy = sim::add_ticks(statistics_.data_busy, burst_time_);
   Access& access = accesses_[leaving.access];
   access.service.end = std::max(access.service.end, device_.end_of_data(pick.command, pick.cycle));
   if (--access.left > 0) {

@@ -102,11 +102,14 @@ class DramQueued {
 
   DramTiming timing_;
   sim::Ticks period_;
+  sim::Ticks burst_time_;
   std::uint32_t ranks_;
   std::uint32_t burst_bytes_;
   std::size_t queue_;
   std::int64_t cap_;
   bool two_command_buses_;
+  DramCycle activate_cycles_;
+  DramCycle column_cycles_;
   bool close_;
   DramDevice device_;
   DramStatistics statistics_;

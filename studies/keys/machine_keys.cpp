@@ -16,6 +16,7 @@
 #include "studies/keys/cache_detail_keys.h"
 #include "studies/keys/combination_keys.h"
 #include "studies/keys/context_keys.h"
+#include "studies/keys/dram_keys.h"
 #include "studies/keys/energy_keys.h"
 #include "studies/keys/flow_keys.h"
 #include "studies/keys/key_parts.h"
@@ -156,6 +157,7 @@ void declare_interconnect(Schema& schema) {
   cycles(schema, "interconnect.latency_cycles", 10,
          "ideal: cycles of a whole read or write; crossbar: cycles one way");
   schema.section("memory", "the banks of a cluster's shared memory");
+  declare_memory_model(schema);
   schema.integer("memory.banks", 4, {1, 65536}, "", "number of banks");
   schema.size("memory.interleave", "0 B", {"0 B", "1 GiB"},
               "bytes in a row that share a bank, a power of two, and without a cache the most that one "
@@ -163,6 +165,7 @@ void declare_interconnect(Schema& schema) {
   clock(schema, "memory.clock", "clock of the banks");
   cycles(schema, "memory.access_cycles", 4, "cycles from the start of an access to its data");
   cycles(schema, "memory.busy_cycles", 6, "cycles from the start of an access to the next");
+  declare_dram_keys(schema);
 }
 
 void declare_host(Schema& schema) {
@@ -306,6 +309,7 @@ void read_interconnect(sim::Config& config, processors::MachineConfig& machine) 
         "a distributed database is in the nodes' own memories ([local]) and reached over [network]";
     config.mark_unused_reason("interconnect", reason, "database.placement");
     config.mark_unused_reason("memory", reason, "database.placement");
+    config.mark_unused_reason("dram", reason, "database.placement");
     return;
   }
   interconnect.kind = config.choice_as<memory::InterconnectKind>("interconnect.kind");
@@ -322,17 +326,19 @@ void read_interconnect(sim::Config& config, processors::MachineConfig& machine) 
   if (!ideal) {
     interconnect.width = static_cast<std::uint32_t>(config.size("interconnect.width"));
     interconnect.cycles_per_beat = config.integer("interconnect.cycles_per_beat");
-    machine.banks.count = count(config, "memory.banks");
-    machine.banks.clock = clock(config, "memory.clock");
-    machine.banks.access_cycles = config.integer("memory.access_cycles");
-    machine.banks.busy_cycles = config.integer("memory.busy_cycles");
-    if (config.size("memory.interleave") != 0) {
+    read_memory(config, machine);
+    // Banks of DRAM are mapped by dram.mapping, so there it only says what one reference reads.
+    const bool cached = machine.cache.organisation != processors::CacheOrganisation::none;
+    if ((!machine.banks.dram || !cached) && config.size("memory.interleave") != 0) {
       machine.banks.interleave = power_of_two(config, "memory.interleave");
     }
   }
   const std::string kind = "with interconnect.kind = \"" + config.choice_name("interconnect.kind") + "\"";
   config.mark_unused_reason("interconnect", "it has no effect " + kind, "interconnect.kind");
-  config.mark_unused_reason("memory", "there are no banks " + kind, "interconnect.kind");
+  if (ideal) {
+    config.mark_unused_reason("memory", "there are no banks " + kind, "interconnect.kind");
+    config.mark_unused_reason("dram", "there are no banks " + kind, "interconnect.kind");
+  }
 }
 
 // Messages are sent where rays move from node to node, and for a distributed database.

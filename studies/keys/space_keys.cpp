@@ -52,7 +52,7 @@ void read_space(sim::Config& config, processors::MachineConfig& machine) {
                             "space.policy");
   const std::string own =
       "with machine.scheme = \"space\" each node holds its part in its own memory (local)";
-  for (const std::string_view key : {"database", "interconnect", "memory"}) {
+  for (const std::string_view key : {"database", "interconnect", "memory", "dram"}) {
     config.mark_unused_reason(key, own, "machine.scheme");
   }
 }

@@ -48,8 +48,9 @@ inline std::vector<StreamAccess> make_stream(const DramConfig& config, const Str
   const DramMapping mapping(config);
   SplitMix addresses(12345);
   SplitMix times(67890);
-  const double lines_per_cycle = static_cast<double>(config.channels) * config.burst_bytes /
-                                 (static_cast<double>(config.timing.bl) * stream.line);
+  const std::uint32_t buses = config.channels * (config.pseudo_channels ? config.ranks : 1);
+  const double lines_per_cycle =
+      static_cast<double>(buses) * config.burst_bytes / (static_cast<double>(config.timing.bl) * stream.line);
   DramCycle now = stream.load > 0.0 ? -1 : 0;
   std::vector<StreamAccess> accesses;
   for (std::size_t i = 0; i < stream.count; ++i) {

@@ -63,6 +63,16 @@ DramConfig random_config(Random& random) {
   config.row_bytes = 256;
   config.burst_bytes = 64;
   config.two_command_buses = random.pick(0, 3) == 0;
+  config.pseudo_channels = random.pick(0, 3) == 0;
+  config.activate_cycles = random.pick(1, 2);
+  config.column_cycles = random.pick(1, 2);
+  if (config.column_cycles > 1) {
+    // A read may take the bus for as long as its data, no longer.
+    config.timing.bl = std::max<std::int64_t>(config.timing.bl, 2);
+    config.timing.ccd_s = std::max(config.timing.ccd_s, config.timing.bl);
+    config.timing.ccd_l = std::max(config.timing.ccd_l, config.timing.ccd_s);
+    config.timing.ccd_l_write = std::max(config.timing.ccd_l_write, config.timing.ccd_l);
+  }
   config.policy = random.pick(0, 1) == 0 ? DramPolicy::fcfs : DramPolicy::frfcfs;
   config.page = random.pick(0, 1) == 0 ? DramPage::open : DramPage::closed;
   config.queue = static_cast<std::uint32_t>(random.pick(1, 12));
@@ -120,7 +130,7 @@ TEST(Dram, CountsEveryBurstOnce) {
     EXPECT_EQ(counts.read_bursts + counts.write_bursts, all);
     EXPECT_EQ(counts.row_hits + counts.row_misses + counts.row_conflicts, all);
     EXPECT_EQ(counts.bytes, all * config.burst_bytes);
-    EXPECT_EQ(counts.data_busy, all * config.timing.bl * config.period);
+    EXPECT_EQ(counts.data_busy, all * config.burst_time());
     // Little's law as an identity: the time in the queue is what is left of the time until the last data.
     sim::Ticks queued = 0;
     DramCycle last = 0;

@@ -32,7 +32,6 @@ class NaiveDram {
           refreshes_.push_back(rank);
         }
       }
-      column_used_ = row_used_ = false;
       left -= config_.policy == DramPolicy::fcfs ? serve_in_order() : serve_queued();
       move_in();
     }
@@ -102,13 +101,14 @@ class NaiveDram {
     }
     // Data of two ranks.
     const DramCycle end = (a.kind == rd ? t_.cl : t_.cwl) + t_.bl + t_.rank_gap;
-    at_least(!same_rank && (a.kind == rd || a.kind == wr) && to_data, end - (b == rd ? t_.cl : t_.cwl));
+    at_least(!config_.pseudo_channels && !same_rank && (a.kind == rd || a.kind == wr) && to_data,
+             end - (b == rd ? t_.cl : t_.cwl));
     return least;
   }
 
   [[nodiscard]] bool allowed(Kind kind, const DramPlace& place) const {
     const bool column = kind == rd || kind == wr;
-    if ((column ? column_used_ : row_used_) || (!config_.two_command_buses && (column_used_ || row_used_))) {
+    if (cycle_ < (column ? column_free_ : row_free_)) {
       return false;
     }
     int activations = 0;
@@ -127,7 +127,16 @@ class NaiveDram {
 
   void issue(Kind kind, const DramPlace& place, bool close = false) {
     history_.push_back({kind, place, cycle_, close});
-    (kind == rd || kind == wr ? column_used_ : row_used_) = true;
+    const bool column = kind == rd || kind == wr;
+    const DramCycle free = cycle_ + (column        ? config_.column_cycles
+                                     : kind == act ? config_.activate_cycles
+                                                   : 1);
+    if (column || !config_.two_command_buses) {
+      column_free_ = free;
+    }
+    if (!column || !config_.two_command_buses) {
+      row_free_ = free;
+    }
     if (kind == act) {
       open_[place.bank] = place.row;
     } else if (kind == pre || close) {
@@ -201,6 +210,17 @@ class NaiveDram {
     // The oldest that has not opened its row.
     const auto closed = std::find_if(bursts_.begin(), bursts_.end(),
                                      [&](const Burst& b) { return waits(b) && b.state != Burst::active; });
+    // A command that takes several cycles must leave the bus to the data of older accesses in time.
+    for (DramCycle ahead = 1; ahead < config_.activate_cycles && !config_.two_command_buses; ++ahead) {
+      const auto first = std::find_if(bursts_.begin(), bursts_.end(), waits);
+      cycle_ += ahead;
+      const bool due = closed != bursts_.end() && next_of(*closed) == act && first->state == Burst::active &&
+                       allowed(next_of(*first), first->place);
+      cycle_ -= ahead;
+      if (due) {
+        return ended;
+      }
+    }
     if (closed == bursts_.end() || next_of(*closed) == rd || next_of(*closed) == wr ||
         !allowed(next_of(*closed), closed->place)) {
       return ended;
@@ -298,8 +318,8 @@ class NaiveDram {
   std::vector<Issued> history_;
   std::vector<std::uint32_t> refreshes_;
   DramCycle cycle_ = 0;
-  bool column_used_ = false;
-  bool row_used_ = false;
+  DramCycle column_free_ = 0;
+  DramCycle row_free_ = 0;
   bool writing_ = false;
 };
 
