@@ -11,7 +11,9 @@ DramInOrder::DramInOrder(const DramConfig& config)
       burst_time_(config.burst_time()),
       ranks_(config.ranks),
       burst_bytes_(config.burst_bytes),
-      column_cycles_(config.column_cycles),activate_cycles_(config.activate_cycles),two_command_buses_(config.two_command_buses),
+      column_cycles_(config.column_cycles),
+      activate_cycles_(config.activate_cycles),
+      two_command_buses_(config.two_command_buses),
       close_(config.page == DramPage::closed),
       device_(config),
       refresh_due_(config.timing.refi > 0 ? config.timing.refi : std::numeric_limits<DramCycle>::max()) {}
@@ -42,7 +44,9 @@ DramInOrder::Issued DramInOrder::burst(const DramRequest& request, bool last) {
     const DramCommand command = device_.next_command(request.place, request.write);
     const bool column = command == DramCommand::read || command == DramCommand::write;
     DramCycle cycle = std::max(from, device_.earliest(command, request.place));
-    const DramCycle length = command == DramCommand::activate ? activate_cycles_ : column ? column_cycles_ : 1;
+    const DramCycle length = command == DramCommand::activate ? activate_cycles_
+                             : column                         ? column_cycles_
+                                                              : 1;
     cycle = column ? std::max(cycle, last_column_ + length) : free_slot(cycle, length);
     if (cycle >= refresh_due_ && !opened) {
       const DramCycle due = refresh_due_;
