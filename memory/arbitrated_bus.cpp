@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "memory/late_dram.h"
+
 namespace marti::memory {
 
 using sim::add_ticks;

@@ -2,6 +2,7 @@
 
 #include <bit>
 
+#include "memory/dram.h"
 #include "sim/error.h"
 
 namespace marti::memory {
@@ -22,11 +23,19 @@ Banks::Banks(const BankConfig& config)
     cache_.emplace(*config.cache);
   }
   if (config.dram) {
-    channels_.emplace(*config.dram);
+    channels_ = std::make_unique<DramMapping>(*config.dram);
   }
   if (config.dram && config.dram->policy == DramPolicy::fcfs) {
-    dram_.emplace(*config.dram);
+    dram_ = std::make_unique<Dram>(*config.dram);
   }
+}
+
+Banks::~Banks() = default;
+
+std::uint32_t Banks::channel_of(Address address) const { return channels_->channel(address); }
+
+std::vector<DramStatistics> Banks::dram_statistics() const {
+  return dram_ ? dram_->statistics() : std::vector<DramStatistics>();
 }
 
 BankAccess Banks::read_otherwise(Address address, std::uint32_t bytes, sim::Ticks arrival) {

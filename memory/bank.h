@@ -4,16 +4,21 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "memory/dram.h"
+#include "memory/dram_config.h"
+#include "memory/dram_statistics.h"
 #include "memory/record_kind.h"
 #include "memory/shared_cache.h"
 #include "memory/wait_statistics.h"
 #include "sim/time.h"
 
 namespace marti::memory {
+
+class Dram;
+class DramMapping;
 
 /// Without `dram`: `access_cycles` pass from the start of an access until its data are there; the bank can
 /// start the next one `busy_cycles` after the start of the last.
@@ -58,10 +63,15 @@ struct BankAccess {
 class Banks {
  public:
   explicit Banks(const BankConfig& config);
+  Banks(const Banks&) = delete;
+  Banks& operator=(const Banks&) = delete;
+  Banks(Banks&&) = delete;
+  Banks& operator=(Banks&&) = delete;
+  ~Banks();
 
   [[nodiscard]] std::uint32_t bank_of(Address address) const {
     if (channels_) {
-      return channels_->channel(address);
+      return channel_of(address);
     }
     const Address unit = address >> interleave_shift_;
     return static_cast<std::uint32_t>((count_ & (count_ - 1)) == 0 ? unit & (count_ - 1) : unit % count_);
@@ -89,15 +99,14 @@ class Banks {
   [[nodiscard]] std::uint32_t count() const { return count_; }
   [[nodiscard]] const std::vector<BankStatistics>& statistics() const { return statistics_; }
   /// Of each channel of a DRAM memory; empty if it is none.
-  [[nodiscard]] std::vector<DramStatistics> dram_statistics() const {
-    return dram_ ? dram_->statistics() : std::vector<DramStatistics>();
-  }
+  [[nodiscard]] std::vector<DramStatistics> dram_statistics() const;
   /// Statistics of the cache; null without a cache.
   [[nodiscard]] const SharedCacheStatistics* cache_statistics() const {
     return cache_ ? &cache_->statistics() : nullptr;
   }
 
  private:
+  [[nodiscard]] std::uint32_t channel_of(Address address) const;
   BankAccess read_otherwise(Address address, std::uint32_t bytes, sim::Ticks arrival);
   BankAccess access_dram(Address address, std::uint32_t bytes, bool write, sim::Ticks arrival);
 
@@ -108,8 +117,8 @@ class Banks {
   std::vector<sim::Ticks> free_at_;
   std::vector<BankStatistics> statistics_;
   std::optional<SharedCache> cache_;
-  std::optional<DramMapping> channels_;  // where the banks are DRAM channels
-  std::optional<Dram> dram_;             // where these serve first come, first served
+  std::unique_ptr<DramMapping> channels_;  // where the banks are DRAM channels
+  std::unique_ptr<Dram> dram_;             // where these serve first come, first served
   std::optional<DramConfig> dram_config_;
   bool fixed_only_;  // neither a cache nor DRAM
 };

@@ -1,5 +1,7 @@
 #include "memory/bus.h"
 
+#include "memory/late_dram.h"
+
 namespace marti::memory {
 
 Bus::Bus(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site)

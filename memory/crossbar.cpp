@@ -1,5 +1,7 @@
 #include "memory/crossbar.h"
 
+#include "memory/late_dram.h"
+
 namespace marti::memory {
 
 using sim::add_ticks;

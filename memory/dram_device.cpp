@@ -13,6 +13,8 @@ constexpr DramCycle long_ago = std::numeric_limits<DramCycle>::min() / 4;
 
 DramDevice::DramDevice(const DramConfig& config)
     : timing_(config.timing_of_commands()),
+      settling_(std::max({timing_.rc, timing_.ras + timing_.rp, timing_.rtp + timing_.rp, timing_.rfc,
+                          timing_.cwl + timing_.bl + timing_.wr + timing_.rp})),
       one_data_bus_(!config.pseudo_channels),
       banks_of_rank_(config.banks_of_rank()),
       banks_(std::size_t{config.ranks} * config.banks_of_rank()),
@@ -124,6 +126,15 @@ DramCycle DramDevice::earliest_refresh(std::uint32_t rank) const {
     raise(cycle, of(banks_[i].next, DramCommand::activate));
   }
   return cycle;
+}
+
+DramCycle DramDevice::refresh_idle(std::uint32_t rank, DramCycle cycle, bool closed) {
+  const DramCycle start = closed || !has_open_row(rank) ? cycle : cycle + timing_.rp;
+  for (std::uint32_t i = rank * banks_of_rank_; i < (rank + 1) * banks_of_rank_; ++i) {
+    banks_[i].row = no_row;
+    of(banks_[i].next, DramCommand::activate) = start + timing_.rfc;
+  }
+  return start;
 }
 
 void DramDevice::refresh(std::uint32_t rank, DramCycle cycle) {

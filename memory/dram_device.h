@@ -47,6 +47,11 @@ class DramDevice {
   /// When a rank without open rows may be refreshed.
   [[nodiscard]] DramCycle earliest_refresh(std::uint32_t rank) const;
   void refresh(std::uint32_t rank, DramCycle cycle);
+  /// Closes the rows of a rank, all of whose commands are allowed at `cycle`, and refreshes it: at once if no
+  /// row was open or `closed`. Returns the cycle of the refresh.
+  DramCycle refresh_idle(std::uint32_t rank, DramCycle cycle, bool closed);
+  /// After so many cycles without another command each bank may be precharged, activated and refreshed.
+  [[nodiscard]] DramCycle settling() const { return settling_; }
 
   /// The cycle after the last data of a column command that is issued at `cycle`.
   [[nodiscard]] DramCycle end_of_data(DramCommand command, DramCycle cycle) const {
@@ -75,6 +80,7 @@ class DramDevice {
   void issue_column(DramCommand command, const DramPlace& place, DramCycle cycle);
 
   DramTiming timing_;
+  DramCycle settling_;
   bool one_data_bus_;
   std::uint32_t banks_of_rank_;
   std::vector<Bank> banks_;

@@ -96,26 +96,29 @@ DramCycle DramInOrder::free_slot(DramCycle cycle, DramCycle length) const {
 }
 
 void DramInOrder::refresh(DramCycle cycle) {
+  // While nothing is asked for, each refresh begins when it is due: only the last one matters.
+  const std::int64_t more = (cycle - refresh_due_) / timing_.refi;
+  const DramCycle last = refresh_due_ + more * timing_.refi;
+  const bool idle = last >= std::max(last_column_, last_refresh_) + device_.settling();
   DramCycle end = std::max(last_column_ + (two_command_buses_ ? 0 : column_cycles_), prepared_);
   for (std::uint32_t rank = 0; rank < ranks_; ++rank) {
-    DramCycle start = std::max(refresh_due_, end);
-    if (device_.has_open_row(rank)) {
-      start = std::max(start, device_.earliest_precharge_all(rank));
-      device_.precharge_all(rank, start);
+    if (idle) {
+      last_refresh_ = device_.refresh_idle(rank, std::max(last, end), more > 0);
+    } else {
+      DramCycle start = std::max(refresh_due_, end);
+      if (device_.has_open_row(rank)) {
+        start = std::max(start, device_.earliest_precharge_all(rank));
+        device_.precharge_all(rank, start);
+      }
+      last_refresh_ = std::max(start, device_.earliest_refresh(rank));
+      device_.refresh(rank, last_refresh_);
     }
-    start = std::max(start, device_.earliest_refresh(rank));
-    device_.refresh(rank, start);
-    end = start + 1;
+    end = last_refresh_ + 1;
   }
-  statistics_.refreshes += ranks_;
   prepared_ = end;
-  refresh_due_ += timing_.refi;
-  // While nothing is asked for, each further refresh begins when it is due: only the last one matters.
-  const std::int64_t skipped = (cycle - refresh_due_) / timing_.refi;
-  if (cycle > refresh_due_ && skipped > 0) {
-    statistics_.refreshes += skipped * ranks_;
-    refresh_due_ += skipped * timing_.refi;
-  }
+  const std::int64_t done = idle ? more + 1 : 1;
+  statistics_.refreshes += done * ranks_;
+  refresh_due_ += done * timing_.refi;
 }
 
 }  // namespace marti::memory

@@ -67,6 +67,7 @@ class DramInOrder {
   DramCycle prepared_ = 0;      // from when on the next access may close and open rows
   DramCycle last_column_ = -1;  // cycle of the last read or write
   DramCycle refresh_due_;
+  DramCycle last_refresh_ = 0;
   std::deque<DramCycle> columns_;  // cycles of reads and writes from `prepared_` on
 };
 

@@ -255,6 +255,7 @@ void DramQueued::issue_refresh(const Pick& pick) {
     return;
   }
   device_.refresh(refresh_rank_, pick.cycle);
+  last_refresh_ = pick.cycle;
   ++statistics_.refreshes;
   if (++refresh_rank_ == ranks_) {
     stall_begin_ = refresh_due_;
@@ -266,18 +267,28 @@ void DramQueued::issue_refresh(const Pick& pick) {
 
 void DramQueued::catch_up(DramCycle cycle) {
   while (refresh_due_ <= cycle) {
+    // While nothing is asked for, each refresh begins when it is due: only the last one matters.
+    const std::int64_t more = (cycle - refresh_due_) / timing_.refi;
+    const DramCycle last = refresh_due_ + more * timing_.refi;
+    const DramCycle before = std::max({now_, next_row_, last_refresh_});
+    if (more > 0 && refresh_rank_ == 0 && last >= before + device_.settling()) {
+      for (std::uint32_t rank = 0; rank < ranks_; ++rank) {
+        last_refresh_ = device_.refresh_idle(rank, last + rank, true);
+      }
+      next_row_ = last_refresh_ + 1;
+      next_column_ = two_command_buses_ ? next_column_ : next_row_;
+      statistics_.refreshes += (more + 1) * ranks_;
+      stall_begin_ = last;
+      stall_end_ = last_refresh_ + timing_.rfc;
+      refresh_due_ = last + timing_.refi;
+      return;
+    }
     Pick refresh;
     pick_refresh(refresh);
     if (refresh.cycle > cycle) {
       return;
     }
     issue_refresh(refresh);
-    // All rows are closed now, so each further refresh begins when it is due: only the last one matters.
-    if (refresh_rank_ == 0 && refresh.kind == Kind::refresh && cycle > refresh_due_) {
-      const std::int64_t skipped = (cycle - refresh_due_) / timing_.refi;
-      statistics_.refreshes += skipped * ranks_;
-      refresh_due_ += skipped * timing_.refi;
-    }
   }
 }
 

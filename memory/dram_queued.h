@@ -127,6 +127,7 @@ class DramQueued {
   std::uint64_t entered_ = 0;
   bool writing_ = false;
   DramCycle refresh_due_;
+  DramCycle last_refresh_ = 0;
   std::uint32_t refresh_rank_ = 0;  // the rank that is refreshed next
   DramCycle stall_begin_ = never;   // of a refresh that no access has begun after
   DramCycle stall_end_ = 0;

@@ -14,7 +14,8 @@ LateDram::LateDram(const DramConfig& config, const InterconnectSite& site, sim::
       burst_bytes_(config.burst_bytes),
       burst_ticks_(config.burst_time()),
       channels_(config.channels, Channel(config)),
-      banks_(config.channels) {}
+      banks_(config.channels),
+      writes_(site.ports) {}
 
 void LateDram::ask(const Transaction& transaction, bool write, sim::Ticks arrival) {
   std::uint64_t place = asked_.size();

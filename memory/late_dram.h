@@ -13,6 +13,26 @@
 
 namespace marti::memory {
 
+/// The writes of ports that end in another order than they were made in.
+class WriteOrder {
+ public:
+  explicit WriteOrder(std::uint32_t ports) : ports_(ports) {}
+
+  /// A write of the port is made.
+  void made(std::uint32_t port, Address address) { ports_[port].push_back({address, not_done}); }
+  /// Its write to this address, the oldest one that is not done, is done at `done`; reports all writes that
+  /// are done and have no older one that is not.
+  void finish(std::uint32_t port, Address address, sim::Ticks done, InterconnectClient& client);
+
+ private:
+  static constexpr sim::Ticks not_done = -1;
+  struct Write {
+    Address address = 0;
+    sim::Ticks done = not_done;
+  };
+  std::vector<std::vector<Write>> ports_;  // oldest first; few: what a write buffer holds
+};
+
 /// An access that has got its last command.
 struct LateAccess {
   Transaction transaction;
@@ -42,6 +62,7 @@ class LateDram {
   }
 
   [[nodiscard]] std::vector<DramStatistics> statistics() const;
+  [[nodiscard]] WriteOrder& writes() { return writes_; }
   /// Of each channel, as those of banks.
   [[nodiscard]] const std::vector<BankStatistics>& bank_statistics() const { return banks_; }
 
@@ -78,28 +99,9 @@ class LateDram {
   sim::Ticks burst_ticks_;
   std::vector<Channel> channels_;
   std::vector<BankStatistics> banks_;
+  WriteOrder writes_;
   std::vector<Asked> asked_;
   std::vector<std::uint64_t> unused_;  // places in asked_
-};
-
-/// The writes of ports that end in another order than they were made in.
-class WriteOrder {
- public:
-  explicit WriteOrder(std::uint32_t ports) : ports_(ports) {}
-
-  /// A write of the port is made.
-  void made(std::uint32_t port, Address address) { ports_[port].push_back({address, not_done}); }
-  /// Its write to this address, the oldest one that is not done, is done at `done`; reports all writes that
-  /// are done and have no older one that is not.
-  void finish(std::uint32_t port, Address address, sim::Ticks done, InterconnectClient& client);
-
- private:
-  static constexpr sim::Ticks not_done = -1;
-  struct Write {
-    Address address = 0;
-    sim::Ticks done = not_done;
-  };
-  std::vector<std::vector<Write>> ports_;  // oldest first; few: what a write buffer holds
 };
 
 }  // namespace marti::memory

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "memory/bank.h"
+#include "memory/dram.h"
 #include "memory/interconnect.h"
 #include "processors/path/path_pieces.h"
 
