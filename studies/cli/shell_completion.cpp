@@ -15,6 +15,7 @@
 namespace marti::studies {
 
 std::string_view bash_completion();
+std::string_view fish_completion();
 std::string_view zsh_completion();
 
 namespace {
@@ -69,8 +70,12 @@ void add_values(std::string_view type, const sim::Schema& schema, std::string_vi
       candidates.add(members.substr(0, comma));
       members = comma == std::string_view::npos ? std::string_view() : members.substr(comma + 1);
     }
-  } else if (type == "KEY=VALUE") {
+  } else if (type == "KEY=VALUE" || type == "KEY=VALUES") {
     add_assignments(schema, begun, candidates);
+  } else if (type == "KEY") {
+    for (const sim::Key& key : schema.keys()) {
+      candidates.add(key.name);
+    }
   } else if (type == "SCENE") {
     for (const scenes::ProceduralScene& scene : scenes::procedural_scenes()) {
       candidates.add(std::string(scene.name) + ":" + std::to_string(scene.default_size));
@@ -134,6 +139,9 @@ Place place_after(const CLI::App& app, std::span<const std::string> words) {
 std::string_view completion_script(std::string_view shell) {
   if (shell == "bash") {
     return bash_completion();
+  }
+  if (shell == "fish") {
+    return fish_completion();
   }
   return shell == "zsh" ? zsh_completion() : std::string_view();
 }

@@ -50,7 +50,11 @@ TEST_P(FirstHour, TheAnswerNamesTheRemedy) {
 INSTANTIATE_TEST_SUITE_P(
     Mistakes, FirstHour,
     testing::Values(
-        Mistake{"NoCommand", "", {"which command?", "run, study, sweep"}},
+        Mistake{"HelpOnNoCommand", "help rnu", {"no command \"rnu\"", "did you mean \"run\""}},
+        Mistake{"WrongKeyOfConfig", "config machine.node", {"no key", "did you mean \"machine.nodes\""}},
+        Mistake{"WrongAxis",
+                "sweep configs/marti.toml --axis machine.node=1,2",
+                {"did you mean \"machine.nodes\""}},
         Mistake{"WrongCommand", "rnu configs/marti.toml", {"no command \"rnu\"", "did you mean \"run\""}},
         Mistake{"NoRun", "configs/marti.toml", {"marti run configs/marti.toml"}},
         Mistake{"NoConfiguration", "run", {"run: CONFIG is missing", "configs/marti.toml"}},
