@@ -16,7 +16,7 @@ namespace {
 
 using testing::GltfFile;
 
-std::string refusal(const std::filesystem::path& path, const GltfOptions& options = {},
+std::string refusal(const std::filesystem::path& path, const FileOptions& options = {},
                     const ImageDecoder& decode = {}) {
   return test::user_error_of([&] { static_cast<void>(load_gltf(path, options, decode)); });
 }
@@ -83,7 +83,7 @@ TEST_F(GltfFolder, FilesBeyondTheMemoryAreNotRead) {
   file.json["buffers"] = {{{"byteLength", std::uint64_t{1} << 31U}, {"uri", "sparse.bin"}}};
   testing::write_bytes(folder() / "sparse.bin", "");
   std::filesystem::resize_file(folder() / "sparse.bin", std::uintmax_t{1} << 31U);
-  GltfOptions options;
+  FileOptions options;
   options.memory = sim::MemoryBudget(std::uint64_t{1} << 20U);
   const std::string message = refusal(file.write_gltf(folder(), "scene.gltf"), options);
   EXPECT_TRUE(says(message, "sparse.bin")) << message;
@@ -194,7 +194,7 @@ TEST(GltfImages, TexelsAreCountedBeforeTheyAreDecoded) {
     ADD_FAILURE() << "an image that is too large is decoded";
     return {};
   };
-  GltfOptions options;
+  FileOptions options;
   options.size_first = [](std::span<const std::byte> /*file*/, std::string_view /*name*/) {
     return ImageSize{16384, 16384};
   };
@@ -221,7 +221,7 @@ TEST(GltfInstances, AreCountedBeforeTheyAreExpanded) {
   EXPECT_EQ(scene.triangles.size(), 2U * nodes);
   const std::uint64_t takes = host_bytes(scene);
   EXPECT_GT(takes, 2U * nodes * sizeof(Triangle));
-  GltfOptions options;
+  FileOptions options;
   options.memory = sim::MemoryBudget(takes);
   EXPECT_TRUE(says(refusal(path, options), "memory_limit")) << "its JSON takes more";
   options.memory = sim::MemoryBudget(20 * takes);

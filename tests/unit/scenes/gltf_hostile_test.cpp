@@ -316,11 +316,11 @@ TEST(Hostile, LimitsHold) {
     file.json["scenes"][0]["nodes"].push_back(i);
   }
   const auto path = file.write_glb(directory.path(), "many.glb");
-  const auto message = [&](const GltfOptions& options) {
+  const auto message = [&](const FileOptions& options) {
     return test::user_error_of([&] { static_cast<void>(load_gltf(path, options, {})); });
   };
   EXPECT_EQ(load_gltf(path, {}, {}).triangles.size(), 100U);
-  GltfOptions options;
+  FileOptions options;
   options.max_triangles = 200;
   EXPECT_EQ(message(options), "no UserError") << "100 triangles and 200 vertices are just accepted";
   options.max_triangles = 199;
