@@ -8,9 +8,11 @@
 #include <sstream>
 #include <utility>
 
+#include "scenes/gltf_draco.h"
 #include "scenes/gltf_extensions.h"
 #include "scenes/gltf_files.h"
-#include "scenes/gltf_index_views.h"
+#include "scenes/gltf_meshopt.h"
+#include "scenes/gltf_placeholders.h"
 #include "sim/error.h"
 #include "sim/shown.h"
 
@@ -203,13 +205,14 @@ void Model::parse() {
   FileAccess access(path().parent_path(), options().max_file_bytes, memory(), "URI");
   std::string error;
   bool parsed = parse_with(file, access, error);
-  if (!parsed && error.find("] invalid bufferView") != std::string::npos) {
-    if (IndexViews given = given_index_views(json); !given.accessors.empty()) {
+  if (!parsed && (error.find("] invalid bufferView") != std::string::npos ||
+                  json.find("meshopt_compression") != std::string_view::npos)) {
+    if (Placeholders given = with_placeholders(json); !given.json.empty()) {
       memory() = before;
       data_ = {};
       error.clear();
       parsed = parse_with(binary ? with_json(file, std::move(given.json)) : given.json, access, error);
-      take_index_views(given, data_);
+      remove_placeholders(given, data_);
     }
   }
   if (!access.refusal().empty()) {
@@ -217,7 +220,7 @@ void Model::parse() {
   }
   // tinygltf reads the names of the extensions before it fails on data that need one of them.
   if (const std::string extension = missing_requirement(data_); !extension.empty()) {
-    fail("it requires the extension " + double_quoted(extension) + ", which is not supported");
+    fail("it requires the extension " + double_quoted(extension) + ", " + why_unsupported(extension));
   }
   // Some faults are only reported by a message: for example, a primitive that cannot be parsed is dropped.
   const std::string faults = true_faults(error);
@@ -227,6 +230,8 @@ void Model::parse() {
          (ignored.empty() ? "" : " (it uses extensions that are not supported: " + ignored + ")"));
   }
   read_ = std::vector<std::atomic<bool>>(data_.accessors.size());
+  decompress_views(*this, data_);
+  decompress_primitives(*this, data_);
 }
 
 void Model::fail_reference(const char* kind, int index, std::size_t size, const std::string& user) const {
@@ -239,7 +244,7 @@ std::span<const std::byte> Model::view_bytes(int view, const std::string& user) 
   const std::string name = "buffer view " + std::to_string(view);
   const tinygltf::Buffer& buffer = at(data_.buffers, v.buffer, "buffer", name);
   if (const std::string extension = compression_of_view(data_, view); !extension.empty()) {
-    fail(name + " is compressed by the extension " + extension + ", which is not supported");
+    fail(name + " is compressed by the extension " + extension + ", " + why_unsupported(extension));
   }
   const std::uint64_t size = buffer.data.size();
   if (v.byteOffset > size || v.byteLength > size - v.byteOffset) {

@@ -91,13 +91,6 @@ TEST_F(GltfFolder, FilesBeyondTheMemoryAreNotRead) {
   EXPECT_TRUE(says(message, "more than 1 MiB")) << message;
 }
 
-TEST(GltfCompressed, IsRefusedByTheNameOfItsExtension) {
-  const std::filesystem::path files = MARTI_COMPRESSED_SCENES;
-  EXPECT_TRUE(says(refusal(files / "meshopt.glb"), "requires the extension \"EXT_meshopt_compression\""));
-  EXPECT_TRUE(says(refusal(files / "draco.glb"), "requires the extension \"KHR_draco_mesh_compression\""));
-  EXPECT_TRUE(says(refusal(files / "draco_not_required.glb"), "by the extension KHR_draco_mesh_compression"));
-}
-
 TEST(GltfCompressed, IsReadWhereItsDataAreThereUncompressed) {
   const std::filesystem::path files = MARTI_COMPRESSED_SCENES;
   const Scene quantized = load_gltf(files / "quantized.glb", {}, {});
@@ -109,17 +102,6 @@ TEST(GltfCompressed, IsReadWhereItsDataAreThereUncompressed) {
   EXPECT_EQ(a.hi, b.hi);
   EXPECT_NEAR(a.hi.x, 1.0, 1e-4);
   EXPECT_NEAR(a.hi.z, 0.0625, 1e-4);
-}
-
-// The file does not say that the extension is required, and has data that could be taken for uncompressed.
-TEST(GltfCompressed, ViewsOfBytesThatAreNotThereAreRefused) {
-  const test::TemporaryDirectory directory;
-  GltfFile file = GltfFile::square();
-  file.json["extensionsUsed"] = {"EXT_meshopt_compression"};
-  file.json["buffers"] = {
-      {{"byteLength", file.bin.size()}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
-  const std::string message = refusal(file.write_glb(directory.path(), "a.glb"));
-  EXPECT_TRUE(says(message, "compressed by the extension EXT_meshopt_compression")) << message;
 }
 
 // A sparse accessor puts right indices that are all zeros, or some that are wrong.
