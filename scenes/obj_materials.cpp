@@ -69,6 +69,12 @@ void ObjMaterials::add_library(const std::string& name, const TextLines& stateme
     return;
   }
   const std::string text = bytes_of(name, statement.place());
+  std::uint64_t most = 0;  // of its materials
+  for (std::size_t at = text.find("newmtl"); at != std::string::npos; at = text.find("newmtl", at + 1)) {
+    ++most;
+  }
+  // In both lists, with its places in the text and in the index of names.
+  file_.take_memory(most * (2 * sizeof(Known) + 512), "its materials take");
   for (MtlMaterial& material : read_mtl(text, sim::shown(access_.directory() + name), left_out_)) {
     const auto [known, is_new] = by_name_.try_emplace(material.name, known_.size());
     if (!is_new) {

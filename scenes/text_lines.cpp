@@ -40,7 +40,9 @@ std::string_view TextLines::take_line() {
 }
 
 void TextLines::split(std::string_view line) {
-  words_.clear();
+  if (line.size() > longest_line) {
+    fail("the line is longer than 1 MiB");
+  }
   content_ = line;
   for (std::size_t at = line.find_first_not_of(blanks); at < line.size();) {
     const std::size_t end = std::min(line.find_first_of(blanks, at), line.size());

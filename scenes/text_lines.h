@@ -20,6 +20,9 @@ class TextLines {
   /// The text must outlive this object. `name` is the file's in messages.
   TextLines(std::string_view text, std::string name, Style style);
 
+  /// The most bytes of a line, which bounds the memory for its words.
+  static constexpr std::size_t longest_line = std::size_t{1} << 20U;
+
   /// Goes to the next line that has words. False at the end of the text.
   [[nodiscard]] bool next();
 

@@ -158,6 +158,19 @@ TEST(ObjHostile, LimitsHold) {
   EXPECT_NE(folder.refusal("a.obj", many, tight).find("its geometry takes"), std::string::npos);
   tight.memory = sim::MemoryBudget(1000);
   EXPECT_NE(folder.refusal("a.obj", many, tight).find("it takes"), std::string::npos);
+  std::string materials;
+  for (int i = 0; i < 5000; ++i) {
+    materials += "newmtl " + std::to_string(i) + "\n";
+  }
+  folder.write("a.mtl", materials);
+  tight.memory = sim::MemoryBudget(2 * materials.size() + (1U << 20U));
+  EXPECT_NE(folder.refusal("a.obj", "mtllib a.mtl\n" + good + face, tight).find("its materials take"),
+            std::string::npos);
+  const std::string blank(std::size_t{1} << 20U, ' ');
+  EXPECT_EQ(folder.refusal("a.obj", good + "f" + blank + "1 2 3\n"),
+            "a.obj:7: the line is longer than 1 MiB");
+  EXPECT_EQ(folder.refusal("a.obj", good + face + "f" + blank.substr(10) + "1 2 \\\n" + blank + "3\n"),
+            "a.obj:8: the line is longer than 1 MiB");
   FileOptions small;
   small.max_file_bytes = 1000;
   EXPECT_EQ(folder.refusal("a.obj", many, small).rfind("a.obj", 0), 0U);
