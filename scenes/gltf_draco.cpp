@@ -11,17 +11,15 @@
 #include <utility>
 #include <vector>
 
+#include "scenes/file_access.h"
 #include "scenes/gltf_extensions.h"
 #include "scenes/gltf_material.h"
 #include "scenes/gltf_vertices.h"
 
 #ifdef MARTI_DRACO
-#include <draco/compression/config/decoder_options.h>
-#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
-#include <draco/compression/mesh/mesh_sequential_decoder.h>
-#include <draco/core/decoder_buffer.h>
-#include <draco/core/varint_decoding.h>
 #include <draco/mesh/mesh.h>
+
+#include "scenes/draco_mesh.h"
 #endif
 
 namespace marti::scenes::gltf {
@@ -29,75 +27,6 @@ namespace marti::scenes::gltf {
 #ifdef MARTI_DRACO
 
 namespace {
-
-/// What the glTF file says that the compressed data hold.
-struct Expected {
-  std::uint32_t faces = 0;
-  std::uint32_t points = 0;
-  std::uint64_t memory = 0;  ///< bytes that decompression may take
-};
-
-/// The oldest version of compressed data that the extension allows: 2.2.
-constexpr std::uint16_t oldest_version = DRACO_BITSTREAM_VERSION(2, 2);
-
-/// A decoder of Draco that stops where the data would take more than expected: the library itself allocates
-/// what they declare.
-template <class Decoder, bool vertices_first>
-class Limited : public Decoder {
- public:
-  explicit Limited(const Expected& expected) : expected_(expected) {}
-  [[nodiscard]] const std::string& refusal() const { return refusal_; }
-
- protected:
-  // The data begin with the number of faces, and that of points before or after it.
-  bool DecodeConnectivity() override {
-    draco::DecoderBuffer ahead = *this->buffer();
-    std::uint32_t first = 0;
-    std::uint32_t second = 0;
-    if (this->bitstream_version() < oldest_version) {
-      refusal_ = "are of a version before 2.2, which glTF does not allow";
-      return false;
-    }
-    if (!draco::DecodeVarint(&first, &ahead) || !draco::DecodeVarint(&second, &ahead)) {
-      return false;
-    }
-    const std::uint32_t faces = vertices_first ? second : first;
-    if (faces != expected_.faces) {
-      refusal_ = "have " + std::to_string(faces) + " triangles, but the accessor of its indices is for " +
-                 std::to_string(expected_.faces);
-      return false;
-    }
-    return Decoder::DecodeConnectivity();
-  }
-
-  // Called when the attributes are known and nothing is allocated for them.
-  bool DecodeAllAttributes() override {
-    const std::uint64_t points = this->point_cloud()->num_points();
-    if (points != expected_.points) {
-      refusal_ = "have " + std::to_string(points) + " vertices, but the accessors of its attributes have " +
-                 std::to_string(expected_.points);
-      return false;
-    }
-    std::uint64_t bytes = 0;
-    for (int i = 0; i < this->point_cloud()->num_attributes(); ++i) {
-      const draco::PointAttribute* const attribute = this->point_cloud()->attribute(i);
-      // The values, and the integers of 32 bits that are quantized ones; whatever stride is declared.
-      bytes += points *
-               (static_cast<std::uint64_t>(std::abs(attribute->byte_stride())) +
-                4U * static_cast<std::uint64_t>(static_cast<std::uint8_t>(attribute->num_components())) + 8U);
-    }
-    if (bytes > expected_.memory) {
-      refusal_ = "would take " + std::to_string(bytes) + " bytes, more than the " +
-                 std::to_string(expected_.memory) + " that are accepted for it";
-      return false;
-    }
-    return Decoder::DecodeAllAttributes();
-  }
-
- private:
-  Expected expected_;
-  std::string refusal_;
-};
 
 /// The component type of glTF for a type of Draco; 0 when there is none.
 int component_type(draco::DataType type) {
@@ -119,9 +48,10 @@ int component_type(draco::DataType type) {
   }
 }
 
-class Decompressor {
+class PrimitiveDecompressor {
  public:
-  Decompressor(const Model& model, tinygltf::Model& file, tinygltf::Primitive& primitive, std::string name)
+  PrimitiveDecompressor(const Model& model, tinygltf::Model& file, tinygltf::Primitive& primitive,
+                        std::string name)
       : model_(model), file_(file), primitive_(primitive), name_(std::move(name)) {}
 
   void run() {
@@ -135,9 +65,13 @@ class Decompressor {
       fail("name no attributes");
     }
     const tinygltf::Value& attributes = extension.Get("attributes");
-    const Expected expected = expect(attributes);
+    const DracoCounts expected = expect(attributes);
     model_.require_memory(expected.memory, "its compressed data take");
-    const std::unique_ptr<draco::Mesh> mesh = decode(bytes, expected);
+    std::string refusal;
+    const std::unique_ptr<draco::Mesh> mesh = decode_draco(bytes, expected, refusal);
+    if (mesh == nullptr) {
+      fail(refusal);
+    }
     store_indices(*mesh);
     for (const std::string& semantic : attributes.Keys()) {
       if (attribute(primitive_.attributes, semantic) >= 0) {
@@ -171,14 +105,14 @@ class Decompressor {
   }
 
   /// Checks the accessors and sums up what they declare.
-  [[nodiscard]] Expected expect(const tinygltf::Value& attributes) const {
+  [[nodiscard]] DracoCounts expect(const tinygltf::Value& attributes) const {
     const tinygltf::Accessor& indices = empty_accessor(primitive_.indices);
     const std::uint64_t most = model_.options().max_triangles;
     if (indices.count == 0 || indices.count % 3 != 0 || indices.count / 3 > most) {
       fail("are for " + std::to_string(indices.count) + " corners, which do not make 1 to " +
            std::to_string(most) + " triangles");
     }
-    Expected expected;
+    DracoCounts expected;
     expected.faces = static_cast<std::uint32_t>(indices.count / 3);
     std::optional<std::uint64_t> points;
     for (const std::string& semantic : attributes.Keys()) {
@@ -202,44 +136,6 @@ class Decompressor {
     expected.memory =
         *points * 64 * (attributes.Keys().size() + 1) + std::uint64_t{expected.faces} * 3 * 64 + (1U << 16U);
     return expected;
-  }
-
-  template <class Decoder>
-  void decode_with(Decoder decoder, draco::DecoderBuffer& buffer, draco::Mesh& mesh) const {
-    const draco::Status status = decoder.Decode(draco::DecoderOptions(), &buffer, &mesh);
-    if (!decoder.refusal().empty()) {
-      fail(decoder.refusal());
-    }
-    if (!status.ok()) {
-      fail("are damaged: " + double_quoted(status.error_msg_string()));
-    }
-  }
-
-  [[nodiscard]] std::unique_ptr<draco::Mesh> decode(std::span<const std::byte> bytes,
-                                                    const Expected& expected) const {
-    draco::DecoderBuffer buffer;
-    buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    draco::DecoderBuffer ahead = buffer;
-    draco::DracoHeader header{};
-    if (!draco::PointCloudDecoder::DecodeHeader(&ahead, &header).ok()) {
-      fail("do not begin as Draco's do");
-    }
-    if (header.encoder_type != draco::TRIANGULAR_MESH) {
-      fail("are no mesh");
-    }
-    auto mesh = std::make_unique<draco::Mesh>();
-    if (header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING) {
-      decode_with(Limited<draco::MeshSequentialDecoder, false>(expected), buffer, *mesh);
-    } else if (header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING) {
-      decode_with(Limited<draco::MeshEdgebreakerDecoder, true>(expected), buffer, *mesh);
-    } else {
-      fail("are encoded by an unknown method, " + std::to_string(header.encoder_method));
-    }
-    if (mesh->num_faces() != expected.faces || mesh->num_points() != expected.points) {
-      fail("are damaged: they have " + std::to_string(mesh->num_faces()) + " triangles and " +
-           std::to_string(mesh->num_points()) + " vertices");
-    }
-    return mesh;
   }
 
   /// Gives the accessor these bytes, in a buffer and a view of their own.
@@ -322,7 +218,8 @@ void decompress_primitives(const Model& model, tinygltf::Model& file) {
     for (std::size_t p = 0; p < file.meshes[m].primitives.size(); ++p) {
       tinygltf::Primitive& primitive = file.meshes[m].primitives[p];
       if (!compression_of_primitive(file, primitive).empty()) {
-        Decompressor(model, file, primitive, "mesh " + std::to_string(m) + ", primitive " + std::to_string(p))
+        PrimitiveDecompressor(model, file, primitive,
+                              "mesh " + std::to_string(m) + ", primitive " + std::to_string(p))
             .run();
       }
     }

@@ -35,9 +35,9 @@ struct Compressed {
   std::string filter;
 };
 
-class Decompressor {
+class ViewDecompressor {
  public:
-  Decompressor(const SourceFile& source, tinygltf::Model& file, std::size_t view)
+  ViewDecompressor(const SourceFile& source, tinygltf::Model& file, std::size_t view)
       : source_(source),
         file_(file),
         view_(file.bufferViews[view]),
@@ -173,7 +173,7 @@ void decompress_views(const SourceFile& source, tinygltf::Model& file) {
       continue;  // refused when something uses it
     }
     const tinygltf::Value extension = file.bufferViews[i].extensions.at(name);
-    Decompressor(source, file, i).run(extension);
+    ViewDecompressor(source, file, i).run(extension);
   }
 }
 
