@@ -49,7 +49,7 @@ bool says(const std::string& message, const std::string& part) {
 using Corners = std::array<std::array<double, 3>, 3>;
 
 // The triangles in an order that does not depend on their own, nor on the corner that each begins with.
-std::vector<Corners> sorted_triangles(const Scene& scene) {
+[[maybe_unused]] std::vector<Corners> sorted_triangles(const Scene& scene) {
   std::vector<Corners> all;
   for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
     Corners corners;
