@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scenes/obj_materials.h"
+#include "scenes/obj_statements.h"
 #include "scenes/polygon_mesh.h"
 #include "scenes/source_file.h"
 #include "scenes/text_lines.h"
@@ -31,50 +32,6 @@ struct Corner {
   std::uint32_t normal = not_given;
   auto operator<=>(const Corner&) const = default;
 };
-
-/// Statements that change nothing of what is seen.
-constexpr std::array<std::string_view, 3> without_effect = {"g", "o", "s"};
-
-struct CountedStatement {
-  std::string_view statement;
-  const char* what;  ///< in the plural
-};
-constexpr const char* free_form = "statements of free-form curves and surfaces";
-constexpr const char* display = "settings of the display";
-constexpr std::array<CountedStatement, 33> counted_statements = {
-    {{"p", "statements of points"},
-     {"l", "statements of lines"},
-     {"vp", free_form},
-     {"cstype", free_form},
-     {"deg", free_form},
-     {"bmat", free_form},
-     {"step", free_form},
-     {"curv", free_form},
-     {"curv2", free_form},
-     {"surf", free_form},
-     {"parm", free_form},
-     {"trim", free_form},
-     {"hole", free_form},
-     {"scrv", free_form},
-     {"sp", free_form},
-     {"end", free_form},
-     {"con", free_form},
-     {"bzp", free_form},
-     {"bsp", free_form},
-     {"cdc", free_form},
-     {"cdp", free_form},
-     {"res", free_form},
-     {"mg", "merging groups"},
-     {"bevel", display},
-     {"c_interp", display},
-     {"d_interp", display},
-     {"lod", display},
-     {"shadow_obj", display},
-     {"trace_obj", display},
-     {"ctech", display},
-     {"stech", display},
-     {"maplib", "statements of texture libraries"},
-     {"usemap", "statements of texture libraries"}}};
 
 class ObjReader {
  public:
@@ -119,18 +76,13 @@ class ObjReader {
       materials_.choose(lines_);
     } else if (word == "mtllib") {
       materials_.add_libraries(lines_);
-    } else if (std::find(without_effect.begin(), without_effect.end(), word) == without_effect.end()) {
-      count_statement(word);
+    } else if (!is_without_effect(word)) {
+      const char* const kind = left_out_kind(word);
+      if (kind == nullptr) {
+        lines_.fail(in_quotes(word) + " is no statement of an OBJ file");
+      }
+      left_out_.features[kind] += 1;
     }
-  }
-
-  void count_statement(std::string_view word) {
-    const auto* const known = std::find_if(counted_statements.begin(), counted_statements.end(),
-                                           [&](const CountedStatement& u) { return u.statement == word; });
-    if (known == counted_statements.end()) {
-      lines_.fail(in_quotes(word) + " is no statement of an OBJ file");
-    }
-    left_out_.features[known->what] += 1;
   }
 
   template <class T>
