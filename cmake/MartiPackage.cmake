@@ -1,6 +1,7 @@
 # The package config that `cmake --install` puts beside the libraries, for find_package(marti).
 include(CMakePackageConfigHelpers)
 
+get_property(MARTI_SCENES_PACKAGES GLOBAL PROPERTY MARTI_SCENES_PACKAGES)
 configure_package_config_file(
   "${PROJECT_SOURCE_DIR}/cmake/martiConfig.cmake.in" "${PROJECT_BINARY_DIR}/martiConfig.cmake"
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/marti

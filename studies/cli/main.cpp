@@ -367,14 +367,14 @@ void list_scenes() {
 struct SceneArguments {
   std::string source;
   std::string target;
-  scenes::GltfOptions gltf;
+  scenes::FileOptions file;
 };
 
 // There is no configuration that could set a memory limit: it is the host's default.
 scenes::OpenOptions options_of(const SceneArguments& arguments) {
-  scenes::OpenOptions options{{}, arguments.gltf};
-  options.gltf.size_first = studies::size_of_image;
-  options.gltf.memory = sim::MemoryBudget(sim::default_memory_limit());
+  scenes::OpenOptions options{{}, arguments.file};
+  options.file.size_first = studies::size_of_image;
+  options.file.memory = sim::MemoryBudget(sim::default_memory_limit());
   return options;
 }
 
@@ -385,7 +385,7 @@ scenes::Scene open(const SceneArguments& arguments) {
 std::string scene_info(const SceneArguments& arguments) {
   const scenes::AnimatedScene scene =
       scenes::open_animated(arguments.source, options_of(arguments), studies::decode_image);
-  const scenes::Scene pose = scene.asked_for(arguments.gltf.time, arguments.source);
+  const scenes::Scene pose = scene.asked_for(arguments.file.time, arguments.source);
   const std::string need = accel::describe_need(accel::precision_need(accel::TriangleSet(pose)));
   return scenes::describe(pose) + (need.empty() ? "" : "note: " + need + "\n") +
          scenes::describe(scene.facts());
@@ -398,18 +398,18 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
   CLI::App* info = scene->add_subcommand("info", "Describes a scene");
   CLI::App* save = scene->add_subcommand("export", "Writes a scene, in one pose, as binary glTF");
   for (CLI::App* command : {info, save}) {
-    command->add_option("SOURCE", arguments.source, "name:size, or a .gltf or .glb file")
+    command->add_option("SOURCE", arguments.source, "name:size, or a .gltf, .glb, .obj or .ply file")
         ->type_name("SCENE")
         ->required();
-    command->add_option("--scene", arguments.gltf.scene, "scene of the file, by index or name")
+    command->add_option("--scene", arguments.file.scene, "scene of the file, by index or name")
         ->type_name("NAME");
-    command->add_option("--camera", arguments.gltf.camera, "camera of the file, by index or name")
+    command->add_option("--camera", arguments.file.camera, "camera of the file, by index or name")
         ->type_name("NAME");
     command
-        ->add_option("--animation", arguments.gltf.animation,
+        ->add_option("--animation", arguments.file.animation,
                      "animation of the file, by index or name; none: the static pose")
         ->type_name("NAME");
-    command->add_option("--time", arguments.gltf.time, "the pose at this many seconds of the animation")
+    command->add_option("--time", arguments.file.time, "the pose at this many seconds of the animation")
         ->type_name("SECONDS");
   }
   save->add_option("FILE", arguments.target, "the .glb file to write")->type_name("FILE.glb")->required();

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "scenes/open.h"
 #include "scenes/procedural.h"
 #include "sim/schema.h"
 #include "studies/cli/command_tree.h"
@@ -80,7 +81,11 @@ void add_values(std::string_view type, const sim::Schema& schema, std::string_vi
     for (const scenes::ProceduralScene& scene : scenes::procedural_scenes()) {
       candidates.add(std::string(scene.name) + ":" + std::to_string(scene.default_size));
     }
-    candidates.ask_shell(":files gltf glb");
+    std::string files = ":files";
+    for (const std::string_view ending : scenes::file_endings) {
+      files += " " + std::string(ending);
+    }
+    candidates.ask_shell(files);
   } else if (type == "ITEM") {
     candidates.add("all");
     for (const std::string_view item : plan_item_names) {

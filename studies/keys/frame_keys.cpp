@@ -63,8 +63,8 @@ processors::RenderOptions made_small(processors::RenderOptions options, double s
 void declare_frame_keys(sim::Schema& schema) {
   schema.section("scene", "what is rendered");
   schema.text("scene.source", "teapot:12",
-              "a procedural scene as name:size (see `marti scene list`), or a .gltf or .glb file relative to "
-              "the configuration (with --set: to the current directory)");
+              "a procedural scene as name:size (see `marti scene list`), or a .gltf, .glb, .obj or .ply file "
+              "relative to the configuration (with --set: to the current directory)");
   schema.text("scene.scene", "", "scene of the file, by index or name; empty: the file's default");
   schema.text("scene.camera", "", "camera of the file, by index or name; empty: the first");
   schema.text("scene.animation", "",
@@ -169,13 +169,13 @@ FrameConfig read_frame(sim::Config& config) {
                       "--set in the current directory");
     }
   }
-  frame.open.gltf.scene = config.text("scene.scene");
-  frame.open.gltf.camera = config.text("scene.camera");
-  frame.open.gltf.animation = config.text("scene.animation");
+  frame.open.file.scene = config.text("scene.scene");
+  frame.open.file.camera = config.text("scene.camera");
+  frame.open.file.animation = config.text("scene.animation");
   frame.frames.count = static_cast<std::uint32_t>(config.integer("frames.count"));
   frame.frames.first = static_cast<std::uint32_t>(config.integer("frames.first"));
   frame.frames.rate = config.real("frames.rate");
-  frame.open.gltf.time = frame.frames.time(0);
+  frame.open.file.time = frame.frames.time(0);
   config.mark_unused_reason("frames.verify", "only `marti study frames` renders frames twice");
   frame.render.width = static_cast<std::uint32_t>(config.integer("image.width"));
   frame.render.height = static_cast<std::uint32_t>(config.integer("image.height"));
@@ -211,8 +211,8 @@ FrameConfig read_frame(sim::Config& config) {
   read_structure(config, frame);
   frame.memory = read_memory(config);
   give_memory(frame.memory, frame.structure_options);
-  frame.open.gltf.memory = frame.memory;
-  frame.open.gltf.size_first = size_of_image;
+  frame.open.file.memory = frame.memory;
+  frame.open.file.size_first = size_of_image;
   return frame;
 }
 

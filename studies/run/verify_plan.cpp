@@ -90,7 +90,7 @@ class Verifier {
   explicit Verifier(const RunResult& result) : result_(result) {
     const FrameConfig& frame = result.frame_config;
     scenes::OpenOptions open = frame.open;
-    open.gltf.size_only = size_of_image;
+    open.file.size_only = size_of_image;
     unlit_ = unlit_materials(scenes::open_scene(frame.scene, open, decode_image));
   }
 

@@ -83,7 +83,7 @@ TEST(ZshCompletion, OffersTheSame) {
   EXPECT_EQ(zsh_offers("marti run --set cache.wa"), "cache.ways=\n");
   EXPECT_EQ(zsh_offers("marti run --set cache.replacement=f"), "cache.replacement=fifo\n");
   EXPECT_EQ(zsh_offers("marti run -o \"\""), "files -/\n");
-  EXPECT_EQ(zsh_offers("marti scene info tea"), "teapot:12\nfiles -g *.(gltf|glb)\n");
+  EXPECT_EQ(zsh_offers("marti scene info tea"), "teapot:12\nfiles -g *.(gltf|glb|obj|ply)\n");
 }
 
 TEST(FishCompletion, OffersTheSame) {
