@@ -28,19 +28,25 @@ void Banked::ask_late(const Transaction& transaction, bool write, sim::Ticks arr
   if (write) {
     late_->writes().made(transaction.port, transaction.address);
   }
+  if (site_.ports == 1 && !write) {
+    late_->ask_alone(transaction, arrival, [this](const LateAccess& access) { finish(access); });
+    return;
+  }
   late_->ask(transaction, write, arrival);
+}
+
+void Banked::finish(const LateAccess& access) {
+  if (access.write) {
+    const Transaction& write = access.transaction;
+    late_->writes().finish(write.port, write.address, end_of_write(access), site_.client);
+  } else {
+    late_read(access);
+  }
 }
 
 void Banked::proceed(std::uint32_t /*port*/, std::uint32_t sequence) {
   sim::ensure(late() && sequence > 0, "an event of the memory's own for an interconnect that posts none");
-  late_->proceed(sequence - 1, [this](const LateAccess& access) {
-    if (access.write) {
-      const Transaction& write = access.transaction;
-      late_->writes().finish(write.port, write.address, end_of_write(access), site_.client);
-    } else {
-      late_read(access);
-    }
-  });
+  late_->proceed(sequence - 1, [this](const LateAccess& access) { finish(access); });
 }
 
 }  // namespace marti::memory

@@ -43,6 +43,9 @@ class Banked : public Interconnect {
   Banks banks_;
 
  private:
+  // Tells whoever waits for the access that it is done.
+  void finish(const LateAccess& access);
+
   std::unique_ptr<LateDram> late_;
 };
 

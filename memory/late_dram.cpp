@@ -18,6 +18,10 @@ LateDram::LateDram(const DramConfig& config, const InterconnectSite& site, sim::
       writes_(site.ports) {}
 
 void LateDram::ask(const Transaction& transaction, bool write, sim::Ticks arrival) {
+  post(announce(transaction, write, arrival), clock_.cycle_at(arrival) + 1);
+}
+
+std::uint32_t LateDram::announce(const Transaction& transaction, bool write, sim::Ticks arrival) {
   std::uint64_t place = asked_.size();
   if (unused_.empty()) {
     asked_.emplace_back();
@@ -28,14 +32,14 @@ void LateDram::ask(const Transaction& transaction, bool write, sim::Ticks arriva
   asked_[place] = {transaction, write, arrival};
   const std::uint32_t number = mapping_.channel(transaction.address);
   channels_[number].coming.push_back(place);
-  post(number, clock_.cycle_at(arrival) + 1);
+  return number;
 }
 
 void LateDram::begin_event(std::uint32_t channel) {
   std::erase(channels_[channel].events, site_.engine.now());
 }
 
-std::optional<DramDone> LateDram::advance(std::uint32_t channel) {
+std::optional<DramDone> LateDram::advance(std::uint32_t channel, sim::Ticks time) {
   Channel& c = channels_[channel];
   for (;;) {
     const DramCycle command = c.dram.next();
@@ -56,7 +60,7 @@ std::optional<DramDone> LateDram::advance(std::uint32_t channel) {
         continue;
       }
     }
-    if (command == DramQueued::never || decided_at(command) > site_.engine.now()) {
+    if (command == DramQueued::never || decided_at(command) > time) {
       return std::nullopt;
     }
     if (std::optional<DramDone> done = c.dram.step()) {

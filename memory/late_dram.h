@@ -51,11 +51,23 @@ class LateDram {
 
   /// Announces an access; arrivals must not decrease.
   void ask(const Transaction& transaction, bool write, sim::Ticks arrival);
+  /// ask() for a read of the only port: nothing else arrives before its end, so all commands up to its last
+  /// are decided at once. Calls done(LateAccess) as proceed() does.
+  template <class Done>
+  void ask_alone(const Transaction& transaction, sim::Ticks arrival, const Done& done) {
+    const std::uint32_t channel = announce(transaction, false, arrival);
+    for (bool read = false; !read;) {
+      const LateAccess ended = finished(channel, *advance(channel, std::numeric_limits<sim::Ticks>::max()));
+      read = !ended.write;
+      done(ended);
+    }
+    wake(channel);
+  }
   /// Handles the event of a channel; calls done(LateAccess) for each access that got its last command.
   template <class Done>
   void proceed(std::uint32_t channel, const Done& done) {
     begin_event(channel);
-    while (const std::optional<DramDone> ended = advance(channel)) {
+    while (const std::optional<DramDone> ended = advance(channel, site_.engine.now())) {
       done(finished(channel, *ended));
     }
     wake(channel);
@@ -80,8 +92,10 @@ class LateDram {
   };
 
   void begin_event(std::uint32_t channel);
-  // Lets accesses arrive and issues commands that can be decided now, up to the end of an access.
-  std::optional<DramDone> advance(std::uint32_t channel);
+  // Notes an access that will arrive; returns its channel.
+  std::uint32_t announce(const Transaction& transaction, bool write, sim::Ticks arrival);
+  // Lets accesses arrive and issues commands that can be decided up to `time`, up to the end of an access.
+  std::optional<DramDone> advance(std::uint32_t channel, sim::Ticks time);
   LateAccess finished(std::uint32_t channel, const DramDone& done);
   // Posts the event of the channel's next command, if there is one and no earlier event.
   void wake(std::uint32_t channel);

@@ -156,6 +156,37 @@ TEST(DramInterconnect, AMemoryOfOneRowIsABankOfFixedTime) {
   }
 }
 
+// What a single port asks for is decided at once; beside ports that ask for nothing it is decided by events.
+TEST(DramInterconnect, ASinglePortIsServedAsOneOfManyThatAreSilent) {
+  for (std::uint64_t seed = 200; seed < 260; ++seed) {
+    std::mt19937_64 random(seed);
+    BankConfig banks = dram_of(DramPolicy::frfcfs, 1U << random() % 2);
+    banks.dram->page = random() % 2 == 0 ? DramPage::open : DramPage::closed;
+    InterconnectConfig config = crossbar(static_cast<std::int64_t>(random() % 20));
+    config.kind = seed % 3 == 0 ? InterconnectKind::crossbar : InterconnectKind::bus;
+    config.arbitration = seed % 3 == 1 ? Arbitration::fifo : Arbitration::round_robin;
+    config.cycles_per_beat = 1;
+    std::vector<IssuedTransaction> issues;
+    sim::Ticks now = 0;
+    for (std::uint32_t i = 0; i < 300; ++i) {
+      const bool write = random() % 2 == 0;
+      issues.push_back({now, {0, random() % 65536 * line, line}, write});
+      // A read is done before anything else is asked for.
+      now += write ? static_cast<sim::Ticks>(random() % 90000)
+                   : 3000000 + static_cast<sim::Ticks>(random() % 90000);
+    }
+    const Ports alone(config, banks, issues, 1);
+    const Ports beside(config, banks, issues, 2);
+    EXPECT_EQ(alone.written[0], beside.written[0]) << seed;
+    ASSERT_EQ(alone.services[0].size(), beside.services[0].size());
+    for (std::size_t i = 0; i < alone.services[0].size(); ++i) {
+      EXPECT_EQ(alone.services[0][i].done, beside.services[0][i].done) << seed << ", read " << i;
+      EXPECT_EQ(alone.services[0][i].wait_bank, beside.services[0][i].wait_bank);
+    }
+    EXPECT_LT(alone.engine.events(), beside.engine.events());
+  }
+}
+
 TEST(DramInterconnect, WritesAreReportedInTheOrderOfEachPort) {
   for (std::uint64_t seed = 100; seed < 130; ++seed) {
     std::mt19937_64 random(seed);
