@@ -28,6 +28,12 @@ void check_counts(const DramConfig& config) {
       refuse(key, "must be a power of two, not " + std::to_string(count));
     }
   }
+  constexpr std::uint64_t most_banks = 65536;
+  const std::uint64_t banks = std::uint64_t{config.channels} * config.ranks * config.banks_of_rank();
+  if (banks > most_banks) {
+    refuse("dram.banks", "makes " + std::to_string(banks) + " banks in all channels; at most " +
+                             std::to_string(most_banks) + " are simulated");
+  }
   if (config.row_bytes < config.burst_bytes) {
     refuse("dram.row", "must be at least one burst, " + std::to_string(config.burst_bytes) + " bytes");
   }

@@ -116,7 +116,7 @@ void add_memory(std::vector<FigureEntry>& all) {
   add("dram_refresh_share", "1",
       "share of the frame time for which a channel's oldest access waits for a refresh", Better::lower,
       own("dram_refresh_stall") / channel_time);
-  add("dram_queue", "1", "mean number of accesses of a channel that have not got their data commands",
+  add("dram_queue_length", "1", "mean number of accesses of a channel that have not got their data commands",
       Better::lower, own("dram_queued") / channel_time);
   add("dram_bandwidth", "byte/s", "data that DRAM moves, in whole bursts", Better::higher,
       own("dram_bytes") * Formula(1e12) / end);

@@ -188,7 +188,7 @@ void dram_lines(Lines out, const RunResult& r) {
   const auto share = [&](std::string_view figure) { return percent(r.figure(std::string(figure))); };
   fmt::format_to(out, "  {:<12}{} of the bursts hit, {} conflict; {:.2f} accesses in a queue\n", "rows",
                  share("dram_row_hit_ratio"), share("dram_row_conflict_ratio"),
-                 r.figure("dram_queue").value_or(0.0));
+                 r.figure("dram_queue_length").value_or(0.0));
   fmt::format_to(out, "  {:<12}{:.2f} GB/s of {:.1f}; refreshes hold accesses up for {} of the time\n",
                  "data", r.figure("dram_bandwidth").value_or(0.0) / 1e9,
                  r.machine.banks.dram->peak_bandwidth() * r.machine.clusters / 1e9,
