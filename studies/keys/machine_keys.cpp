@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "accel/bvh_options.h"
 #include "processors/cost/cost_model.h"
 #include "processors/energy/energy.h"
 #include "sim/config_errors.h"
@@ -84,7 +85,7 @@ void declare_node(Schema& schema) {
 void declare_memory(Schema& schema) {
   schema.section("layout", "sizes of the database's records and where they lie");
   const std::array<std::pair<std::string_view, std::string_view>, records.size()> sizes_of_records = {{
-      {"8 B", "bytes of one node record"},
+      {"8 B", "bytes of one node record; not with structure.kind = \"bvh\", whose nodes have their own"},
       {"4 B", "bytes of one entry record"},
       {"48 B", "bytes of one primitive record that is a triangle"},
       {"40 B", "bytes of one sphere, cylinder or cone: two points, two radii, kind and material"},
@@ -98,8 +99,11 @@ void declare_memory(Schema& schema) {
   schema.size("layout.record_alignment", "4 B", {"1 B", "4 KiB"}, "alignment of records; a power of two");
   schema.size("layout.section_alignment", "4 KiB", {"1 B", "1 GiB"},
               "alignment of the sections (nodes, lists, primitives, ...); a power of two");
-  schema.choice("layout.node_order", "breadth_first", {"breadth_first", "depth_first"},
-                "order of the tree's nodes in memory");
+  schema.choice("layout.node_order", "breadth_first", names(memory::node_order_names),
+                "order of the tree's nodes in memory; treelets: subtrees of up to layout.treelet bytes, one "
+                "after the other");
+  schema.size("layout.treelet", "4 KiB", {"1 B", "1 GiB"},
+              "treelets: most bytes of one, but the children of a node are never divided");
   schema.section("cache", "the private cache of a node; it holds what is read of the database");
   schema.choice("cache.organisation", "unified", names(processors::cache_organisation_names),
                 "no cache, one for all records, or one each for nodes, lists, primitives and shading data");
@@ -209,13 +213,27 @@ void read_costs(const sim::Config& config, processors::MachineConfig& machine) {
   }
 }
 
-void read_layout(const sim::Config& config, memory::LayoutConfig& layout) {
+void read_layout(sim::Config& config, memory::LayoutConfig& layout) {
+  const bool bvh = config.choice_name("structure.kind") == "bvh";
   for (const auto& [name, member] : records) {
-    layout.*member = static_cast<std::uint32_t>(config.size(name));
+    if (!bvh || member != &memory::LayoutConfig::node_bytes) {
+      layout.*member = static_cast<std::uint32_t>(config.size(name));
+    }
+  }
+  if (bvh) {
+    layout.node_bytes =
+        accel::bvh_record_bytes(config.choice_as<accel::BvhNodeKind>("structure.bvh_children"));
+    config.mark_unused_reason("layout.node", "structure.bvh_children says how large the nodes of a bvh are",
+                              "structure.kind");
   }
   layout.record_alignment = power_of_two(config, "layout.record_alignment");
   layout.section_alignment = power_of_two(config, "layout.section_alignment");
   layout.node_order = config.choice_as<memory::NodeOrder>("layout.node_order");
+  if (layout.node_order == memory::NodeOrder::treelets) {
+    layout.treelet_bytes = static_cast<std::uint32_t>(config.size("layout.treelet"));
+  }
+  config.mark_unused_reason("layout.treelet", "only layout.node_order = \"treelets\" makes treelets",
+                            "layout.node_order");
 }
 
 // Reads the size of one cache. A cache shape that cannot be built is reported under the size key.

@@ -36,9 +36,9 @@ void read_space(sim::Config& config, processors::MachineConfig& machine) {
     return;
   }
   const std::string& structure = config.choice_name("structure.kind");
-  if (structure != "octree" && structure != "bsp") {
+  if (structure != "octree" && structure != "bsp" && structure != "bvh") {
     config.fail("machine.scheme", "\"space\" cuts a tree into regions: with structure.kind = \"" + structure +
-                                      "\" there is none; use \"octree\" or \"bsp\"");
+                                      "\" there is none; use \"octree\", \"bsp\" or \"bvh\"");
   }
   processors::SpaceConfig& space = machine.space;
   space.policy = config.choice_as<RegionPolicy>("space.policy");

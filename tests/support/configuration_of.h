@@ -82,8 +82,10 @@ inline void assign_caches(const processors::MachineConfig& m, Assignments& to) {
   to.set("layout.pixel", m.layout.pixel_bytes);
   to.set("layout.record_alignment", m.layout.record_alignment);
   to.set("layout.section_alignment", static_cast<std::int64_t>(m.layout.section_alignment));
-  to.set("layout.node_order",
-         m.layout.node_order == memory::NodeOrder::depth_first ? "depth_first" : "breadth_first");
+  to.choose("layout.node_order", memory::node_order_names, m.layout.node_order);
+  if (m.layout.node_order == memory::NodeOrder::treelets) {
+    to.set("layout.treelet", m.layout.treelet_bytes);
+  }
   to.choose("cache.organisation", processors::cache_organisation_names, m.cache.organisation);
   to.set("cache.size", static_cast<std::int64_t>(m.cache.cache.size));
   to.set("cache.node_size", static_cast<std::int64_t>(m.cache.split_sizes[0]));

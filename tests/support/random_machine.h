@@ -200,7 +200,9 @@ inline processors::WorkLog random_tree_log(Random& random, std::uint32_t width, 
   using processors::make_word;
   using processors::Step;
   processors::WorkLog log;
-  log.traversal = static_cast<accel::Traversal>(pick(random, 0, accel::traversals - 1));
+  do {  // a bounding volume hierarchy is not built by machines
+    log.traversal = static_cast<accel::Traversal>(pick(random, 0, accel::traversals - 1));
+  } while (accel::walks_bvh(log.traversal));
   log.mailboxes = pick(random, 0, 1) == 1;
   log.width = width;
   log.height = height;
@@ -303,7 +305,8 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
   machine.layout.node_bytes = static_cast<std::uint32_t>(pick(random, 1, 40));
   machine.layout.primitive_bytes = static_cast<std::uint32_t>(pick(random, 1, 100));
   machine.layout.quadric_bytes = static_cast<std::uint32_t>(pick(random, 1, 100));
-  machine.layout.node_order = static_cast<memory::NodeOrder>(pick(random, 0, 1));
+  machine.layout.node_order = static_cast<memory::NodeOrder>(pick(random, 0, 2));
+  machine.layout.treelet_bytes = static_cast<std::uint32_t>(pick(random, 1, 400));
   machine.cache.organisation = static_cast<processors::CacheOrganisation>(pick(random, 0, 2));
   machine.cache.hit_cycles = pick(random, 0, 2);
   machine.cache.cache.line = 1U << pick(random, 2, 6);
