@@ -16,14 +16,16 @@ namespace {
 
 class OnePose : public PoseSource {
  public:
-  explicit OnePose(Scene scene) : scene_(std::move(scene)) {}
+  OnePose(Scene scene, FileUse use) : scene_(std::move(scene)), use_(std::move(use)) {}
   [[nodiscard]] Scene at(double /*seconds*/) const override { return scene_; }
   [[nodiscard]] bool moves() const override { return false; }
   [[nodiscard]] double duration() const override { return 0.0; }
   [[nodiscard]] MotionFacts facts() const override { return {}; }
+  [[nodiscard]] FileUse file_use() const override { return use_; }
 
  private:
   Scene scene_;
+  FileUse use_;
 };
 
 using Bits = std::array<std::uint64_t, 9>;
@@ -41,7 +43,8 @@ Bits bits_of(const Scene& scene, const Triangle& triangle) {
 
 }  // namespace
 
-AnimatedScene::AnimatedScene(Scene only) : source_(std::make_shared<OnePose>(std::move(only))) {}
+AnimatedScene::AnimatedScene(Scene only, FileUse use)
+    : source_(std::make_shared<OnePose>(std::move(only), std::move(use))) {}
 
 Scene AnimatedScene::at(double seconds) const {
   if (!std::isfinite(seconds)) {

@@ -64,8 +64,8 @@ class PoseSource {
 /// Parts that do not move have bit-identical positions.
 class AnimatedScene {
  public:
-  /// A scene of one pose.
-  explicit AnimatedScene(Scene only);
+  /// A scene of one pose, and how much of its file it uses.
+  explicit AnimatedScene(Scene only, FileUse use = {});
   explicit AnimatedScene(std::shared_ptr<const PoseSource> source) : source_(std::move(source)) {}
 
   /// The pose at a time in seconds; times before the beginning or after the end of the animation give its

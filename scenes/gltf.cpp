@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scenes/animated.h"
+#include "scenes/default_view.h"
 #include "scenes/gltf_animation.h"
 #include "scenes/gltf_extensions.h"
 #include "scenes/gltf_instances.h"
@@ -19,7 +20,7 @@
 #include "scenes/gltf_use.h"
 #include "scenes/gltf_vertices.h"
 #include "scenes/gltf_view.h"
-#include "scenes/open.h"
+#include "scenes/scene_notes.h"
 #include "sim/error.h"
 #include "sim/shown.h"
 
@@ -27,7 +28,6 @@ namespace marti::scenes {
 
 namespace {
 
-using gltf::LeftOut;
 using gltf::Model;
 using gltf::Pose;
 
@@ -35,28 +35,6 @@ void note_extensions(const Model& model, Scene& scene) {
   const std::string names = gltf::ignored_extensions(model.data());
   if (!names.empty()) {
     scene.notes.push_back("Optional glTF extensions are ignored: " + names + ".");
-  }
-}
-
-void note_left_out(const Model& model, const LeftOut& left_out, std::uint64_t bad_triangles, Scene& scene) {
-  note_extensions(model, scene);
-  for (const auto& [what, count] : left_out.features) {
-    if (count > 0) {
-      scene.notes.push_back("Left out: " + std::to_string(count) + " " + what + ".");
-    }
-  }
-  if (bad_triangles > 0) {
-    scene.notes.push_back("Left out: " + std::to_string(bad_triangles) + " of " +
-                          std::to_string(scene.polygons) +
-                          " triangles, because a position is not finite or beyond 1e30.");
-  }
-}
-
-void note_degenerate(Scene& scene) {
-  const std::uint64_t degenerate = count_degenerate(scene);
-  if (degenerate > 0) {
-    scene.notes.push_back(std::to_string(degenerate) + " of " + std::to_string(scene.triangles.size()) +
-                          " triangles have no area; no ray can hit them.");
   }
 }
 
@@ -104,7 +82,7 @@ std::uint64_t shrink_bad_triangles(const Model& model, const std::vector<char>& 
 /// decides where the default camera or light is placed if the file has none.
 class GltfPoses : public PoseSource {
  public:
-  GltfPoses(const std::filesystem::path& path, const GltfOptions& options, const ImageDecoder& decode)
+  GltfPoses(const std::filesystem::path& path, const FileOptions& options, const ImageDecoder& decode)
       : model_(path, options) {
     guarded([&] { build(decode); });
   }
@@ -207,7 +185,9 @@ class GltfPoses : public PoseSource {
     if (model_.options().read_unused) {
       gltf::read_unused(model_, materials);
     }
-    note_left_out(model_, left_out, meshes.bad_triangles(), still_);
+    note_extensions(model_, still_);
+    note_left_out(left_out, still_);
+    note_bad_positions(meshes.bad_triangles(), "triangles", still_);
     if (animation_) {
       still_.notes.push_back("Animation '" + sim::shown(animation_->name()) + "' plays for " +
                              seconds_text(animation_->duration()) + ".");
@@ -225,17 +205,15 @@ class GltfPoses : public PoseSource {
     if (!has_camera_) {
       Scene first = still_;
       place_vertices(pose, first);
-      gltf::frame_camera(first);
+      frame_camera(first);
       still_.camera = first.camera;
-      still_.notes.emplace_back("The scene has no perspective camera; it is seen by one that frames it.");
+      still_.notes.emplace_back(no_camera_note);
     }
     gltf::add_lights(model_, pose.nodes, still_);
     has_lights_ = !still_.lights.empty();
     if (!has_lights_) {
-      gltf::add_default_light(still_);
-      still_.notes.emplace_back(
-          "The scene has no light; it is lit by a directional one over the camera's shoulder and by ambient "
-          "light.");
+      add_default_light(still_);
+      still_.notes.emplace_back(no_light_note);
     }
   }
 
@@ -302,12 +280,12 @@ class GltfPoses : public PoseSource {
 
 }  // namespace
 
-AnimatedScene open_gltf(const std::filesystem::path& path, const GltfOptions& options,
+AnimatedScene open_gltf(const std::filesystem::path& path, const FileOptions& options,
                         const ImageDecoder& decode) {
   return AnimatedScene(std::make_shared<const GltfPoses>(path, options, decode));
 }
 
-Scene load_gltf(const std::filesystem::path& path, const GltfOptions& options, const ImageDecoder& decode) {
+Scene load_gltf(const std::filesystem::path& path, const FileOptions& options, const ImageDecoder& decode) {
   return open_gltf(path, options, decode).asked_for(options.time, path.string());
 }
 

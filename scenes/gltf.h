@@ -4,9 +4,10 @@
 // sparse accessors; positions, normals, the base colour texture's coordinates; morph targets of positions and
 // normals (section 3.7.2.2); skins with any number of joints a vertex (3.7.3); animations of nodes and morph
 // weights (3.11, Appendix C); materials; perspective cameras; KHR_lights_punctual,
-// KHR_materials_transmission, KHR_materials_ior, KHR_materials_emissive_strength. Left out with a note:
-// points and lines, displacements of texture coordinates, other textures, alpha modes. One source triangle is
-// one polygon. Indices below 0 count as "not given" where glTF allows that.
+// KHR_materials_transmission, KHR_materials_ior, KHR_materials_emissive_strength; where marti is built with
+// their libraries KHR_draco_mesh_compression and EXT_meshopt_compression, of the whole file. Left out with a
+// note: points and lines, displacements of texture coordinates, other textures, alpha modes. One source
+// triangle is one polygon. Indices below 0 count as "not given" where glTF allows that.
 //
 // Motion. The static pose (nodes, morph weights and joints as in the file, no animation) decides which
 // triangles there are: one with a corner that is not finite or beyond 1e30 there is left out of all poses. A
@@ -29,49 +30,25 @@
 // fall off with the square of the distance. A camera's aspect ratio is that of the image.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <string>
 
 #include "scenes/animated.h"
+#include "scenes/file_options.h"
 #include "scenes/scene.h"
 #include "scenes/texture.h"
-#include "sim/memory_budget.h"
 
 namespace marti::scenes {
-
-struct GltfOptions {
-  std::string scene;   ///< index or name; empty: the file's default, else the first
-  std::string camera;  ///< index or name of a camera of the file; empty: the scene's first perspective one
-  /// Index or name of the animation that plays; empty: the first, if the file has one; "none": the static
-  /// pose, unless an animation has that name.
-  std::string animation;
-  double time = 0.0;  ///< of the pose that load_gltf gives: seconds from the animation's beginning
-  /// If set, images are not decoded: textures have their size and their file, but no texels (see
-  /// decode_texels).
-  ImageSizer size_only;
-  /// If set without `size_only`: gives an image's size before it is decoded, so that an image too large for
-  /// `memory` is refused first.
-  ImageSizer size_first;
-  /// Also reads and checks parts that the scene does not use: all images, and all accessors of numbers.
-  bool read_unused = false;
-  std::uint64_t max_triangles = std::uint64_t{1} << 25;  ///< more than this is refused; also for vertices
-  std::uint64_t max_file_bytes = (std::uint64_t{1} << 32) - 1;  ///< of each file read
-  /// The memory that the files, the scene made of them and its textures may take together. Instances are
-  /// counted before they are expanded, texels before they are decoded.
-  sim::MemoryBudget memory;
-};
 
 /// Opens a file. A scene without a camera or a light gets one that frames it, and a note. Triangles with a
 /// position that is not finite are left out, and a note counts them; degenerate ones are kept and counted.
 /// `decode` may be empty; then a material with a base colour texture is refused. Throws UserError, the path
 /// first, for anything missing, broken, out of range or not supported; no input makes it crash or loop. Of
 /// several animations only the chosen one is checked; facts() checks all.
-[[nodiscard]] AnimatedScene open_gltf(const std::filesystem::path& path, const GltfOptions& options,
+[[nodiscard]] AnimatedScene open_gltf(const std::filesystem::path& path, const FileOptions& options,
                                       const ImageDecoder& decode);
 
 /// The pose at `options.time`. A time other than 0 is an error when no animation plays.
-[[nodiscard]] Scene load_gltf(const std::filesystem::path& path, const GltfOptions& options,
+[[nodiscard]] Scene load_gltf(const std::filesystem::path& path, const FileOptions& options,
                               const ImageDecoder& decode);
 
 }  // namespace marti::scenes

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <string_view>
 
+#include "scenes/gltf_draco.h"
+#include "scenes/gltf_meshopt.h"
 #include "sim/shown.h"
 
 namespace marti::scenes::gltf {
@@ -16,18 +18,14 @@ constexpr std::array<std::string_view, 5> supported_extensions = {
     "KHR_materials_transmission", "KHR_mesh_quantization"};
 constexpr const char* draco = "KHR_draco_mesh_compression";
 
-bool is_supported(const std::string& extension) {
-  return std::find(supported_extensions.begin(), supported_extensions.end(), extension) !=
-         supported_extensions.end();
+bool is_meshopt(const std::string& extension) {
+  return std::find(meshopt_names.begin(), meshopt_names.end(), extension) != meshopt_names.end();
 }
 
-std::string meshopt_among(const tinygltf::ExtensionMap& extensions) {
-  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
-    if (extensions.contains(name)) {
-      return name;
-    }
-  }
-  return {};
+bool is_supported(const std::string& extension) {
+  return (extension == draco && has_draco()) || (is_meshopt(extension) && has_meshopt()) ||
+         std::find(supported_extensions.begin(), supported_extensions.end(), extension) !=
+             supported_extensions.end();
 }
 
 bool has_no_bytes(const tinygltf::Model& file, int accessor) {
@@ -36,6 +34,25 @@ bool has_no_bytes(const tinygltf::Model& file, int accessor) {
 }
 
 }  // namespace
+
+std::string meshopt_among(const tinygltf::ExtensionMap& extensions) {
+  for (const char* name : meshopt_names) {
+    if (extensions.contains(name)) {
+      return name;
+    }
+  }
+  return {};
+}
+
+std::string why_unsupported(const std::string& extension) {
+  if (extension == draco && !has_draco()) {
+    return "for which marti was built without the library Draco (Debian's libdraco-dev)";
+  }
+  if (is_meshopt(extension) && !has_meshopt()) {
+    return "for which marti was built without the library meshoptimizer (Debian's libmeshoptimizer-dev)";
+  }
+  return "which is not supported";
+}
 
 std::string missing_requirement(const tinygltf::Model& file) {
   const auto missing =

@@ -1,11 +1,21 @@
 // Internal to scenes/: how a glTF file's extensions are treated.
 #pragma once
 
+#include <array>
 #include <string>
 
 #include <tiny_gltf.h>
 
 namespace marti::scenes::gltf {
+
+inline constexpr std::array<const char*, 2> meshopt_names = {"EXT_meshopt_compression",
+                                                             "KHR_meshopt_compression"};
+
+/// Which of meshopt_names is among the extensions; empty if none is.
+[[nodiscard]] std::string meshopt_among(const tinygltf::ExtensionMap& extensions);
+
+/// Why an extension cannot be read: "not supported", or that marti was built without the library for it.
+[[nodiscard]] std::string why_unsupported(const std::string& extension);
 
 /// The first extension that the file requires and that is not supported; empty when there is none.
 [[nodiscard]] std::string missing_requirement(const tinygltf::Model& file);

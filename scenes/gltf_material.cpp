@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
-#include <memory>
 
 #include <glm/common.hpp>
 
-#include "sim/error.h"
-#include "sim/shown.h"
+#include "scenes/image_file.h"
 
 namespace marti::scenes::gltf {
 
@@ -18,8 +15,6 @@ namespace {
 constexpr double largest_emission = 1e9;
 constexpr double largest_ior = 100.0;
 constexpr double largest_shininess = 1e5;
-constexpr std::uint64_t bytes_a_texel = sizeof(decltype(Texture::texels)::value_type);
-constexpr const char* textures_take = "its textures take";
 
 const tinygltf::Value* extension(const tinygltf::ExtensionMap& map, const char* name) {
   const auto found = map.find(name);
@@ -197,10 +192,7 @@ std::uint32_t Materials::texture_index(int texture, const std::string& user) {
   if (known != textures_.end()) {
     return known->second;
   }
-  Texture decoded = model_.options().size_only ? size_image(image, name) : decode_image(image, name);
-  if (!model_.options().size_only) {
-    model_.take_memory(decoded.size() * bytes_a_texel, textures_take);
-  }
+  Texture decoded = open_image(model_, find_image(image, name), decode_);
   decoded.srgb = true;
   decoded.repeat_u = sampler.wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
   decoded.repeat_v = sampler.wrapT != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
@@ -225,9 +217,13 @@ int Materials::first_alike(int image, const std::string& user) {
   return place->second;
 }
 
-Materials::Image Materials::find_image(int image, const std::string& user) const {
+void Materials::check_image(int image) const {
+  static_cast<void>(decode_image(model_, find_image(image, "the file"), decode_));
+}
+
+ImageFile Materials::find_image(int image, const std::string& user) const {
   const tinygltf::Image& source = model_.at(model_.data().images, image, "image", user);
-  Image found;
+  ImageFile found;
   found.name = !source.name.empty()  ? source.name
                : !source.uri.empty() ? source.uri
                                      : "image " + std::to_string(image);
@@ -235,50 +231,7 @@ Materials::Image Materials::find_image(int image, const std::string& user) const
   if (source.bufferView >= 0) {
     found.bytes = model_.view_bytes(source.bufferView, "image " + std::to_string(image));
   }
-  if (found.bytes.empty()) {
-    model_.fail("image '" + sim::shown(found.name) + "' is missing, empty or cannot be read");
-  }
-  if (!decode_) {
-    model_.fail("it needs the texture '" + sim::shown(found.name) + "', and no image decoder is at hand");
-  }
   return found;
-}
-
-template <class Decode>
-auto Materials::read_image(const Image& image, const Decode& decode) const {
-  try {
-    return decode(image.bytes, image.name);
-  } catch (const sim::UserError& error) {
-    model_.fail("image '" + sim::shown(image.name) + "': " + error.what());
-  }
-}
-
-Texture Materials::decode_image(int image, const std::string& user) const {
-  const Image found = find_image(image, user);
-  if (const ImageSizer& sizer =
-          model_.options().size_first ? model_.options().size_first : model_.options().size_only) {
-    const ImageSize size = read_image(found, sizer);
-    // Both the samples from the decoder and the texels made of them.
-    model_.require_memory(2 * bytes_a_texel * size.width * size.height, textures_take);
-  }
-  Texture texture = read_image(found, decode_);
-  sim::ensure(texture.width > 0 && texture.height > 0 && texture.texels.size() == texture.size(),
-              "an image decoder returned a texture whose size does not match its texels");
-  texture.name = found.name;
-  return texture;
-}
-
-Texture Materials::size_image(int image, const std::string& user) const {
-  const Image found = find_image(image, user);
-  const ImageSize size = read_image(found, model_.options().size_only);
-  sim::ensure(size.width > 0 && size.height > 0, "an image sizer returned an image of no size");
-  Texture texture;
-  texture.name = found.name;
-  texture.width = size.width;
-  texture.height = size.height;
-  model_.take_memory(found.bytes.size(), textures_take);
-  texture.file = std::make_shared<const std::vector<std::byte>>(found.bytes.begin(), found.bytes.end());
-  return texture;
 }
 
 }  // namespace marti::scenes::gltf

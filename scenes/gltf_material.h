@@ -15,7 +15,9 @@
 #include <glm/vec3.hpp>
 
 #include "scenes/gltf_model.h"
+#include "scenes/image_file.h"
 #include "scenes/scene.h"
+#include "scenes/scene_notes.h"
 #include "scenes/texture.h"
 
 namespace marti::scenes::gltf {
@@ -29,11 +31,6 @@ namespace marti::scenes::gltf {
 
 /// The `extras.marti` object, or nullptr.
 [[nodiscard]] const tinygltf::Value* own_extras(const tinygltf::Value& extras);
-
-/// What the loader leaves out, with counts, for the notes.
-struct LeftOut {
-  std::map<std::string, std::uint64_t> features;  ///< by a description in the plural
-};
 
 class Materials {
  public:
@@ -52,23 +49,14 @@ class Materials {
   /// The file's images in use, by index.
   [[nodiscard]] const std::set<int>& used_images() const { return images_; }
   /// Decodes an image that the scene does not use, to check it.
-  void check_image(int image) const { static_cast<void>(decode_image(image, "the file")); }
+  void check_image(int image) const;
 
  private:
   Material convert(int index, int& texture_coordinates);
   std::uint32_t texture_index(int texture, const std::string& user);
   /// The first image in use with the same bytes, so that equal images are decoded once and share a texture.
   int first_alike(int image, const std::string& user);
-  struct Image {
-    std::string name;
-    std::span<const std::byte> bytes;
-  };
-  [[nodiscard]] Image find_image(int image, const std::string& user) const;
-  /// Throws UserError when `decode` fails.
-  template <class Decode>
-  auto read_image(const Image& image, const Decode& decode) const;
-  [[nodiscard]] Texture decode_image(int image, const std::string& user) const;
-  [[nodiscard]] Texture size_image(int image, const std::string& user) const;
+  [[nodiscard]] ImageFile find_image(int image, const std::string& user) const;
 
   const Model& model_;
   const ImageDecoder& decode_;

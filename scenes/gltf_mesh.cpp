@@ -53,7 +53,7 @@ void MeshReader::add_primitive(const tinygltf::Primitive& primitive, const Pose&
     return;
   }
   if (const std::string extension = compression_of_primitive(model_.data(), primitive); !extension.empty()) {
-    model_.fail(name + " is compressed by the extension " + extension + ", which is not supported");
+    model_.fail(name + " is compressed by the extension " + extension + ", " + why_unsupported(extension));
   }
   left_out_.features["vertex colours"] += attribute(primitive.attributes, "COLOR_0") >= 0 ? 1U : 0U;
   const Materials::Use use = materials_.use(primitive.material);

@@ -6,16 +6,14 @@
 #include <cstring>
 #include <new>
 #include <sstream>
-#include <system_error>
 #include <utility>
 
+#include "scenes/gltf_draco.h"
 #include "scenes/gltf_extensions.h"
 #include "scenes/gltf_files.h"
-#include "scenes/gltf_index_views.h"
-#include "scenes/part_error.h"
+#include "scenes/gltf_meshopt.h"
+#include "scenes/gltf_placeholders.h"
 #include "sim/error.h"
-#include "sim/files.h"
-#include "sim/key_error.h"
 #include "sim/shown.h"
 
 namespace marti::scenes::gltf {
@@ -179,8 +177,7 @@ double load_value(const std::byte* from, int type, bool normalized) {
 
 }  // namespace
 
-Model::Model(std::filesystem::path path, const GltfOptions& options)
-    : path_(std::move(path)), options_(options), memory_(options.memory) {
+Model::Model(std::filesystem::path path, const FileOptions& options) : SourceFile(std::move(path), options) {
   try {
     parse();
   } catch (const sim::UserError&) {
@@ -193,21 +190,7 @@ Model::Model(std::filesystem::path path, const GltfOptions& options)
 }
 
 void Model::parse() {
-  std::error_code failed;
-  if (const std::uintmax_t size = std::filesystem::file_size(path_, failed);
-      !failed && size <= options_.max_file_bytes) {
-    take_memory(2 * size, "it takes");  // tinygltf copies the part that is not JSON
-  }
-  std::string file;
-  try {
-    file = sim::read_file(path_, static_cast<std::int64_t>(options_.max_file_bytes));
-  } catch (const sim::UserError& error) {
-    const std::string reason = error.what();
-    if (reason.starts_with(path_.string())) {
-      throw;
-    }
-    fail(reason);
-  }
+  const std::string file = read(2);  // tinygltf copies the part that is not JSON
   const bool binary = file.starts_with("glTF");
   const std::string_view json = json_of(file, binary);
   if (json.size() > max_json_bytes || file.size() > 0xffffffffU) {
@@ -218,17 +201,18 @@ void Model::parse() {
     fail("its JSON is nested deeper than " + std::to_string(max_json_depth) + " levels");
   }
   take_memory(shape.bytes(json.size()), "its JSON takes");
-  const sim::MemoryBudget before = memory_;
-  FileAccess access(path_.parent_path(), options_.max_file_bytes, memory_);
+  const sim::MemoryBudget before = memory();
+  FileAccess access(path().parent_path(), options().max_file_bytes, memory(), "URI");
   std::string error;
   bool parsed = parse_with(file, access, error);
-  if (!parsed && error.find("] invalid bufferView") != std::string::npos) {
-    if (IndexViews given = given_index_views(json); !given.accessors.empty()) {
-      memory_ = before;
+  if (!parsed && (error.find("] invalid bufferView") != std::string::npos ||
+                  json.find("meshopt_compression") != std::string_view::npos)) {
+    if (Placeholders given = with_placeholders(json); !given.json.empty()) {
+      memory() = before;
       data_ = {};
       error.clear();
       parsed = parse_with(binary ? with_json(file, std::move(given.json)) : given.json, access, error);
-      take_index_views(given, data_);
+      remove_placeholders(given, data_);
     }
   }
   if (!access.refusal().empty()) {
@@ -236,7 +220,7 @@ void Model::parse() {
   }
   // tinygltf reads the names of the extensions before it fails on data that need one of them.
   if (const std::string extension = missing_requirement(data_); !extension.empty()) {
-    fail("it requires the extension " + shown(extension) + ", which is not supported");
+    fail("it requires the extension " + double_quoted(extension) + ", " + why_unsupported(extension));
   }
   // Some faults are only reported by a message: for example, a primitive that cannot be parsed is dropped.
   const std::string faults = true_faults(error);
@@ -246,27 +230,8 @@ void Model::parse() {
          (ignored.empty() ? "" : " (it uses extensions that are not supported: " + ignored + ")"));
   }
   read_ = std::vector<std::atomic<bool>>(data_.accessors.size());
-}
-
-void Model::require_memory(std::uint64_t bytes, const char* what) const {
-  try {
-    memory_.require(bytes, what, "take a smaller scene");
-  } catch (const sim::KeyError& error) {
-    throw sim::KeyError(error.key(), sim::shown(path_.string()) + ": " + error.reason());
-  }
-}
-
-void Model::take_memory(std::uint64_t bytes, const char* what) const {
-  require_memory(bytes, what);
-  memory_.take(bytes, what, {});
-}
-
-void Model::fail(const std::string& what) const {
-  throw sim::UserError(sim::shown(path_.string()) + ": " + what);
-}
-
-void Model::fail_choice(const char* part, const std::string& what) const {
-  throw PartError(part, sim::shown(path_.string()) + ": " + what);
+  decompress_views(*this, data_);
+  decompress_primitives(*this, data_);
 }
 
 void Model::fail_reference(const char* kind, int index, std::size_t size, const std::string& user) const {
@@ -279,7 +244,7 @@ std::span<const std::byte> Model::view_bytes(int view, const std::string& user) 
   const std::string name = "buffer view " + std::to_string(view);
   const tinygltf::Buffer& buffer = at(data_.buffers, v.buffer, "buffer", name);
   if (const std::string extension = compression_of_view(data_, view); !extension.empty()) {
-    fail(name + " is compressed by the extension " + extension + ", which is not supported");
+    fail(name + " is compressed by the extension " + extension + ", " + why_unsupported(extension));
   }
   const std::uint64_t size = buffer.data.size();
   if (v.byteOffset > size || v.byteLength > size - v.byteOffset) {
@@ -341,7 +306,7 @@ bool Model::parse_with(const std::string& file, FileAccess& access, std::string&
   const std::string directory = access.directory().substr(0, access.directory().size() - 1);
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(keep_image, nullptr);
-  parser.SetFsCallbacks(access.callbacks());
+  parser.SetFsCallbacks(callbacks_of(access));
   std::string warning;
   const auto size = static_cast<unsigned int>(file.size());
   return file.starts_with("glTF")
@@ -371,9 +336,9 @@ std::vector<double> Model::read_values(int accessor, int components, const std::
     fail(name + " has component type " + std::to_string(a.componentType) +
          ", which is not allowed for vertex attributes");
   }
-  if (a.count == 0 || a.count > options_.max_triangles) {
+  if (a.count == 0 || a.count > options().max_triangles) {
     fail(name + " has " + std::to_string(a.count) + " elements; 1 to " +
-         std::to_string(options_.max_triangles) + " are accepted");
+         std::to_string(options().max_triangles) + " are accepted");
   }
   const auto width = static_cast<std::size_t>(components);
   std::vector<double> values;
@@ -435,9 +400,9 @@ std::vector<std::uint32_t> Model::read_indices(int accessor, const std::string& 
        type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)) {
     fail(name + " has the wrong type: unsigned scalars are needed");
   }
-  if (a.count > 3 * options_.max_triangles) {
+  if (a.count > 3 * options().max_triangles) {
     fail(name + " has " + std::to_string(a.count) + " elements; at most " +
-         std::to_string(3 * options_.max_triangles) + " are accepted");
+         std::to_string(3 * options().max_triangles) + " are accepted");
   }
   std::vector<std::uint32_t> indices;
   if (a.bufferView < 0 && a.sparse.isSparse) {

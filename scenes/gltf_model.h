@@ -14,34 +14,25 @@
 
 #include <tiny_gltf.h>
 
-#include "scenes/gltf.h"
+#include "scenes/source_file.h"
 
-namespace marti::scenes::gltf {
+namespace marti::scenes {
 
 class FileAccess;
+
+}  // namespace marti::scenes
+
+namespace marti::scenes::gltf {
 
 /// The most zeros that an accessor without a buffer view may stand for.
 inline constexpr std::size_t most_zeros = std::size_t{1} << 22U;
 
-class Model {
+class Model : public SourceFile {
  public:
   /// Reads and parses the file and the files that it refers to. Throws UserError.
-  Model(std::filesystem::path path, const GltfOptions& options);
+  Model(std::filesystem::path path, const FileOptions& options);
 
   [[nodiscard]] const tinygltf::Model& data() const { return data_; }
-  [[nodiscard]] const GltfOptions& options() const { return options_; }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-  /// Takes `bytes` from options().memory. Throws UserError when less is left; `what` begins the sentence, as
-  /// "its textures take". Only for the thread that opens the file.
-  void take_memory(std::uint64_t bytes, const char* what) const;
-  /// Checks for memory that is soon freed again: as take_memory(), but takes nothing.
-  void require_memory(std::uint64_t bytes, const char* what) const;
-
-  /// Throws a UserError that begins with the file's path.
-  [[noreturn]] void fail(const std::string& what) const;
-  /// Throws a PartError: the file lacks the part (scenes/part_error.h) that the options ask for.
-  [[noreturn]] void fail_choice(const char* part, const std::string& what) const;
 
   /// `list[index]`; a UserError that names the `user` of the missing `kind` if there is no such element.
   template <typename T>
@@ -89,10 +80,7 @@ class Model {
   void parse();
   bool parse_with(const std::string& file, FileAccess& access, std::string& error);
 
-  std::filesystem::path path_;
-  GltfOptions options_;
   tinygltf::Model data_;
-  mutable sim::MemoryBudget memory_;
   mutable std::vector<std::atomic<bool>> read_;  // for each accessor; animations are read by many threads
 };
 

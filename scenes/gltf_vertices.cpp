@@ -7,17 +7,11 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
+#include "scenes/vertex_values.h"
+
 namespace marti::scenes::gltf {
 
 namespace {
-
-// Beyond this, products of three differences of coordinates could overflow.
-constexpr double largest_coordinate = 1e30;
-
-bool is_usable(const glm::dvec3& p) {
-  return std::abs(p.x) <= largest_coordinate && std::abs(p.y) <= largest_coordinate &&
-         std::abs(p.z) <= largest_coordinate;
-}
 
 /// The inverse transpose of the upper 3 x 3 part up to a positive factor: its cofactors, negated for a
 /// mirroring transform. It needs no division, so singular transforms cause no error.
@@ -25,14 +19,6 @@ glm::dmat3 normal_transform(const glm::dmat4& world) {
   const glm::dmat3 m(world);
   const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
   return glm::dot(m[0], cofactors[0]) < 0.0 ? -cofactors : cofactors;
-}
-
-/// A unit vector along n, or zero if n has no direction.
-glm::dvec3 unit_or_zero(const glm::dvec3& n) {
-  const glm::dvec3 unit = n / glm::length(n);
-  const bool usable = std::isfinite(unit.x) && std::isfinite(unit.y) && std::isfinite(unit.z) &&
-                      std::abs(glm::length(unit) - 1.0) < 1e-6;
-  return usable ? unit : glm::dvec3(0.0);
 }
 
 /// The sum of a vertex's vector and its weighted displacements. A displacement with weight 0 is left out even

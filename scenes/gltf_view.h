@@ -1,4 +1,4 @@
-// Internal to scenes/: lights and cameras of a glTF file, and default ones if it has none.
+// Internal to scenes/: lights and cameras of a glTF file.
 #pragma once
 
 #include <vector>
@@ -14,11 +14,5 @@ void add_lights(const Model& model, const std::vector<PlacedNode>& nodes, Scene&
 
 /// Sets the camera that the options ask for, or the first perspective one. False when the scene has none.
 [[nodiscard]] bool set_camera(const Model& model, const std::vector<PlacedNode>& nodes, Scene& scene);
-
-/// A camera that sees the whole scene, from a little above on the +z side. The scene has triangles.
-void frame_camera(Scene& scene);
-
-/// A directional light over the camera's shoulder and some ambient light.
-void add_default_light(Scene& scene);
 
 }  // namespace marti::scenes::gltf

@@ -2,47 +2,66 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
+#include "scenes/gltf.h"
+#include "scenes/obj.h"
 #include "scenes/part_error.h"
+#include "scenes/ply.h"
 #include "scenes/procedural.h"
 #include "sim/shown.h"
 
 namespace marti::scenes {
 
-bool names_a_file(std::string_view spec) {
-  std::string lower(spec);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower.ends_with(".gltf") || lower.ends_with(".glb");
-}
-
 namespace {
+
+/// One of file_endings; empty for a procedural scene.
+std::string ending_of(std::string_view spec) {
+  const std::size_t dot = spec.rfind('.');
+  std::string ending(dot == std::string_view::npos ? std::string_view() : spec.substr(dot + 1));
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const bool known = std::find(file_endings.begin(), file_endings.end(), ending) != file_endings.end();
+  return known ? ending : std::string();
+}
 
 // operator/ returns the right-hand path if that is absolute.
 std::filesystem::path path_of(std::string_view spec, const OpenOptions& options) {
   return options.base_directory / std::filesystem::path(spec);
 }
 
-Scene open_procedural(std::string_view spec, const GltfOptions& options) {
-  Scene scene = make_procedural(spec);
+/// Throws PartError when a part is asked for of a scene of this `kind`, which has none.
+void refuse_parts(std::string_view spec, const char* kind, const FileOptions& options) {
   const std::string where = "scene '" + sim::shown(spec) + "': ";
   if (!options.scene.empty() || !options.camera.empty()) {
     throw PartError(options.scene.empty() ? "camera" : "scene",
-                    where + "a procedural scene has one camera and no parts to choose from");
+                    where + kind + " has one camera and no parts to choose from");
   }
   if (!options.animation.empty() && options.animation != "none") {
-    throw PartError("animation", where + "a procedural scene has no animations");
+    throw PartError("animation", where + kind + " has no animations");
   }
-  return scene;
 }
 
 }  // namespace
 
+bool names_a_file(std::string_view spec) { return !ending_of(spec).empty(); }
+
 AnimatedScene open_animated(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode) {
-  if (names_a_file(spec)) {
-    return open_gltf(path_of(spec, options), options.gltf, decode);
+  const std::string ending = ending_of(spec);
+  if (ending == "gltf" || ending == "glb") {
+    return open_gltf(path_of(spec, options), options.file, decode);
   }
-  return AnimatedScene(open_procedural(spec, options.gltf));
+  if (ending == "obj") {
+    refuse_parts(spec, "an OBJ file", options.file);
+    return open_obj(path_of(spec, options), options.file, decode);
+  }
+  if (ending == "ply") {
+    refuse_parts(spec, "a PLY file", options.file);
+    return open_ply(path_of(spec, options), options.file);
+  }
+  Scene scene = make_procedural(spec);
+  refuse_parts(spec, "a procedural scene", options.file);
+  return AnimatedScene(std::move(scene));
 }
 
 Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode,
@@ -53,7 +72,7 @@ Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageD
   if (use != nullptr) {
     *use = scene.file_use();
   }
-  return scene.asked_for(options.gltf.time, name);
+  return scene.asked_for(options.file.time, name);
 }
 
 }  // namespace marti::scenes

@@ -1,13 +1,14 @@
 // Opens any scene, a file or a recipe, from the text that the user wrote.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 #include "scenes/animated.h"
-#include "scenes/gltf.h"
+#include "scenes/file_options.h"
 #include "scenes/scene.h"
 #include "scenes/texture.h"
 
@@ -15,20 +16,23 @@ namespace marti::scenes {
 
 struct OpenOptions {
   std::filesystem::path base_directory;  ///< of relative file names; empty: the current directory
-  GltfOptions gltf;                      ///< which parts of a file to use
+  FileOptions file;                      ///< which parts of a file to use, and limits
 };
 
-/// Opens `spec`: a file when it ends in .gltf or .glb (in any case), else a procedural scene such as
-/// "teapot:12", which has one pose. `options.gltf.time` is ignored. For a procedural scene, choosing a scene,
-/// a camera or an animation other than "none" is an error. Throws UserError as open_gltf and make_procedural
-/// do.
+/// The endings of the names of files that can be read, without the dot.
+inline constexpr std::array<std::string_view, 4> file_endings = {"gltf", "glb", "obj", "ply"};
+
+/// Opens `spec`: a file when it has one of these endings (in any case), else a procedural scene such as
+/// "teapot:12", which has one pose. `options.file.time` is ignored. For a procedural scene and for a file
+/// that is no glTF, choosing a scene, a camera or an animation other than "none" is an error. Throws
+/// UserError as open_gltf, open_obj, open_ply and make_procedural do.
 [[nodiscard]] AnimatedScene open_animated(std::string_view spec, const OpenOptions& options,
                                           const ImageDecoder& decode);
 
 /// Whether `spec` is the name of a file, by its ending, rather than of a procedural scene.
 [[nodiscard]] bool names_a_file(std::string_view spec);
 
-/// The pose at `options.gltf.time`. A time other than 0 is an error if the scene does not move. Unless `use`
+/// The pose at `options.file.time`. A time other than 0 is an error if the scene does not move. Unless `use`
 /// is null, it receives how much of its file the scene uses.
 [[nodiscard]] Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode,
                                FileUse* use = nullptr);

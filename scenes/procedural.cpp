@@ -19,7 +19,7 @@ constexpr std::array<ProceduralVariant, 1> teapot_variants = {
     ProceduralVariant{"pot", "the pot alone, without the chequered board"}};
 
 // The largest sizes give about 16 million triangles, or half a million spheres, cylinders and cones.
-constexpr std::array<ProceduralScene, 12> registry = {
+constexpr std::array<ProceduralScene, 13> registry = {
     ProceduralScene{"balls",
                     0,
                     6,
@@ -51,6 +51,14 @@ constexpr std::array<ProceduralScene, 12> registry = {
                     "interlocking rings in a pyramid of n layers before a wall; 5 n (n+1) (2n+1) "
                     "spheres and as many cylinders",
                     {}},
+    ProceduralScene{
+        "room",
+        2,
+        500,
+        12,
+        "a matt teapot of n x n cuts a patch and a mirrored ball in a closed white room with one red "
+        "and one green wall, lit by an emissive panel; without lights, for path tracing",
+        {}},
     ProceduralScene{"shells", 0, 10, 1, "a sea shell; 180 * 2^n + 1 spheres", {}},
     ProceduralScene{"sombrero",
                     1,
@@ -75,12 +83,13 @@ Scene make(std::string_view name, std::uint32_t size, bool whole) {
     std::string_view name;
     Scene (*make)(std::uint32_t size);
   };
-  static constexpr std::array<Recipe, 10> recipes = {
-      Recipe{"balls", spd::make_balls},   Recipe{"gears", spd::make_gears},
-      Recipe{"jacks", spd::make_jacks},   Recipe{"lattice", spd::make_lattice},
-      Recipe{"mount", spd::make_mount},   Recipe{"rings", spd::make_rings},
-      Recipe{"shells", spd::make_shells}, Recipe{"sombrero", spd::make_sombrero},
-      Recipe{"tetra", spd::make_tetra},   Recipe{"tree", spd::make_tree}};
+  static constexpr std::array<Recipe, 11> recipes = {
+      Recipe{"balls", spd::make_balls},       Recipe{"gears", spd::make_gears},
+      Recipe{"jacks", spd::make_jacks},       Recipe{"lattice", spd::make_lattice},
+      Recipe{"mount", spd::make_mount},       Recipe{"rings", spd::make_rings},
+      Recipe{"room", spd::make_room},         Recipe{"shells", spd::make_shells},
+      Recipe{"sombrero", spd::make_sombrero}, Recipe{"tetra", spd::make_tetra},
+      Recipe{"tree", spd::make_tree}};
   for (const Recipe& recipe : recipes) {
     if (recipe.name == name) {
       return recipe.make(size);

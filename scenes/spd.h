@@ -68,6 +68,7 @@ void add_square(Scene& scene, const std::array<glm::dvec3, 4>& corners, std::uin
 [[nodiscard]] Scene make_lattice(std::uint32_t n);
 [[nodiscard]] Scene make_mount(std::uint32_t n);
 [[nodiscard]] Scene make_rings(std::uint32_t n);
+[[nodiscard]] Scene make_room(std::uint32_t n);
 [[nodiscard]] Scene make_shells(std::uint32_t n);
 [[nodiscard]] Scene make_sombrero(std::uint32_t n);
 [[nodiscard]] Scene make_teapot(std::uint32_t n, bool with_board);

@@ -44,6 +44,12 @@ struct Key {
   std::string meaning;               // one or two sentences, without the full stop
 };
 
+/// Whether the key has this name or lies in the section of this name or below it; always if it is empty.
+[[nodiscard]] inline bool is_or_is_below(const Key& key, std::string_view name) {
+  return name.empty() ||
+         (key.name.starts_with(name) && (key.name.size() == name.size() || key.name[name.size()] == '.'));
+}
+
 /// The values of `key` as written in a TOML file, a list in brackets.
 std::string print_values(const Key& key, std::span<const Value> values);
 /// "16 KiB to 1 GiB", "lru, fifo or random", "at least 1"; empty when every value of the type is allowed.
@@ -131,8 +137,9 @@ class Schema {
   std::unordered_set<std::string, NameHash, std::equal_to<>> prefixes_;
 };
 
-/// Every key with type, default, unit, range and meaning, for a terminal `width` columns wide.
-std::string list_keys_as_text(const Schema& schema, int width = 100);
+/// Every key with type, default, unit, range and meaning, for a terminal `width` columns wide. `only`: the
+/// key of this name, or the keys of this section and those below it; empty: all.
+std::string list_keys_as_text(const Schema& schema, int width = 100, std::string_view only = {});
 /// As list_keys_as_text(), in Markdown with one table a section.
 std::string list_keys_as_markdown(const Schema& schema);
 

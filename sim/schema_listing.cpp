@@ -63,12 +63,15 @@ std::string escape_cell(std::string_view text) {
   return escaped;
 }
 
-/// Calls start(section) where a new section begins and visit(key) for each key.
+/// Calls start(section) where a new section begins and visit(key) for each key of `only`.
 template <class Start, class Visit>
-void for_each_key(const Schema& schema, Start&& start, Visit&& visit) {
+void for_each_key(const Schema& schema, std::string_view only, Start&& start, Visit&& visit) {
   std::string current;
   bool first = true;
   for (const Key& key : schema.keys()) {
+    if (!is_or_is_below(key, only)) {
+      continue;
+    }
     const std::string section = section_of(schema, key);
     if (first || section != current) {
       start(section);
@@ -81,11 +84,11 @@ void for_each_key(const Schema& schema, Start&& start, Visit&& visit) {
 
 }  // namespace
 
-std::string list_keys_as_text(const Schema& schema, int width) {
+std::string list_keys_as_text(const Schema& schema, int width, std::string_view only) {
   const auto columns = static_cast<std::size_t>(std::max(width, 40));
   std::string listing;
   for_each_key(
-      schema,
+      schema, only,
       [&](const std::string& section) {
         listing += listing.empty() ? "" : "\n";
         if (!section.empty()) {
@@ -113,7 +116,7 @@ std::string list_keys_as_text(const Schema& schema, int width) {
 std::string list_keys_as_markdown(const Schema& schema) {
   std::string listing;
   for_each_key(
-      schema,
+      schema, {},
       [&](const std::string& section) {
         listing += listing.empty() ? "" : "\n";
         if (!section.empty()) {

@@ -45,6 +45,7 @@ struct StepCounts {
   std::int64_t shadow_rays = 0;
   std::int64_t reflection_rays = 0;
   std::int64_t refraction_rays = 0;
+  std::int64_t diffuse_rays = 0;
   std::int64_t branches = 0;
   std::int64_t leaves = 0;
   std::int64_t lists = 0;         ///< leaves whose object list was read
@@ -70,6 +71,8 @@ struct StepCounts {
           sim::Better::neither},
         C{"refraction_rays", "1", "refracted rays set up", &StepCounts::refraction_rays, sim::MergeRule::sum,
           sim::Better::neither},
+        C{"diffuse_rays", "1", "scattered rays set up", &StepCounts::diffuse_rays, sim::MergeRule::sum,
+          sim::Better::neither},
         C{"branches", "1", "branch nodes visited", &StepCounts::branches},
         C{"leaves", "1", "leaf nodes visited, empty ones included", &StepCounts::leaves},
         C{"lists", "1", "object lists read", &StepCounts::lists},
@@ -90,7 +93,7 @@ static_assert(sim::declares_every_member<StepCounts>());
 /// The counter of each RayKind.
 inline constexpr std::array<std::int64_t StepCounts::*, ray_kinds> ray_counters = {
     &StepCounts::camera_rays, &StepCounts::shadow_rays, &StepCounts::reflection_rays,
-    &StepCounts::refraction_rays};
+    &StepCounts::refraction_rays, &StepCounts::diffuse_rays};
 
 /// References are lines touched (without a cache: parts of at most one interleave unit each); one record may
 /// take several references.

@@ -96,8 +96,9 @@ OperationCycles cost_preset(std::string_view name) {
 }
 
 StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words, accel::Traversal traversal,
-                       bool mailboxes) {
+                       bool mailboxes, Integrator integrator) {
   const OperationMixes& mixes = operation_mixes(traversal);
+  const bool path = integrator == Integrator::path;
   StepCycles steps;
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
     steps.ray[kind] = price(mixes.ray[kind], cycles, 0);
@@ -116,8 +117,8 @@ StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words, 
   steps.sphere_test = price(mixes.sphere_test, cycles, sim::add_ticks(beside, quadric));
   steps.cone_test = price(mixes.cone_test, cycles, sim::add_ticks(beside, quadric));
   // The nearest primitive and the lights are in the node's registers or local store.
-  steps.shade = price(mixes.shade, cycles, read_record(cycles, words.material));
-  steps.light = price(mixes.light, cycles, 0);
+  steps.shade = price(path ? mixes.path_shade : mixes.shade, cycles, read_record(cycles, words.material));
+  steps.light = price(path ? mixes.path_light : mixes.light, cycles, 0);
   steps.texel = price(mixes.texel, cycles, read_record(cycles, words.texel));
   steps.cut = price(mixes.cut, cycles, read_record(cycles, words.node));
   steps.pass = price(mixes.cut, cycles, read_record(cycles, words.material));

@@ -55,10 +55,10 @@ struct StepCycles {
 /// The cycles of a mix, rounded to nearest with halves up, plus `fixed` cycles; UserError beyond 64 bits.
 [[nodiscard]] std::int64_t price(const OperationMix& mix, const OperationCycles& cycles, std::int64_t fixed);
 
-/// Prices the measured operation mixes of a traversal (operation_mix.h). Rounds each step to whole cycles,
-/// halves up. Mailboxes are words of the node's own memory, one for each primitive.
+/// Prices the measured operation mixes of a traversal and a program (operation_mix.h). Rounds each step to
+/// whole cycles, halves up. Mailboxes are words of the node's own memory, one for each primitive.
 [[nodiscard]] StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words,
                                      accel::Traversal traversal = accel::Traversal::octree,
-                                     bool mailboxes = false);
+                                     bool mailboxes = false, Integrator integrator = Integrator::whitted);
 
 }  // namespace marti::processors

@@ -217,11 +217,12 @@ OperationMix mean_mix(const accel::OperationCounts& counts, std::uint64_t steps)
 MeasuredMixes measure_operation_mixes(const scenes::Scene& scene, const accel::TriangleSet& triangles,
                                       const accel::Structure& structure, const RenderOptions& options) {
   const scenes::ImagePlane plane = scene.camera.image_plane(options.width, options.height);
+  const Emitters emitters = options.integrator == Integrator::path ? Emitters(scene) : Emitters();
   accel::Mailboxed<CountingRecorder> recorder(structure, options.mailboxes);
   const auto trace = [&]<class Recorder>(Recorder& visitor) {
     accel::visit_structure(structure, [&](const auto& concrete) {
       using Concrete = std::remove_cvref_t<decltype(concrete)>;
-      Tracer<Counted, Concrete, Recorder> tracer(scene, concrete, plane, options, visitor);
+      Tracer<Counted, Concrete, Recorder> tracer(scene, concrete, emitters, plane, options, visitor);
       for (std::uint32_t y = 0; y < options.height; ++y) {
         for (std::uint32_t x = 0; x < options.width; ++x) {
           static_cast<void>(tracer.trace(x, y));
@@ -302,6 +303,8 @@ OperationMixes with_shading(const WalkMixes& walk) {
           .cone_test = {34500, 32061, 1843, 204, 6942, 0},
           .shade = {73624, 93477, 7000, 4000, 33812, 0},
           .light = {41000, 68957, 2000, 1000, 6000, 0},
+          .path_shade = {141001, 175989, 11658, 7863, 66772, 50400},
+          .path_light = {30447, 51625, 1414, 707, 4241, 0},
           .texel = {6000, 11000, 0, 0, 0, 11000},
           .pixel = pixel_conversion,
           .cut = voxel_cut};
@@ -311,40 +314,45 @@ OperationMixes with_shading(const WalkMixes& walk) {
 
 const OperationMixes& operation_mixes(accel::Traversal traversal) {
   // Columns: add, multiply, divide, square root, compare, integer. Rows: camera, shadow, reflected,
-  // refracted ray; branch; leaf; test.
+  // refracted, scattered ray; branch; leaf; test.
   static const std::array<OperationMixes, accel::traversals> table = {
       with_shading({.ray = {{{20154, 20154, 7000, 1000, 34000, 3000},
                              {22000, 16000, 6000, 0, 38000, 473},
                              {30182, 37183, 7000, 1000, 44000, 1792},
-                             {31000, 41000, 7000, 2000, 44000, 1003}}},
+                             {31000, 41000, 7000, 2000, 44000, 1003},
+                             {38146, 48428, 8000, 3000, 45282, 34279}}},
                     .branch = {3916, 3004, 0, 0, 8618, 6051},
                     .leaf = {},
                     .test = {18996, 12774, 111, 0, 5186, 0}}),
       with_shading({.ray = {{{20154, 20154, 7000, 1000, 34000, 10749},
                              {22000, 16000, 6000, 0, 38000, 9473},
                              {30182, 37183, 7000, 1000, 44000, 10792},
-                             {31000, 41000, 7000, 2000, 44000, 10003}}},
+                             {31000, 41000, 7000, 2000, 44000, 10003},
+                             {38146, 48428, 8000, 3000, 45282, 43279}}},
                     .branch = {1235, 1001, 0, 0, 1841, 1255},
                     .leaf = {},
                     .test = {18787, 12612, 87, 0, 4799, 0}}),
       with_shading({.ray = {{{25320, 22737, 9583, 1000, 36583, 3000},
                              {28000, 19000, 9000, 0, 41000, 473},
                              {36182, 40183, 10000, 1000, 47000, 1792},
-                             {37000, 44000, 10000, 2000, 47000, 1003}}},
+                             {37000, 44000, 10000, 2000, 47000, 1003},
+                             {44146, 51428, 11000, 3000, 48282, 34279}}},
                     .branch = {0, 0, 0, 0, 1000, 558},
                     .leaf = {8564, 1708, 5969, 0, 7713, 995},
                     .test = {18787, 12612, 87, 0, 4799, 0}}),
       with_shading({.ray = {{{32092, 32092, 9583, 1000, 43356, 27853},
                              {36317, 30317, 9000, 0, 49317, 27263},
                              {44455, 51456, 10000, 1000, 55273, 29856},
-                             {45229, 55229, 10000, 2000, 55229, 28236}}},
+                             {45229, 55229, 10000, 2000, 55229, 28236},
+                             {52557, 62839, 11000, 3000, 56693, 61627}}},
                     .branch = {},
                     .leaf = {972, 963, 0, 0, 2974, 3920},
                     .test = {18998, 12776, 111, 0, 5208, 0}}),
       with_shading({.ray = {{{9163, 13163, 4000, 1000, 9000, 0},
                              {11000, 9062, 3000, 0, 13000, 0},
                              {19209, 30222, 4000, 1000, 19000, 0},
-                             {20000, 34000, 4000, 2000, 19000, 0}}},
+                             {20000, 34000, 4000, 2000, 19000, 0},
+                             {27256, 41565, 5009, 3018, 20282, 32882}}},
                     .branch = {},
                     .leaf = {},
                     .test = {18014, 12011, 0, 0, 3328, 0}}),

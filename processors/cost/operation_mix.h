@@ -47,6 +47,8 @@ struct OperationMix {
 ///           and for cylinders and cones
 ///   shade   the surface point, its normals, ambient light, and finding that a light cannot matter
 ///   light   one light's contribution
+///   path_shade, path_light   these with Integrator::path: drawing the point of an emissive triangle and the
+///           way on is a part of shading; the light is an emissive triangle
 ///   texel   interpolating the texture's coordinates, finding the texel, applying it
 ///   pixel   converting the finished colour
 ///   cut     with the voxel cut: finding that a node is small and which share of it is covered
@@ -61,6 +63,8 @@ struct OperationMixes {
   OperationMix cone_test;
   OperationMix shade;
   OperationMix light;
+  OperationMix path_shade;
+  OperationMix path_light;
   OperationMix texel;
   OperationMix pixel;
   OperationMix cut;
@@ -68,7 +72,8 @@ struct OperationMixes {
 
 /// The table that step_cycles prices. Measured on teapot:12 in an octree or a BSP tree (max_objects 9,
 /// max_level 12) or a grid (density 4), 128 x 128, depth 2; brute force on teapot:4, 32 x 32; refraction on
-/// gears:2, which has glass; the tests of spheres, cylinders and cones on lattice:4 in the octree; the texel
+/// gears:2, which has glass; scattered rays, shading and lights of paths on teapot:12 under an emissive
+/// square; the tests of spheres, cylinders and cones on lattice:4 in the octree; the texel
 /// on a textured square. Sampling the texel and converting the pixel are counted by hand (operation_mix.cpp
 /// says how).
 [[nodiscard]] const OperationMixes& operation_mixes(accel::Traversal traversal);

@@ -14,7 +14,7 @@ RecordWords record_words(const MachineConfig& config) {
 
 StepTicks step_ticks(const MachineConfig& config, const WorkLog& log) {
   const StepCycles cycles =
-      step_cycles(config.operations, record_words(config), log.traversal, log.mailboxes);
+      step_cycles(config.operations, record_words(config), log.traversal, log.mailboxes, log.integrator);
   StepTicks ticks;
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
     ticks.ray[kind] = config.clock.cycles(cycles.ray[kind]);

@@ -53,9 +53,10 @@ std::int64_t of_operations(const MachineConfig& config, const EnergyUnits& units
   Sum sum("the energy of operations");
   // The costs of steps and splits are sums of those of operations: in cycles, or here in aJ.
   const RecordWords words = record_words(config);
-  for_each_step(
-      step_cycles(units.operations, words, counts.traversal, counts.mailboxes), counts.steps,
-      [&sum](Activity /*activity*/, std::int64_t each, std::int64_t count) { sum.add(each, count); });
+  for_each_step(step_cycles(units.operations, words, counts.traversal, counts.mailboxes, counts.integrator),
+                counts.steps, [&sum](Activity /*activity*/, std::int64_t each, std::int64_t count) {
+                  sum.add(each, count);
+                });
   for_each_build_part(build_cycles(units.operations, words), counts.build,
                       [&sum](std::int64_t each, std::int64_t count) { sum.add(each, count); });
   return sum.in_units_of(attojoules_a_femtojoule);

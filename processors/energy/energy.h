@@ -18,6 +18,7 @@ namespace marti::processors {
 struct EnergyCounts {
   accel::Traversal traversal = accel::Traversal::octree;
   bool mailboxes = false;
+  Integrator integrator = Integrator::whitted;
   StepCounts steps;
   BuildCounts build;
   /// Look-ups that hit and miss in the nodes' own caches; a miss brings its line in. Split caches in their

@@ -545,8 +545,8 @@ class DynamicWalker {
       }
       case Step::ray:
         LookUps::note_ray(cursor, operand);
-        ++(steps.*ray_counters[operand & 3U]);
-        spend(cursor, ticks_.ray[operand & 3U], 1);
+        ++(steps.*ray_counters[ray_number_of(operand)]);
+        spend(cursor, ticks_.ray[ray_number_of(operand)], 1);
         break;
       case Step::shade:
         ++steps.shades;

@@ -47,7 +47,7 @@ sim::Ticks LogLevels::traversal_of(std::uint32_t word) const {
     case Step::mailed_leaf:
       return ticks_.leaf;
     case Step::ray:
-      return ticks_.ray[operand_of(word) & 3U];
+      return ticks_.ray[ray_number_of(operand_of(word))];
     case Step::cut:
       return ticks_.cut;
     case Step::pass:

@@ -43,8 +43,8 @@ void rays_of_sample(std::span<const std::uint32_t> words, std::vector<LoggedRay>
     if (step_of(*word) == Step::ray) {
       LoggedRay ray;
       ray.begin = rays.empty() ? words.data() : word;
-      ray.kind = static_cast<RayKind>(operand_of(*word) & 3U);
-      ray.bounce = operand_of(*word) >> 2U;
+      ray.kind = ray_kind_of(operand_of(*word));
+      ray.bounce = bounce_of(operand_of(*word));
       if (!rays.empty()) {
         rays.back().end = word;
       }

@@ -24,7 +24,7 @@ struct LoggedRay {
   RayKind kind = RayKind::camera;
 
   /// The operand of its `ray` step.
-  [[nodiscard]] std::uint32_t operand() const { return static_cast<std::uint32_t>(kind) | bounce << 2U; }
+  [[nodiscard]] std::uint32_t operand() const { return ray_operand(kind, bounce); }
 };
 
 /// The words of the first camera ray and of all rays that it led to, from `words`, which are a pixel's words

@@ -67,7 +67,7 @@ class RowRecorder {
     }
   }
   void ray(RayKind kind, std::uint32_t bounce, const accel::Ray& /*ray*/) {
-    put(make_word(Step::ray, static_cast<std::uint32_t>(kind) | bounce << 2U));
+    put(make_word(Step::ray, ray_operand(kind, bounce)));
   }
   void shade(std::uint32_t material) { put(make_word(Step::shade, material)); }
   void light(std::uint32_t light) { put(make_word(Step::light, light)); }

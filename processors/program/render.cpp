@@ -44,6 +44,16 @@ void check_options(const RenderOptions& options) {
                   (options.only != nullptr && before->image.width == options.width &&
                    before->image.height == options.height && (before->log != nullptr) == options.record),
               "render: the frame that is continued is another one");
+  if (options.integrator == Integrator::path && options.voxel_cut > 0.0) {
+    throw sim::KeyError("image.voxel_cut",
+                        "averages what mirrors and lights show, and a path also follows scattered light; set "
+                        "image.voxel_cut = 0");
+  }
+  if (options.integrator == Integrator::path && options.min_weight > 0.0) {
+    throw sim::KeyError("image.min_weight",
+                        "cutting rays off would darken a path-traced image, which ends paths by chance "
+                        "instead; set image.min_weight = 0");
+  }
   if (options.floats && options.voxel_cut > 0.0) {
     throw sim::UserError("the voxel cut averages in doubles; it cannot be rendered in floats");
   }
@@ -62,10 +72,11 @@ std::optional<VoxelAverages> make_voxels(const scenes::Scene& scene, const accel
 }
 
 /// The log without its rows: what it says of the database.
-WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure,
+WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure, const Emitters& emitters,
                   const RenderOptions& options) {
   WorkLog log;
   log.traversal = accel::traversal_of(structure);
+  log.integrator = options.integrator;
   log.mailboxes = options.mailboxes;
   log.width = options.width;
   log.height = options.height;
@@ -77,7 +88,7 @@ WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure,
     log.quadrics.push_back(primitives.kind(id));
   }
   log.materials = static_cast<std::uint32_t>(scene.materials.size());
-  log.lights = static_cast<std::uint32_t>(scene.lights.size());
+  log.lights = static_cast<std::uint32_t>(scene.lights.size()) + (emitters.empty() ? 0U : 1U);
   log.texture_begin.push_back(0);
   for (const scenes::Texture& texture : scene.textures) {
     log.texture_begin.push_back(log.texture_begin.back() + texture.size());
@@ -127,19 +138,20 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
   frame.voxels = voxels ? voxels->size() : 0;
   frame.first_voxel_level = voxels ? voxels->first_level() : 0;
 
+  const Emitters emitters = options.integrator == Integrator::path ? Emitters(scene) : Emitters();
   WorkLog log;
   if (options.record) {
     check_log_capacity(structure.topology().nodes.size(), scene.materials.size() + frame.voxels,
-                       scene.lights.size(), scene.textures.size());
-    log = start_log(scene, structure, options);
+                       scene.lights.size() + 1, scene.textures.size());
+    log = start_log(scene, structure, emitters, options);
     log.voxels = frame.voxels;
     log.materials += log.voxels;
   }
   const auto in_doubles = [&](const auto& concrete) {
-    render_with<double>(scene, concrete, options, threads, log.rows, frame);
+    render_with<double>(scene, concrete, emitters, options, threads, log.rows, frame);
   };
   if (options.floats) {
-    render_in_floats(scene, structure, options, threads, log.rows, frame);
+    render_in_floats(scene, structure, emitters, options, threads, log.rows, frame);
   } else {
     accel::visit_structure(structure, [&](const auto& concrete) {
       if constexpr (std::is_same_v<std::remove_cvref_t<decltype(concrete)>, accel::Octree>) {

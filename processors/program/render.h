@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 
 #include "processors/program/image.h"
 #include "processors/program/pixel_set.h"
@@ -30,7 +31,8 @@ struct RenderOptions {
   std::uint32_t width = 512;   ///< pixels, 1 to 32768
   std::uint32_t height = 512;  ///< pixels, 1 to 32768
   std::uint32_t max_depth =
-      5;                    ///< rays in a row, the eye ray being 1; 1 to max_ray_depth. Shadow rays are free.
+      5;  ///< rays in a row, the eye ray being 1; 1 to max_ray_depth. Shadow rays are free.
+  Integrator integrator = Integrator::whitted;
   double min_weight = 0.0;  ///< 0 to 1: a ray whose largest weight in its sample is below this is not traced
   /// Camera rays of a pixel, 1 to max_samples, of the same weight. One goes through the pixel's centre,
   /// several through points drawn for them (sample_points.h), whose generator begins with `seed`.
@@ -67,7 +69,9 @@ struct RayCounts {
   std::array<std::uint64_t, ray_kinds> voxels{};  ///< of these, saw a voxel; 0 without the voxel cut
 
   RayCounts& operator+=(const RayCounts& other);
-  [[nodiscard]] std::uint64_t all() const { return traced[0] + traced[1] + traced[2] + traced[3]; }
+  [[nodiscard]] std::uint64_t all() const {
+    return std::accumulate(traced.begin(), traced.end(), std::uint64_t{0});
+  }
 };
 
 struct Frame {
@@ -83,8 +87,8 @@ struct Frame {
 
 /// Renders `scene`, whose primitives are `triangles` indexed by `structure`, on `threads` host threads (0:
 /// all of them). Throws UserError for options out of range, for a voxel cut without an octree or in floats,
-/// and when recording a scene whose nodes, materials, lights or textures do not fit the log's 28-bit
-/// operands.
+/// for path tracing with a voxel cut or a min_weight, and when recording a scene whose nodes, materials,
+/// lights or textures do not fit the log's 28-bit operands.
 [[nodiscard]] Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
                            const accel::Structure& structure, const RenderOptions& options,
                            unsigned threads = 0);

@@ -3,11 +3,11 @@
 
 namespace marti::processors {
 
-void render_in_floats(const scenes::Scene& scene, const accel::Structure& structure,
+void render_in_floats(const scenes::Scene& scene, const accel::Structure& structure, const Emitters& emitters,
                       const RenderOptions& options, unsigned threads, std::vector<LogRow>& rows,
                       Frame& frame) {
   accel::visit_structure(structure, [&](const auto& concrete) {
-    render_with<float>(scene, concrete, options, threads, rows, frame);
+    render_with<float>(scene, concrete, emitters, options, threads, rows, frame);
   });
 }
 

@@ -31,14 +31,14 @@ struct Worker {
 
 /// Renders all rows. A RowRecorder, with mailboxes or without, writes its rows to `rows`.
 template <typename Real, typename Structure, typename Recorder>
-void render_rows(const scenes::Scene& scene, const Structure& structure, const RenderOptions& options,
-                 unsigned threads, std::vector<LogRow>& rows, Frame& frame) {
+void render_rows(const scenes::Scene& scene, const Structure& structure, const Emitters& emitters,
+                 const RenderOptions& options, unsigned threads, std::vector<LogRow>& rows, Frame& frame) {
   const scenes::ImagePlane plane = scene.camera.image_plane(options.width, options.height);
   tbb::enumerable_thread_specific<Worker<Recorder>> workers;
 
   const auto render_row = [&](std::uint32_t y) {
     Worker<Recorder>& worker = workers.local();
-    Tracer<Real, Structure, Recorder> tracer(scene, structure, plane, options, worker.recorder);
+    Tracer<Real, Structure, Recorder> tracer(scene, structure, emitters, plane, options, worker.recorder);
     constexpr bool recording = std::is_base_of_v<RowRecorder, Recorder>;
     if constexpr (accel::has_mailboxes<Recorder>) {
       worker.recorder.prepare(structure.triangles().size());
@@ -98,10 +98,10 @@ void render_rows(const scenes::Scene& scene, const Structure& structure, const R
 
 /// All rows, with the recorder that the options ask for.
 template <typename Real, typename Structure>
-void render_with(const scenes::Scene& scene, const Structure& structure, const RenderOptions& options,
-                 unsigned threads, std::vector<LogRow>& rows, Frame& frame) {
+void render_with(const scenes::Scene& scene, const Structure& structure, const Emitters& emitters,
+                 const RenderOptions& options, unsigned threads, std::vector<LogRow>& rows, Frame& frame) {
   const auto run = [&]<typename Recorder>(Recorder /*which*/) {
-    render_rows<Real, Structure, Recorder>(scene, structure, options, threads, rows, frame);
+    render_rows<Real, Structure, Recorder>(scene, structure, emitters, options, threads, rows, frame);
   };
   const bool mailboxes = options.mailboxes && options.keep_mailboxes;
   if (mailboxes && options.record) {
@@ -116,7 +116,7 @@ void render_with(const scenes::Scene& scene, const Structure& structure, const R
 }
 
 /// render_with() for any structure, in floats.
-void render_in_floats(const scenes::Scene& scene, const accel::Structure& structure,
+void render_in_floats(const scenes::Scene& scene, const accel::Structure& structure, const Emitters& emitters,
                       const RenderOptions& options, unsigned threads, std::vector<LogRow>& rows,
                       Frame& frame);
 

@@ -14,11 +14,16 @@ struct SamplePoint {
   double row = 0.0;
 };
 
-/// A number of [0, 1) with 53 bits for each pixel (x, y below 32768), sample, dimension (below 4) and seed:
+/// The upper 53 bits as a number of [0, 1).
+[[nodiscard]] constexpr double unit_number(std::uint64_t bits) {
+  return static_cast<double>(bits >> 11U) * 0x1p-53;
+}
+
+/// 64 bits for each pixel (x, y below 32768), sample, dimension (below 4) and seed:
 /// the finaliser of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014) over the counter, applied twice so that
 /// neighbouring seeds share no sequence of numbers.
-[[nodiscard]] constexpr double counted_number(std::uint32_t x, std::uint32_t y, std::uint32_t sample,
-                                              std::uint32_t dimension, std::uint64_t seed) {
+[[nodiscard]] constexpr std::uint64_t counted_bits(std::uint32_t x, std::uint32_t y, std::uint32_t sample,
+                                                   std::uint32_t dimension, std::uint64_t seed) {
   const auto mixed = [](std::uint64_t h) {
     h = (h ^ (h >> 30U)) * 0xbf58476d1ce4e5b9U;
     h = (h ^ (h >> 27U)) * 0x94d049bb133111ebU;
@@ -26,9 +31,14 @@ struct SamplePoint {
   };
   const std::uint64_t counter =
       std::uint64_t{y} << 32U | std::uint64_t{x} << 16U | std::uint64_t{sample} << 2U | dimension;
-  const std::uint64_t bits =
-      mixed(mixed(counter + 0x9e3779b97f4a7c15U) ^ mixed(seed * 0x9e3779b97f4a7c15U + 0x632be59bd9b4e019U));
-  return static_cast<double>(bits >> 11U) * 0x1p-53;
+  return mixed(mixed(counter + 0x9e3779b97f4a7c15U) ^
+               mixed(seed * 0x9e3779b97f4a7c15U + 0x632be59bd9b4e019U));
+}
+
+/// counted_bits() as a number of [0, 1).
+[[nodiscard]] constexpr double counted_number(std::uint32_t x, std::uint32_t y, std::uint32_t sample,
+                                              std::uint32_t dimension, std::uint64_t seed) {
+  return unit_number(counted_bits(x, y, sample, dimension, seed));
 }
 
 /// The points of all pixels for a number of samples.

@@ -49,14 +49,17 @@ inline bool asks_lights(const scenes::Material& material) {
   return material.diffuse > 0.0 || material.highlight > 0.0;
 }
 
+inline bool is_black(const glm::dvec3& color) { return color.x == 0.0 && color.y == 0.0 && color.z == 0.0; }
+
+/// Whether points of a material scatter light.
+inline bool scatters(const scenes::Material& material) {
+  return material.diffuse > 0.0 && !is_black(material.color);
+}
+
 /// Whether a light can add anything at a point of the material. On a black material none can, because lit()
 /// is then a product with zero. A machine would keep this as a bit of the material's record.
 inline bool shows_light(const scenes::Material& material) {
-  const auto black = [](const glm::dvec3& color) {
-    return color.x == 0.0 && color.y == 0.0 && color.z == 0.0;
-  };
-  return (material.diffuse > 0.0 && !black(material.color)) ||
-         (material.highlight > 0.0 && !black(material.specular_color));
+  return scatters(material) || (material.highlight > 0.0 && !is_black(material.specular_color));
 }
 
 /// The point with barycentric weights b and the normals of the triangle there, seen along `direction`.
@@ -208,12 +211,19 @@ bool faces(const Surface<Real>& surface, const Vec3<Real>& direction) {
   return dot(surface.normal, direction) > Real(0.0) && dot(surface.geometric, direction) > Real(0.0);
 }
 
+/// Lambert's diffuse term, without the light's radiance.
+template <typename Real>
+Vec3<Real> scattered_share(const scenes::Material& material, const Surface<Real>& surface,
+                           const LightSample<Real>& light) {
+  return surface.color * (Real(material.diffuse) * dot(surface.normal, light.direction));
+}
+
 /// What one unoccluded light adds: Lambert's diffuse term and the highlight of the halfway vector (Blinn,
 /// SIGGRAPH 1977).
 template <typename Real>
 Vec3<Real> lit(const scenes::Material& material, const Surface<Real>& surface, const LightSample<Real>& light,
                const Vec3<Real>& ray_direction) {
-  Vec3<Real> reflected = surface.color * (Real(material.diffuse) * dot(surface.normal, light.direction));
+  Vec3<Real> reflected = scattered_share(material, surface, light);
   if (material.highlight > 0.0) {
     const Vec3<Real> halfway = normalized(light.direction - ray_direction);
     const Real cosine = dot(surface.normal, halfway);

@@ -7,6 +7,15 @@
 // and the light's contribution; then all that the reflected ray leads to; then all that the refracted ray
 // leads to.
 //
+// Integrator::path follows one path of light for each sample instead (Kajiya, "The rendering equation",
+// SIGGRAPH 1986). Where it meets a surface it asks all lights as above and a point of one emissive triangle,
+// and goes on as a scattered, a reflected or a refracted ray, one of them, drawn in proportion to the largest
+// colour of each. What triangles emit is added where the eye sees them or their mirror image or refraction;
+// elsewhere the asking of a point has added it. From the fourth ray of a path on, a path ends by chance
+// ("Russian roulette", Arvo, Kirk, "Particle transport and image synthesis", SIGGRAPH 1990): it goes on with
+// a probability that is its largest weight in the sample, at most 1, over which its weight is divided. There
+// is no ambient light, and the background shines from everywhere.
+//
 // Where it differs from Whitted's program: shadows are opaque (whatever lies before the light blocks it,
 // glass too); reflection and transmission weights are the material's, no Fresnel term; a refracting body is
 // surrounded by vacuum on the side from which its triangles wind counter-clockwise, bodies do not nest.
@@ -21,6 +30,7 @@
 
 #include "accel/octree_cut.h"
 #include "accel/ray.h"
+#include "processors/program/path_sampling.h"
 #include "processors/program/quadric_surface.h"
 #include "processors/program/recorder.h"
 #include "processors/program/render.h"
@@ -49,10 +59,12 @@ class Tracer {
   using Vec = Vec3<Real>;
 
   /// Keeps references to all but the plane; they must outlive the tracer.
-  Tracer(const scenes::Scene& scene, const Structure& structure, const scenes::ImagePlane& plane,
-         const RenderOptions& options, Recorder& recorder)
+  /// `emitters`: those of the scene with Integrator::path, else none.
+  Tracer(const scenes::Scene& scene, const Structure& structure, const Emitters& emitters,
+         const scenes::ImagePlane& plane, const RenderOptions& options, Recorder& recorder)
       : scene_(scene),
         structure_(structure),
+        emitters_(emitters),
         plane_(plane),
         options_(options),
         recorder_(recorder),
@@ -69,6 +81,9 @@ class Tracer {
       pixel_ = structure_.threshold() * solid_angle(x, y);
     }
     for (std::uint32_t sample = 0; sample < options_.samples; ++sample) {
+      if (options_.integrator == Integrator::path) {
+        numbers_ = PathNumbers(x, y, sample, options_.seed);
+      }
       trace(points_.at(x, y, sample));
     }
     hit_hash_ += sim::mix(pixel_hash_ ^ (std::uint64_t{y} << 32U | x));
@@ -81,6 +96,10 @@ class Tracer {
   [[nodiscard]] std::uint64_t hit_hash() const { return hit_hash_; }
 
  private:
+  /// With Integrator::path, the number of the first ray of a path, the eye ray being 1, before which the path
+  /// may end by chance.
+  static constexpr std::uint32_t first_ray_of_roulette = 4;
+
   struct Pending {
     Vec origin;
     Vec direction;
@@ -192,7 +211,7 @@ class Tracer {
       surface.color = surface.color * Vec(sample.color);
       recorder_.phase(Phase::shade, pending.kind);
     }
-    light_up(pending, material, surface);
+    light_up(pending, material, surface, emitters_.has(hit.primitive));
   }
 
   /// The ray ended at a voxel: its averaged material is shaded on a surface that stands for the cell.
@@ -206,18 +225,29 @@ class Tracer {
     recorder_.phase(Phase::shade, pending.kind);
     recorder_.shade(structure_.averages().table().first_record + cut.voxel);
     light_up(pending, structure_.averages()[cut.voxel].material(),
-             structure_.averages().surface(cut.voxel, pending.direction));
+             structure_.averages().surface(cut.voxel, pending.direction), false);
   }
 
   /// Adds the light that leaves the surface towards the ray's origin, and sends the rays that bring more.
-  void light_up(const Pending& pending, const scenes::Material& material, const Surface<Real>& surface) {
-    const Vec ambient = surface.color * Vec(scene_.ambient) * Real(material.diffuse);
-    add(pending.weight, Vec(material.emission) + ambient);
+  /// `asked`: where light is scattered, the surface has been asked for what it emits.
+  void light_up(const Pending& pending, const scenes::Material& material, const Surface<Real>& surface,
+                bool asked) {
+    const bool path = options_.integrator == Integrator::path;
+    if (!path) {
+      const Vec ambient = surface.color * Vec(scene_.ambient) * Real(material.diffuse);
+      add(pending.weight, Vec(material.emission) + ambient);
+    } else if (!asked || pending.kind != RayKind::diffuse) {
+      add(pending.weight, Vec(material.emission));
+    }
     // For averaged materials a black colour makes no difference: their lights are always looked at.
     if (CutsVoxels<Structure> || options_.unlit_shadows ? asks_lights(material) : shows_light(material)) {
       illuminate(pending, material, surface);
     }
-    spawn(pending, material, surface);
+    if (path) {
+      go_on(pending, material, surface);
+    } else {
+      spawn(pending, material, surface);
+    }
   }
 
   void illuminate(const Pending& pending, const scenes::Material& material, const Surface<Real>& surface) {
@@ -228,17 +258,34 @@ class Tracer {
       if (!sample.reaches || !faces(surface, sample.direction)) {
         continue;
       }
-      if (options_.shadows && in_shadow(surface, sample, light, pending.bounce + 1)) {
+      if (options_.shadows && in_shadow(surface, sample, Vec(light.position), pending.bounce + 1)) {
         continue;
       }
       recorder_.phase(Phase::light, pending.kind);
       recorder_.light(static_cast<std::uint32_t>(i));
       add(pending.weight, lit(material, surface, sample, pending.direction));
     }
+    // On a material on which no light shows, lights are only asked to keep all shadow rays: this one too then.
+    if (!emitters_.empty() && (scatters(material) || !shows_light(material))) {
+      ask_emitter(pending, material, surface);
+    }
+  }
+
+  /// Next-event estimation: the light of one point of one emissive triangle.
+  void ask_emitter(const Pending& pending, const scenes::Material& material, const Surface<Real>& surface) {
+    recorder_.phase(Phase::shade, pending.kind);
+    const EmitterSample<Real> sample = emitter_at<Real>(scene_, emitters_, surface, numbers_, pending.bounce);
+    if (!sample.light.reaches || !faces(surface, sample.light.direction) ||
+        (options_.shadows && in_shadow(surface, sample.light, sample.target, pending.bounce + 1))) {
+      return;
+    }
+    recorder_.phase(Phase::light, pending.kind);
+    recorder_.light(static_cast<std::uint32_t>(scene_.lights.size()));
+    add(pending.weight, scattered_share(material, surface, sample.light) * sample.light.radiance);
   }
 
   /// For a light at a finite distance the ray's direction is not of unit length: t = 1 is the light.
-  bool in_shadow(const Surface<Real>& surface, const LightSample<Real>& sample, const scenes::Light& light,
+  bool in_shadow(const Surface<Real>& surface, const LightSample<Real>& sample, const Vec& position,
                  std::uint32_t bounce) {
     recorder_.phase(Phase::ray, RayKind::shadow);
     const Vec origin = leave(surface, sample.direction);
@@ -246,7 +293,7 @@ class Tracer {
     if (sample.at_infinity) {
       ray = leaving_ray(origin, sample.direction);
     } else {
-      ray = leaving_ray(origin, Vec(light.position) - origin);
+      ray = leaving_ray(origin, position - origin);
       ray.t_max = 1.0;
     }
     recorder_.ray(RayKind::shadow, bounce, ray);
@@ -281,6 +328,59 @@ class Tracer {
     }
   }
 
+  /// With Integrator::path: sends one ray, or ends the path.
+  void go_on(const Pending& pending, const scenes::Material& material, const Surface<Real>& surface) {
+    if (pending.bounce + 2 > options_.max_depth) {
+      return;
+    }
+    recorder_.phase(Phase::shade, pending.kind);
+    const Vec scattered_weight = surface.color * Real(material.diffuse);
+    const Vec mirror_weight = Vec(material.specular_color) * Real(material.reflection);
+    const Real through(material.transmission);
+    const Real scattering = largest(scattered_weight);
+    const Real mirroring = largest(mirror_weight);
+    const Real sum = scattering + mirroring + through;
+    if (!(sum > Real(0.0))) {
+      return;
+    }
+    const Real lobe = drawn<Real>(numbers_.at(pending.bounce, Draw::lobe)) * sum;
+    RayKind kind = RayKind::diffuse;
+    Vec factor = scattered_weight;
+    Real chance = scattering;
+    if (!(lobe < scattering)) {
+      const bool mirrored = lobe < scattering + mirroring || !(through > Real(0.0));
+      kind = mirrored ? RayKind::reflection : RayKind::refraction;
+      factor = mirrored ? mirror_weight : Vec(through, through, through);
+      chance = mirrored ? mirroring : through;
+    }
+    factor = factor * (sum / chance);
+    if (pending.bounce + 2 >= first_ray_of_roulette) {
+      const Real survival = largest(pending.weight * factor) * Real(options_.samples);
+      if (survival < Real(1.0)) {
+        if (!(drawn<Real>(numbers_.at(pending.bounce, Draw::roulette)) < survival)) {
+          return;
+        }
+        factor = factor * (Real(1.0) / survival);
+      }
+    }
+    recorder_.phase(Phase::ray, kind);
+    Vec direction;
+    if (kind == RayKind::diffuse) {
+      direction = scattered(surface.normal, numbers_, pending.bounce);
+      if (!(dot(direction, surface.geometric) > Real(0.0))) {
+        return;  // into the surface: a smooth normal leans away from the triangle's own
+      }
+    } else if (kind == RayKind::reflection ||
+               !refracted(surface, pending.direction,
+                          static_cast<Real>(surface.outside ? 1.0 / material.ior : material.ior),
+                          direction)) {
+      kind = RayKind::reflection;
+      recorder_.phase(Phase::ray, kind);
+      direction = reflected(surface, pending.direction);
+    }
+    send(pending, surface, direction, factor, kind);
+  }
+
   void send(const Pending& pending, const Surface<Real>& surface, const Vec& direction, const Vec& factor,
             RayKind kind) {
     const Vec weight = pending.weight * factor;
@@ -306,11 +406,13 @@ class Tracer {
 
   const scenes::Scene& scene_;
   const Structure& structure_;
+  const Emitters& emitters_;
   scenes::ImagePlane plane_;
   RenderOptions options_;
   Recorder& recorder_;
   double share_;  ///< weight of a sample in its pixel
   SamplePoints points_;
+  PathNumbers numbers_{0, 0, 0, 0};  ///< of the sample, with Integrator::path
 
   Vec color_;
   RayCounts rays_;

@@ -66,7 +66,7 @@ LogTotals totals_of(const WorkLog& log, std::vector<std::uint64_t>* shades) {
           totals.lookups += row.words[at + 1];
           break;
         case Step::ray:
-          ++totals.rays[operand_of(word) & 3U];
+          ++totals.rays[ray_number_of(operand_of(word))];
           break;
         case Step::shade:
           ++totals.shades;

@@ -11,6 +11,8 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <numeric>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -22,20 +24,39 @@
 
 namespace marti::processors {
 
-/// Kinds of ray, in the order statistics list them.
-enum class RayKind : std::uint8_t { camera, shadow, reflection, refraction };
-inline constexpr std::size_t ray_kinds = 4;
+/// Which light the program follows: mirror images and refractions only, or also the light that surfaces
+/// scatter to each other (tracer.h).
+enum class Integrator : std::uint8_t { whitted, path };
+inline constexpr std::array<std::string_view, 2> integrator_names = {"whitted", "path"};
+
+/// Kinds of ray, in the order statistics list them. Diffuse rays are those that a scattering surface sends on
+/// in a random direction; only Integrator::path has them.
+enum class RayKind : std::uint8_t { camera, shadow, reflection, refraction, diffuse };
+inline constexpr std::size_t ray_kinds = 5;
 inline constexpr std::array<std::string_view, ray_kinds> ray_kind_names = {"camera", "shadow", "reflection",
-                                                                           "refraction"};
+                                                                           "refraction", "diffuse"};
+
+/// The operand of a `ray` step. The bounce is the number of surface points between the eye and the ray's
+/// origin: 0 for camera rays, 1 for the rays that start where a camera ray ends.
+inline constexpr unsigned ray_kind_bits = 3;
+[[nodiscard]] constexpr std::uint32_t ray_operand(RayKind kind, std::uint32_t bounce) {
+  return static_cast<std::uint32_t>(kind) | bounce << ray_kind_bits;
+}
+[[nodiscard]] constexpr RayKind ray_kind_of(std::uint32_t operand) {
+  return static_cast<RayKind>(operand & ((1U << ray_kind_bits) - 1U));
+}
+/// The kind as an index.
+[[nodiscard]] constexpr std::size_t ray_number_of(std::uint32_t operand) {
+  return static_cast<std::size_t>(ray_kind_of(operand));
+}
+[[nodiscard]] constexpr std::uint32_t bounce_of(std::uint32_t operand) { return operand >> ray_kind_bits; }
 
 /// What a word of the log says.
 enum class Step : std::uint32_t {
   branch,        ///< operand: node. A branch record was read and its children ordered.
   leaf,          ///< operand: node. A leaf record was read; all its entries were tested.
   partial_leaf,  ///< operand: node; second word: how many of its entries were tested.
-  ray,           ///< operand: RayKind | bounce << 2. A ray was set up and its traversal begins. The bounce
-                 ///< is the number of surface points between the eye and the ray's origin: 0 for camera
-                 ///< rays, 1 for the shadow, reflected and refracted rays of what the camera sees.
+  ray,           ///< operand: ray_operand(). A ray was set up and its traversal begins.
   shade,         ///< operand: material. A hit point, normal and local colour were computed.
   light,         ///< operand: light. One unoccluded light's contribution was added.
   texel,         ///< operand: texture; second word: texel index in the texture. A texel was read.
@@ -121,7 +142,9 @@ struct LogTotals {
   std::uint64_t passes = 0;
   std::uint64_t bytes = 0;  ///< words and pixel offsets
 
-  [[nodiscard]] std::uint64_t all_rays() const { return rays[0] + rays[1] + rays[2] + rays[3]; }
+  [[nodiscard]] std::uint64_t all_rays() const {
+    return std::accumulate(std::begin(rays), std::end(rays), std::uint64_t{0});
+  }
   /// Number of steps that the log records: visits, tests, rays, shades, lights, texels, cuts and passes.
   [[nodiscard]] std::uint64_t all_steps() const {
     return all_rays() + branches + leaves + tests + shades + lights + texels + cuts + passes;
@@ -131,6 +154,7 @@ struct LogTotals {
 /// A whole frame's log with the tree it refers to. Immutable once recorded; shared read-only by replays.
 struct WorkLog {
   accel::Traversal traversal = accel::Traversal::octree;  ///< the walk that made it
+  Integrator integrator = Integrator::whitted;            ///< the program that made it
   bool mailboxes = false;  ///< for each entry of a leaf's list, its mailbox was looked up
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -139,9 +163,11 @@ struct WorkLog {
   std::uint32_t primitives = 0;  ///< number of primitive records in the database
   /// Kinds of the primitives behind the triangles: those with the ids from primitives - quadrics.size() on.
   std::vector<accel::PrimitiveKind> quadrics;
-  std::uint32_t materials = 0;               ///< number of material records, averaged ones included
-  std::uint32_t voxels = 0;                  ///< of these, averaged for the voxel cut: the last ones
-  std::uint32_t lights = 0;                  ///< number of lights
+  std::uint32_t materials = 0;  ///< number of material records, averaged ones included
+  std::uint32_t voxels = 0;     ///< of these, averaged for the voxel cut: the last ones
+  /// Number of lights; with Integrator::path and emissive triangles these are together one light more, the
+  /// last.
+  std::uint32_t lights = 0;
   std::vector<std::uint64_t> texture_begin;  ///< first texel of each texture in the texel array, plus the end
   std::vector<LogRow> rows;                  ///< `height` of them, from the top
 

@@ -27,6 +27,7 @@ EnergyCounts energy_counts(const WorkLog& log, const MachineConfig& config, cons
   EnergyCounts counts;
   counts.traversal = log.traversal;
   counts.mailboxes = log.mailboxes;
+  counts.integrator = log.integrator;
   counts.steps = result.steps();
   counts.build = result.build.counts();
   add_first_level(config, result, counts);

@@ -22,11 +22,12 @@ std::int64_t samples_with_rays(const WorkLog& log) {
 }
 
 void check_steps(const LogTotals& totals, const StepCounts& steps) {
-  const std::array<std::pair<std::int64_t, std::uint64_t>, 13> pairs = {{
+  const std::array<std::pair<std::int64_t, std::uint64_t>, 14> pairs = {{
       {steps.camera_rays, totals.rays[0]},
       {steps.shadow_rays, totals.rays[1]},
       {steps.reflection_rays, totals.rays[2]},
       {steps.refraction_rays, totals.rays[3]},
+      {steps.diffuse_rays, totals.rays[4]},
       {steps.branches, totals.branches},
       {steps.leaves, totals.leaves},
       {steps.tests, totals.tests},

@@ -32,8 +32,8 @@ std::vector<AttributionRow> Attribution::rows() const {
     const std::size_t work = place / levels;
     const std::size_t ray = work / 2;
     rows.push_back({static_cast<memory::RecordKind>(cell % memory::record_kinds),
-                    static_cast<std::uint32_t>(place % levels), static_cast<RayKind>(ray % ray_kinds),
-                    static_cast<std::uint32_t>(ray / ray_kinds), work % 2 == 1, cells_[cell]});
+                    static_cast<std::uint32_t>(place % levels), ray_kind_of(static_cast<std::uint32_t>(ray)),
+                    bounce_of(static_cast<std::uint32_t>(ray)), work % 2 == 1, cells_[cell]});
   }
   return rows;
 }

@@ -19,7 +19,7 @@ namespace marti::processors {
          kind == memory::RecordKind::primitive;
 }
 
-/// What a reference was for: a work log's `ray` operand (RayKind | bounce << 2, the bounce at most
+/// What a reference was for: a work log's `ray` operand (ray_operand(), the bounce at most
 /// Origin::most_bounces), the level of the tree node whose record, list or primitives were read (0 for
 /// materials and texels), and whether they were read to split a branch: for the ray that needed it, or before
 /// the frame, when there is no ray yet and `ray` is 0.
@@ -31,9 +31,9 @@ struct Origin {
   bool splitting = false;
 
   void begin_ray(std::uint32_t operand) {
-    const std::uint32_t bounce = operand >> 2U;
-    ray =
-        static_cast<std::uint16_t>((operand & 3U) | ((bounce < most_bounces ? bounce : most_bounces) << 2U));
+    const std::uint32_t bounce = bounce_of(operand);
+    ray = static_cast<std::uint16_t>(
+        ray_operand(ray_kind_of(operand), bounce < most_bounces ? bounce : most_bounces));
   }
 };
 

@@ -466,8 +466,8 @@ class LogWalker {
         if (counted) {
           cursor.origin.begin_ray(operand);
         }
-        ++(steps.*ray_counters[operand & 3U]);
-        spend(cursor, ticks_.ray[operand & 3U], 1);
+        ++(steps.*ray_counters[ray_number_of(operand)]);
+        spend(cursor, ticks_.ray[ray_number_of(operand)], 1);
         return true;
       case Step::shade:
         ++steps.shades;

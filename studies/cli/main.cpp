@@ -1,6 +1,7 @@
 // The command line. Exit status: 0 done, 2 the user's input is wrong, 1 a fault of ours.
 #include <CLI/CLI.hpp>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -25,6 +26,7 @@
 #include "sim/shown.h"
 #include "sim/units.h"
 #include "studies/cli/command_error.h"
+#include "studies/cli/examples.h"
 #include "studies/cli/reference_commands.h"
 #include "studies/cli/shell_completion.h"
 #include "studies/cli/sweep_command.h"
@@ -62,8 +64,14 @@ constexpr int done = 0;
 constexpr int our_fault = 1;
 constexpr int wrong_input = 2;
 
+// The reader of standard output, such as `head`, has seen enough and is gone: no error.
+struct NoReader {};
+
 void print(const std::string& text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    if (errno == EPIPE) {
+      throw NoReader();
+    }
     throw sim::UserError("standard output cannot be written");
   }
 }
@@ -226,12 +234,21 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
 
 void add_sweep_command(CLI::App& app, studies::SweepArguments& arguments) {
   CLI::App* sweep =
-      app.add_subcommand("sweep", "Times every machine of a configuration's [sweep]; goes on where it was");
+      app.add_subcommand("sweep",
+                         "Times every machine of a configuration's [sweep] or of axes given here; "
+                         "goes on where it was");
   sweep->add_option("CONFIG", arguments.config, "configuration file (TOML)")
       ->type_name("FILE.toml")
       ->required();
   sweep->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
       ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  sweep
+      ->add_option(
+          "--axis", arguments.axes,
+          "sweeps over a key, as key=1,4,16 or key=4KiB..64KiB*2 or key=1..9+2; in the place of an axis "
+          "of the file; may be repeated")
+      ->type_name("KEY=VALUES")
       ->allow_extra_args(false);
   sweep->add_option("-o,--output", arguments.directory, "directory for results.sqlite and points.csv")
       ->type_name("DIR")
@@ -243,7 +260,9 @@ void add_sweep_command(CLI::App& app, studies::SweepArguments& arguments) {
       ->add_option("--best", arguments.best,
                    "the best machines by this metric and their cost: end, speed_up, efficiency, ...")
       ->type_name("METRIC");
-  sweep->add_option("--within", arguments.within, "the cost that the best machine may have, by [prices]")
+  sweep
+      ->add_option("--budget,--within", arguments.budget,
+                   "the cost that the best machine may have, by [prices]; --within is its old name")
       ->type_name("COST");
   sweep->add_flag("--plan", arguments.plan_only, "only say what would be run");
   sweep->add_flag("--quiet", arguments.quiet, "no progress");
@@ -369,14 +388,14 @@ void list_scenes() {
 struct SceneArguments {
   std::string source;
   std::string target;
-  scenes::GltfOptions gltf;
+  scenes::FileOptions file;
 };
 
 // There is no configuration that could set a memory limit: it is the host's default.
 scenes::OpenOptions options_of(const SceneArguments& arguments) {
-  scenes::OpenOptions options{{}, arguments.gltf};
-  options.gltf.size_first = studies::size_of_image;
-  options.gltf.memory = sim::MemoryBudget(sim::default_memory_limit());
+  scenes::OpenOptions options{{}, arguments.file};
+  options.file.size_first = studies::size_of_image;
+  options.file.memory = sim::MemoryBudget(sim::default_memory_limit());
   return options;
 }
 
@@ -387,7 +406,7 @@ scenes::Scene open(const SceneArguments& arguments) {
 std::string scene_info(const SceneArguments& arguments) {
   const scenes::AnimatedScene scene =
       scenes::open_animated(arguments.source, options_of(arguments), studies::decode_image);
-  const scenes::Scene pose = scene.asked_for(arguments.gltf.time, arguments.source);
+  const scenes::Scene pose = scene.asked_for(arguments.file.time, arguments.source);
   const std::string need = accel::describe_need(accel::precision_need(accel::TriangleSet(pose)));
   return scenes::describe(pose) + (need.empty() ? "" : "note: " + need + "\n") +
          scenes::describe(scene.facts());
@@ -400,18 +419,18 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
   CLI::App* info = scene->add_subcommand("info", "Describes a scene");
   CLI::App* save = scene->add_subcommand("export", "Writes a scene, in one pose, as binary glTF");
   for (CLI::App* command : {info, save}) {
-    command->add_option("SOURCE", arguments.source, "name:size, or a .gltf or .glb file")
+    command->add_option("SOURCE", arguments.source, "name:size, or a .gltf, .glb, .obj or .ply file")
         ->type_name("SCENE")
         ->required();
-    command->add_option("--scene", arguments.gltf.scene, "scene of the file, by index or name")
+    command->add_option("--scene", arguments.file.scene, "scene of the file, by index or name")
         ->type_name("NAME");
-    command->add_option("--camera", arguments.gltf.camera, "camera of the file, by index or name")
+    command->add_option("--camera", arguments.file.camera, "camera of the file, by index or name")
         ->type_name("NAME");
     command
-        ->add_option("--animation", arguments.gltf.animation,
+        ->add_option("--animation", arguments.file.animation,
                      "animation of the file, by index or name; none: the static pose")
         ->type_name("NAME");
-    command->add_option("--time", arguments.gltf.time, "the pose at this many seconds of the animation")
+    command->add_option("--time", arguments.file.time, "the pose at this many seconds of the animation")
         ->type_name("SECONDS");
   }
   save->add_option("FILE", arguments.target, "the .glb file to write")->type_name("FILE.glb")->required();
@@ -432,8 +451,8 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
 }
 
 int parse_and_run(int argc, char** argv) {
-  CLI::App app("marti: simulates multiprocessor ray-tracing machines");
-  app.set_version_flag("--version", std::string(studies::version));
+  CLI::App app("marti: simulates multiprocessor ray-tracing machines", "marti");
+  app.set_version_flag("-V,--version", std::string(studies::version));
   app.require_subcommand(1);
 
   RunArguments run_arguments;
@@ -488,17 +507,26 @@ int parse_and_run(int argc, char** argv) {
   studies::ReportArguments report_arguments;
   add_report_command(app, report_arguments);
 
-  bool markdown = false;
-  studies::add_reference_commands(app, markdown, print);
+  studies::ReferenceArguments reference_arguments;
+  studies::add_reference_commands(app, reference_arguments, print);
 
   SceneArguments scene_arguments;
   add_scene_commands(app, scene_arguments);
+  studies::add_examples(app);
 
   // The shells' completion scripts call the program this way. The words to complete may be options, which
   // CLI11 must not parse as options of this call.
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words.front() == "__complete") {
     print(studies::completions(app, studies::all_keys(), std::span(words).subspan(1)));
+    return done;
+  }
+  if (words.empty()) {
+    print(app.help());
+    return done;
+  }
+  if (words.front() == "help" && (words.size() == 1 || !words[1].starts_with('-'))) {
+    print(studies::help_on(app, std::span(words).subspan(1)));
     return done;
   }
   try {
@@ -516,7 +544,7 @@ int parse_and_run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Writing to a pipe without a reader is then an error of writing, like a full disk.
+  // Writing to a pipe without a reader is then an error of writing, which print() knows.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a file at its size limit is then an error of writing, like a full disk
   // A rank that ends also ends the other ranks of its job.
@@ -528,6 +556,8 @@ int main(int argc, char** argv) {
     marti::studies::end_cleanly_on_signals();
     marti::studies::limit_threads_to_available();
     return parse_and_run(argc, argv);
+  } catch (const NoReader&) {
+    return end(done);
   } catch (const marti::sim::UserError& error) {
     // A message may quote control characters, which must not reach the terminal.
     std::fprintf(stderr, "marti: %s\n", marti::sim::shown(error.what(), marti::sim::all_shown).c_str());

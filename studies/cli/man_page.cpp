@@ -134,7 +134,7 @@ the default machine
 marti run configs/marti.toml \-\-set machine.nodes=64 \-o out
 the same with 64 nodes; writes image and figures
 .TP
-marti sweep configs/sweep\-small.toml \-o out \-\-best end \-\-within 10
+marti sweep configs/sweep\-small.toml \-o out \-\-best end \-\-budget 10
 many machines, and the fastest for a price of 10
 .SH "SEE ALSO"
 The tutorial, the timing model and the reference of all keys are in the folder

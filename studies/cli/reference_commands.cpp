@@ -2,6 +2,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include <vector>
+
+#include "sim/error.h"
+#include "sim/nearest.h"
+#include "sim/shown.h"
+#include "studies/cli/command_tree.h"
 #include "studies/cli/man_page.h"
 #include "studies/cli/shell_completion.h"
 #include "studies/error/error_keys.h"
@@ -11,6 +17,7 @@
 #include "studies/run/run_result.h"
 #include "studies/schemes/schemes_keys.h"
 #include "studies/show/figure_list.h"
+#include "studies/show/key_list.h"
 #include "studies/stability/stability_keys.h"
 #include "studies/sweep/plan/sweep_keys.h"
 
@@ -27,25 +34,57 @@ sim::Schema all_keys() {
   return schema;
 }
 
-void add_reference_commands(CLI::App& app, bool& markdown, void (*print)(const std::string&)) {
-  CLI::App* config = app.add_subcommand("config", "Prints every configuration key");
-  config->add_flag("--markdown", markdown, "as Markdown, as in docs/configuration.md");
-  config->callback([&markdown, print] {
-    print(markdown ? sim::list_keys_as_markdown(all_keys()) + combinations_as_markdown()
-                   : sim::list_keys_as_text(all_keys()));
+std::string help_on(const CLI::App& app, std::span<const std::string> words) {
+  const CLI::App* command = &app;
+  std::string before;
+  for (const std::string& word : words) {
+    const CLI::App* const found = find_subcommand(*command, word);
+    if (found == nullptr) {
+      std::vector<std::string> names;
+      for (const CLI::App* below : subcommands_of(*command)) {
+        names.push_back(below->get_name());
+      }
+      throw sim::UserError("help: there is no command \"" + sim::shown(word) + "\"" +
+                           sim::did_you_mean(word, names));
+    }
+    before += (before.empty() ? "" : " ") + command->get_name();
+    command = found;
+  }
+  return command->help(before);
+}
+
+void add_reference_commands(CLI::App& app, ReferenceArguments& arguments, void (*print)(const std::string&)) {
+  CLI::App* config = app.add_subcommand("config", "Prints every configuration key, or those asked for");
+  config->add_option("KEY", arguments.key, "only this key, or the keys of this section")->type_name("KEY");
+  CLI::Option* const json = config->add_flag("--json", arguments.json, "as JSON, for programs");
+  config->add_flag("--markdown", arguments.markdown, "all, as Markdown, as in docs/configuration.md")
+      ->excludes(json);
+  config->callback([&arguments, print] {
+    if (arguments.markdown) {
+      if (!arguments.key.empty()) {
+        throw sim::UserError("config: --markdown prints all keys; leave out " + arguments.key);
+      }
+      print(sim::list_keys_as_markdown(all_keys()) + combinations_as_markdown());
+    } else {
+      print(arguments.json ? keys_as_json(all_keys(), arguments.key)
+                           : keys_as_text(all_keys(), arguments.key));
+    }
   });
   CLI::App* figures = app.add_subcommand("figures", "Prints every figure of a machine and of a frame");
-  figures->add_flag("--markdown", markdown, "as Markdown, as in docs/figures.md");
-  figures->callback(
-      [&markdown, print] { print(markdown ? list_figures_as_markdown() : list_figures_as_text()); });
+  figures->add_flag("--markdown", arguments.markdown, "as Markdown, as in docs/figures.md");
+  figures->callback([&arguments, print] {
+    print(arguments.markdown ? list_figures_as_markdown() : list_figures_as_text());
+  });
   CLI::App* completion =
       app.add_subcommand("completion", "Prints the script that completes commands in a shell");
   completion->require_subcommand(1);
-  for (const char* shell : {"bash", "zsh"}) {
+  for (const char* shell : {"bash", "fish", "zsh"}) {
     completion->add_subcommand(shell, "for " + std::string(shell))->callback([shell, print] {
       print(std::string(completion_script(shell)));
     });
   }
+  // For the list of commands: main() calls help_on() before the arguments are read as those of a command.
+  app.add_subcommand("help", "Prints what a command takes");
   app.add_subcommand("man", "Prints the manual page, for man(1)")->callback([&app, print] {
     print(man_page(app));
   });

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "scenes/open.h"
 #include "scenes/procedural.h"
 #include "sim/schema.h"
 #include "studies/cli/command_tree.h"
@@ -15,6 +16,7 @@
 namespace marti::studies {
 
 std::string_view bash_completion();
+std::string_view fish_completion();
 std::string_view zsh_completion();
 
 namespace {
@@ -69,13 +71,21 @@ void add_values(std::string_view type, const sim::Schema& schema, std::string_vi
       candidates.add(members.substr(0, comma));
       members = comma == std::string_view::npos ? std::string_view() : members.substr(comma + 1);
     }
-  } else if (type == "KEY=VALUE") {
+  } else if (type == "KEY=VALUE" || type == "KEY=VALUES") {
     add_assignments(schema, begun, candidates);
+  } else if (type == "KEY") {
+    for (const sim::Key& key : schema.keys()) {
+      candidates.add(key.name);
+    }
   } else if (type == "SCENE") {
     for (const scenes::ProceduralScene& scene : scenes::procedural_scenes()) {
       candidates.add(std::string(scene.name) + ":" + std::to_string(scene.default_size));
     }
-    candidates.ask_shell(":files gltf glb");
+    std::string files = ":files";
+    for (const std::string_view ending : scenes::file_endings) {
+      files += " " + std::string(ending);
+    }
+    candidates.ask_shell(files);
   } else if (type == "ITEM") {
     candidates.add("all");
     for (const std::string_view item : plan_item_names) {
@@ -134,6 +144,9 @@ Place place_after(const CLI::App& app, std::span<const std::string> words) {
 std::string_view completion_script(std::string_view shell) {
   if (shell == "bash") {
     return bash_completion();
+  }
+  if (shell == "fish") {
+    return fish_completion();
   }
   return shell == "zsh" ? zsh_completion() : std::string_view();
 }

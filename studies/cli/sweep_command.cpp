@@ -58,7 +58,7 @@ void join(Ranks& ranks, const SweepArguments& arguments) {
   join_sweep(ranks, options_of(arguments), [&](const std::string& text) {
     sim::Config config =
         sim::Config::from_text(sweep_schema(), text, arguments.config, arguments.assignments);
-    SweepPlan plan = plan_sweep(config);
+    SweepPlan plan = plan_sweep(config, arguments.axes);
     return JoinedSweep{std::move(plan), memory_of(config, &ranks).limit()};
   });
 }
@@ -84,11 +84,11 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
                            ? sim::Config::from_text(sweep_schema(), options.configuration, arguments.config,
                                                     arguments.assignments)
                            : sim::Config::from_file(sweep_schema(), arguments.config, arguments.assignments);
-  if (arguments.within && (!std::isfinite(*arguments.within) || *arguments.within < 0.0)) {
-    throw sim::UserError("--within: must be a cost of at least 0");
+  if (arguments.budget && (!std::isfinite(*arguments.budget) || *arguments.budget < 0.0)) {
+    throw sim::UserError("--budget: must be a cost of at least 0");
   }
-  if (arguments.within && arguments.best.empty()) {
-    throw sim::UserError("--within: is the budget for --best METRIC, which is missing");
+  if (arguments.budget && arguments.best.empty()) {
+    throw sim::UserError("--budget: is for the machines of --best METRIC, which is missing");
   }
   if (arguments.plan_only && (arguments.json || !arguments.best.empty())) {
     throw sim::UserError("--plan: prints the plan, as text; leave out --json and --best");
@@ -101,7 +101,7 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
     }
   }
   const std::optional<Prices> prices = read_given_prices(config);
-  const SweepPlan plan = plan_sweep(config);
+  const SweepPlan plan = plan_sweep(config, arguments.axes);
   if (arguments.plan_only) {
     print(describe(plan, look_ahead(plan, options)));
     return;
@@ -118,14 +118,14 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
   if (arguments.json) {
     print(json_of(arguments.best.empty()
                       ? report.limited->table
-                      : best_points(*report.reader, arguments.best, arguments.within).front));
+                      : best_points(*report.reader, arguments.best, arguments.budget).front));
     return;
   }
   std::string text = said(report) + report.limited->text;
   text += "wrote         " + report.store.string() + "\n";
   text += "wrote         " + report.points.string() + "\n";
   if (!arguments.best.empty()) {
-    text += "\n" + best_points(*report.reader, arguments.best, arguments.within).text;
+    text += "\n" + best_points(*report.reader, arguments.best, arguments.budget).text;
   }
   print(text);
 }

@@ -10,13 +10,14 @@ namespace marti::studies {
 struct SweepArguments {
   std::string config;
   std::vector<std::string> assignments;
+  std::vector<std::string> axes;  ///< as in studies/sweep/plan/axis_argument.h
   std::string directory;
   unsigned threads = 0;
   bool plan_only = false;
   bool quiet = false;
   bool json = false;
   std::string best;
-  std::optional<double> within;
+  std::optional<double> budget;
 };
 
 /// Runs the command; `print` writes to standard output. Throws UserError.

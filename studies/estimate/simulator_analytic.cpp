@@ -55,7 +55,7 @@ Tenures tenures_of(const MachineConfig& machine, std::uint32_t pixel_bytes) {
 }
 
 // The part of the frame that does not depend on the cache.
-struct Work {
+struct PacketsWork {
   double scale = 1.0;  // the whole frame over the part that was walked
   std::vector<std::uint64_t> words;
   double packets = 0.0;
@@ -77,8 +77,8 @@ struct Contention {
   std::vector<double> speeds;  // [n - 1]: of each of n busy nodes; 1 without contention
 };
 
-Contention contention_of(const MachineConfig& machine, const Tenures& tenures, const Work& work, double alone,
-                         double misses) {
+Contention contention_of(const MachineConfig& machine, const Tenures& tenures, const PacketsWork& work,
+                         double alone, double misses) {
   Contention contention;
   contention.interconnect = misses * tenures.read + work.writes * tenures.write;
   const auto nodes =
@@ -118,7 +118,8 @@ Contention contention_of(const MachineConfig& machine, const Tenures& tenures, c
 
 // The frame's end. `alone`, the time of all packets without contention, is divided among the packets in
 // proportion to their words; while n nodes are busy, each runs at the speed of n nodes.
-double frame_end(const MachineConfig& machine, const Work& work, double alone, const Contention& contention) {
+double frame_end(const MachineConfig& machine, const PacketsWork& work, double alone,
+                 const Contention& contention) {
   const auto words = static_cast<double>(std::accumulate(work.words.begin(), work.words.end(), 0ULL));
   const auto time_of = [&](std::size_t packet) {
     return work.dispatch + (words > 0.0 ? alone * static_cast<double>(work.words[packet]) / words : 0.0);
@@ -195,7 +196,7 @@ std::vector<Estimate> estimate_analytically(const processors::WorkLog& log, cons
                                             std::span<const memory::CacheShape> caches,
                                             const AnalyticOptions& options) {
   check_analytic(machine);
-  Work work;
+  PacketsWork work;
   work.words = processors::words_of_packets(log, machine.packets);
   work.packets = static_cast<double>(work.words.size());
   work.writes = static_cast<double>(log.width) * static_cast<double>(log.height);

@@ -121,6 +121,16 @@ void add_asked_figures(FigureParts& parts, const MachineConfig& machine, const M
                     return static_cast<std::size_t>(row.ray) == ray && !row.splitting;
                   }));
   }
+  constexpr std::uint32_t bounces = 5;
+  for (std::uint32_t bounce = 0; bounce < bounces; ++bounce) {
+    const bool last = bounce + 1 == bounces;
+    parts.add_all(
+        "bounce_" + std::to_string(bounce) + "_",
+        "for rays after " + std::to_string(bounce) + (last ? " surface points or more" : " surface points"),
+        attributed([bounce, last](const processors::AttributionRow& row) {
+          return !row.splitting && (row.bounce == bounce || (last && row.bounce > bounce));
+        }));
+  }
   parts.add_all("split_", "for splitting branches of the tree",
                 attributed([](const processors::AttributionRow& row) { return row.splitting; }));
 }

@@ -133,7 +133,7 @@ void add_energy(std::vector<FigureEntry>& all) {
   const Formula total = own("energy_total");
   const Formula energy = total / Formula(1e12);
   const Formula rays = own("steps_camera_rays") + own("steps_shadow_rays") + own("steps_reflection_rays") +
-                       own("steps_refraction_rays");
+                       own("steps_refraction_rays") + own("steps_diffuse_rays");
   add("energy", "mJ", "energy of the frame, where [energy] is on", Better::lower, energy);
   add("power", "W", "mean power: energy by frame time", Better::lower,
       total / (own("end") * Formula(1000.0)));

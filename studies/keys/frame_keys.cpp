@@ -63,8 +63,8 @@ processors::RenderOptions made_small(processors::RenderOptions options, double s
 void declare_frame_keys(sim::Schema& schema) {
   schema.section("scene", "what is rendered");
   schema.text("scene.source", "teapot:12",
-              "a procedural scene as name:size (see `marti scene list`), or a .gltf or .glb file relative to "
-              "the configuration (with --set: to the current directory)");
+              "a procedural scene as name:size (see `marti scene list`), or a .gltf, .glb, .obj or .ply file "
+              "relative to the configuration (with --set: to the current directory)");
   schema.text("scene.scene", "", "scene of the file, by index or name; empty: the file's default");
   schema.text("scene.camera", "", "camera of the file, by index or name; empty: the first");
   schema.text("scene.animation", "",
@@ -82,15 +82,19 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.section("image", "the image and the rays it takes");
   schema.integer("image.width", 512, {1, 32768}, "pixels", "columns");
   schema.integer("image.height", 512, {1, 32768}, "pixels", "rows");
+  schema.choice(
+      "image.integrator", "whitted", names_of(processors::integrator_names),
+      "whitted: lights, mirror images and refractions; path: path tracing, also light that surfaces "
+      "scatter to each other, emissive triangles as lights, noise that more samples lessen");
   schema.integer("image.max_depth", 5, {1, processors::max_ray_depth}, "rays",
                  "longest chain of rays, the eye ray being 1; shadow rays do not count");
   schema.real("image.min_weight", 0.0, {0.0, 1.0}, "",
-              "a ray that contributes less than this share of its sample is not traced");
+              "whitted: a ray that contributes less than this share of its sample is not traced");
   schema.integer(
       "image.samples", 1, {1, processors::max_samples}, "rays",
       "camera rays of a pixel: one through its centre, or several through jittered points of a grid");
   schema.integer("image.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
-                 "seed of the points of several samples");
+                 "seed of the points of several samples and of paths");
   schema.boolean("image.shadows", true, "trace shadow rays");
   schema.real("image.voxel_cut", 0.0, {0.0, 1'000'000.0}, "pixels",
               "octree: a cell that covers less than this many pixels on the screen is shaded as one voxel "
@@ -165,20 +169,25 @@ FrameConfig read_frame(sim::Config& config) {
                       "--set in the current directory");
     }
   }
-  frame.open.gltf.scene = config.text("scene.scene");
-  frame.open.gltf.camera = config.text("scene.camera");
-  frame.open.gltf.animation = config.text("scene.animation");
+  frame.open.file.scene = config.text("scene.scene");
+  frame.open.file.camera = config.text("scene.camera");
+  frame.open.file.animation = config.text("scene.animation");
   frame.frames.count = static_cast<std::uint32_t>(config.integer("frames.count"));
   frame.frames.first = static_cast<std::uint32_t>(config.integer("frames.first"));
   frame.frames.rate = config.real("frames.rate");
-  frame.open.gltf.time = frame.frames.time(0);
+  frame.open.file.time = frame.frames.time(0);
   config.mark_unused_reason("frames.verify", "only `marti study frames` renders frames twice");
   frame.render.width = static_cast<std::uint32_t>(config.integer("image.width"));
   frame.render.height = static_cast<std::uint32_t>(config.integer("image.height"));
   frame.render.max_depth = static_cast<std::uint32_t>(config.integer("image.max_depth"));
-  frame.render.min_weight = config.real("image.min_weight");
+  frame.render.integrator = config.choice_as<processors::Integrator>("image.integrator");
+  const bool path = frame.render.integrator == processors::Integrator::path;
+  frame.render.min_weight = path ? 0.0 : config.real("image.min_weight");
+  config.mark_unused_reason("image.min_weight",
+                            "a path ends by chance, because rays cut off would darken the image",
+                            "image.integrator");
   frame.render.samples = static_cast<std::uint32_t>(config.integer("image.samples"));
-  if (frame.render.samples > 1) {
+  if (frame.render.samples > 1 || path) {
     frame.render.seed = static_cast<std::uint64_t>(config.integer("image.seed"));
   }
   config.mark_unused_reason("image.seed", "one sample lies in the pixel's centre", "image.samples");
@@ -189,6 +198,11 @@ FrameConfig read_frame(sim::Config& config) {
       config.fail("image.voxel_cut", "only an octree can be cut, not structure.kind = \"" +
                                          config.choice_name("structure.kind") + "\"");
     }
+    if (path) {
+      config.fail("image.voxel_cut",
+                  "averages what lights and mirrors show, and with image.integrator = \"path\" a path also "
+                  "follows scattered light");
+    }
     frame.exact_too = config.boolean("image.voxel_cut_reference");
   } else {
     config.mark_unused_reason("image.voxel_cut_reference", "it has no effect with image.voxel_cut = 0",
@@ -197,8 +211,8 @@ FrameConfig read_frame(sim::Config& config) {
   read_structure(config, frame);
   frame.memory = read_memory(config);
   give_memory(frame.memory, frame.structure_options);
-  frame.open.gltf.memory = frame.memory;
-  frame.open.gltf.size_first = size_of_image;
+  frame.open.file.memory = frame.memory;
+  frame.open.file.size_first = size_of_image;
   return frame;
 }
 

@@ -63,9 +63,9 @@ void require_textures(const FrameConfig& config, const scenes::Scene& scene, std
 scenes::Scene open_planned(const FrameConfig& config, scenes::FileUse* file) {
   FrameConfig planned = config;
   if (!config.keep.has(PlanItem::textures)) {
-    planned.open.gltf.size_only = size_of_image;
+    planned.open.file.size_only = size_of_image;
   }
-  planned.open.gltf.read_unused = config.keep.has(PlanItem::unreachable);
+  planned.open.file.read_unused = config.keep.has(PlanItem::unreachable);
   return open_frame(planned, file);
 }
 

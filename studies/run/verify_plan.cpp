@@ -35,7 +35,7 @@ processors::LogRow strip_row(const std::vector<bool>& materials, const processor
     if (step == Step::shade) {
       unlit = operand < materials.size() && materials[operand];
     } else if (step == Step::ray) {
-      leaving = unlit && static_cast<processors::RayKind>(operand & 3U) == processors::RayKind::shadow;
+      leaving = unlit && processors::ray_kind_of(operand) == processors::RayKind::shadow;
     }
     const bool visit = processors::visits_node(step) || step == Step::pass || step == Step::ray;
     if ((leaving && visit) || (unlit && step == Step::light)) {
@@ -90,7 +90,7 @@ class Verifier {
   explicit Verifier(const RunResult& result) : result_(result) {
     const FrameConfig& frame = result.frame_config;
     scenes::OpenOptions open = frame.open;
-    open.gltf.size_only = size_of_image;
+    open.file.size_only = size_of_image;
     unlit_ = unlit_materials(scenes::open_scene(frame.scene, open, decode_image));
   }
 
@@ -193,8 +193,8 @@ std::vector<bool> unlit_materials(const scenes::Scene& scene) {
 }
 
 std::string difference_of(const processors::WorkLog& a, const processors::WorkLog& b) {
-  if (a.traversal != b.traversal || a.mailboxes != b.mailboxes || a.width != b.width ||
-      a.height != b.height || a.samples != b.samples || a.primitives != b.primitives ||
+  if (a.traversal != b.traversal || a.integrator != b.integrator || a.mailboxes != b.mailboxes ||
+      a.width != b.width || a.height != b.height || a.samples != b.samples || a.primitives != b.primitives ||
       a.quadrics != b.quadrics || a.materials != b.materials || a.voxels != b.voxels ||
       a.lights != b.lights || a.texture_begin != b.texture_begin || a.rows.size() != b.rows.size()) {
     return "the work logs are of other databases";

@@ -74,12 +74,14 @@ void image_lines(Lines out, const RunResult& r) {
   const processors::WorkLog& log = *r.functional.frame.log;
   const processors::LogTotals& totals = r.functional.totals;
   const double rays = static_cast<double>(totals.all_rays());
-  fmt::format_to(out,
-                 "image         {} x {}, {}{} rays (camera {}, shadow {}, reflection {}, refraction {})\n",
-                 log.width, log.height,
-                 log.samples == 1 ? std::string() : fmt::format("{} samples a pixel, ", log.samples),
-                 grouped(totals.all_rays()), grouped(totals.rays[0]), grouped(totals.rays[1]),
-                 grouped(totals.rays[2]), grouped(totals.rays[3]));
+  fmt::format_to(
+      out, "image         {} x {}, {}{} rays (camera {}, shadow {}, reflection {}, refraction {}{})\n",
+      log.width, log.height,
+      log.samples == 1 ? std::string() : fmt::format("{} samples a pixel, ", log.samples),
+      grouped(totals.all_rays()), grouped(totals.rays[0]), grouped(totals.rays[1]), grouped(totals.rays[2]),
+      grouped(totals.rays[3]),
+      log.integrator == processors::Integrator::path ? fmt::format(", diffuse {}", grouped(totals.rays[4]))
+                                                     : std::string());
   fmt::format_to(out, "work log      {}, {:.1f} bytes and {:.1f} steps a ray\n",
                  bytes(static_cast<double>(totals.bytes)), static_cast<double>(totals.bytes) / rays,
                  static_cast<double>(totals.all_steps()) / rays);
@@ -230,7 +232,9 @@ std::string scene_summary_of(const RunResult& r) {
 }
 
 std::string summary_of(const RunResult& r) {
-  std::string text = scene_summary_of(r);
+  std::string text = fmt::format("answer        {} a frame{}\n\n", seconds(r.timed.end),
+                                 r.helps && r.helps->measured ? "; " + r.helps->sentence : std::string());
+  text += scene_summary_of(r);
   const Lines out = std::back_inserter(text);
   image_lines(out, r);
   voxel_lines(out, r);

@@ -157,14 +157,18 @@ TEST(Command, UnwritablePlacesAreTheUsersAffair) {
 }
 
 TEST(Command, UsageErrorsAreTwoAndHelpIsZero) {
-  EXPECT_EQ(marti("").status, 2);
   EXPECT_EQ(marti("fly").status, 2);
   EXPECT_EQ(marti("run").status, 2);
   EXPECT_EQ(marti("run /nonexistent.toml").status, 2);
   EXPECT_EQ(marti("run / ").status, 2);
   EXPECT_EQ(marti("run x.toml -o ''").status, 2);
   EXPECT_EQ(marti("--help").status, 0);
+  EXPECT_EQ(marti("").output, marti("--help").output);
+  EXPECT_EQ(marti("").status, 0);
   EXPECT_EQ(marti("run --help").status, 0);
+  EXPECT_EQ(marti("help run").output, marti("run --help").output);
+  EXPECT_EQ(marti("help study error").output, marti("study error --help").output);
+  EXPECT_EQ(marti("-V").output, marti("--version").output);
   EXPECT_EQ(marti("--version").status, 0);
 }
 

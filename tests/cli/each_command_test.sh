@@ -51,9 +51,13 @@ marti scene list --
 marti scene info -- tetra:3
 marti scene export -- tetra:3 tetra.glb
 marti config --
+marti config -- cache --json
+marti help -- run
+marti sweep -- "$source/configs/marti.toml" "${small[@]}" --axis machine.nodes=1..2 -o axis
 marti figures --
 marti completion bash --
 marti completion zsh --
+marti completion fish --
 marti man --
 
 # No command is forgotten: the program lists its own.

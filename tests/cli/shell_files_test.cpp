@@ -83,13 +83,30 @@ TEST(ZshCompletion, OffersTheSame) {
   EXPECT_EQ(zsh_offers("marti run --set cache.wa"), "cache.ways=\n");
   EXPECT_EQ(zsh_offers("marti run --set cache.replacement=f"), "cache.replacement=fifo\n");
   EXPECT_EQ(zsh_offers("marti run -o \"\""), "files -/\n");
-  EXPECT_EQ(zsh_offers("marti scene info tea"), "teapot:12\nfiles -g *.(gltf|glb)\n");
+  EXPECT_EQ(zsh_offers("marti scene info tea"), "teapot:12\nfiles -g *.(gltf|glb|obj|ply)\n");
+}
+
+TEST(FishCompletion, OffersTheSame) {
+  if (!has("fish")) {
+    GTEST_SKIP() << "there is no fish";
+  }
+  const std::filesystem::path program(MARTI_PROGRAM);
+  const Outcome outcome =
+      shell("PATH=" + quoted(program.parent_path()) +
+            ":$PATH fish -N -c 'marti completion fish | source; complete -C \"marti sw\"; "
+            "complete -C \"marti run --set cache.replacement=f\"'");
+  EXPECT_EQ(outcome.output, "sweep\ncache.replacement=fifo\n");
 }
 
 TEST(Completion, RefusesOtherShells) {
-  const Outcome outcome = marti("completion fish");
+  const Outcome outcome = marti("completion tcsh");
   EXPECT_EQ(outcome.status, 2);
-  expect_in("fish", outcome.output);
+  expect_in("tcsh", outcome.output);
+}
+
+TEST(Completion, OffersAxesAndKeys) {
+  EXPECT_EQ(bash_offers("marti sweep --axis cache.wa"), "cache.ways=\n");
+  EXPECT_EQ(bash_offers("marti config cache.wa"), "cache.ways\n");
 }
 
 TEST(Completion, NeverComplains) {
@@ -104,7 +121,8 @@ TEST(Completion, NeverComplains) {
 void expect_on_page(const std::string& page, const std::string& words) {
   const Outcome help = marti(words + " --help");
   ASSERT_EQ(help.status, 0) << words;
-  static const std::regex option("\n  (?:-[a-z],)?(--[a-z-]+)");
+  EXPECT_TRUE(words.empty() || help.output.find("\nExamples:\n  ") != std::string::npos) << words;
+  static const std::regex option("\n  (?:-[a-zA-Z],)?(--[a-z-]+)");
   for (std::sregex_iterator at(help.output.begin(), help.output.end(), option), end; at != end; ++at) {
     expect_in((*at)[1].str(), page);
   }
@@ -113,7 +131,7 @@ void expect_on_page(const std::string& page, const std::string& words) {
     expect_in("marti" + words, page);
     return;
   }
-  const std::string commands = help.output.substr(listed);
+  const std::string commands = help.output.substr(listed, help.output.find("\nExamples:") - listed);
   static const std::regex command("\n  ([a-z]+) ");
   for (std::sregex_iterator at(commands.begin(), commands.end(), command), end; at != end; ++at) {
     expect_on_page(page, words + " " + (*at)[1].str());

@@ -190,7 +190,7 @@ TEST_F(SweepCommand, ThePlanAloneWritesNothing) {
 }
 
 TEST_F(SweepCommand, FindsTheBestMachineForABudget) {
-  const Outcome best = sweep(config, out, "--best speed_up --within 6");
+  const Outcome best = sweep(config, out, "--best speed_up --budget 6");
   ASSERT_EQ(best.status, 0) << best.output;
   EXPECT_TRUE(says(best, "best speed_up within 6: ")) << best.output;
   const json front = json::parse(sweep(config, out, "--best end --json").output);
@@ -208,15 +208,25 @@ TEST_F(SweepCommand, FindsTheBestMachineForABudget) {
   for (const json& point : points["rows"]) {
     EXPECT_GE(point["end"].get<double>(), least);
   }
-  const Outcome dear = sweep(config, out, "--best speed_up --within 0.5");
+  // The best within the budget is marked.
+  std::size_t chosen = 0;
+  const json within = json::parse(sweep(config, out, "--best end --budget 6 --json").output);
+  for (const json& row : within["rows"]) {
+    chosen += row["best"].get<std::size_t>();
+    EXPECT_TRUE(row["best"] == 0 || row["cost"].get<double>() <= 6.0);
+  }
+  EXPECT_EQ(chosen, 1U);
+  EXPECT_TRUE(says(sweep(config, out, "--best speed_up --within 6"), "best speed_up within 6: "))
+      << "the old name";
+  const Outcome dear = sweep(config, out, "--best speed_up --budget 0.5");
   EXPECT_EQ(dear.status, 2);
   EXPECT_TRUE(says(dear, "no point has a speed_up within a cost of 0.5")) << dear.output;
   const Outcome wrong = sweep(config, place("none"), "--best sped_up");
   EXPECT_EQ(wrong.status, 2);
   EXPECT_TRUE(says(wrong, "did you mean \"speed_up\"?")) << wrong.output;
   EXPECT_FALSE(fs::exists(place("none"))) << "said before anything is done";
-  EXPECT_EQ(sweep(config, out, "--within 3").status, 2) << "without --best";
-  EXPECT_EQ(sweep(config, out, "--best end --within=-1").status, 2);
+  EXPECT_EQ(sweep(config, out, "--budget 3").status, 2) << "without --best";
+  EXPECT_EQ(sweep(config, out, "--best end --budget=-1").status, 2);
   EXPECT_EQ(sweep(config, out, "--best end --within nan").status, 2);
 }
 

@@ -103,9 +103,19 @@ TEST(FuzzSeeds, Configurations) {
 TEST(FuzzSeeds, GltfFiles) {
   const std::filesystem::path source = MARTI_SOURCE;
   std::vector<std::filesystem::path> seeds = files_in(source / "configs/scenes", {".glb"});
-  const auto parts = files_in(source / "tests/fuzz/gltf", {".json"});
-  seeds.insert(seeds.end(), parts.begin(), parts.end());
+  for (const char* folder : {"tests/fuzz/gltf", "tests/unit/scenes/compressed"}) {
+    const auto more = files_in(source / folder, {".json", ".glb"});
+    seeds.insert(seeds.end(), more.begin(), more.end());
+  }
   try_seeds(with_findings(seeds, "gltf"), try_gltf);
+}
+
+TEST(FuzzSeeds, ObjFiles) {
+  try_seeds(with_findings(files_in(MARTI_SOURCE "/tests/fuzz/obj", {".obj"}), "obj"), try_obj);
+}
+
+TEST(FuzzSeeds, PlyFiles) {
+  try_seeds(with_findings(files_in(MARTI_SOURCE "/tests/fuzz/ply", {".ply"}), "ply"), try_ply);
 }
 
 }  // namespace

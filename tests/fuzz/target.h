@@ -29,4 +29,10 @@ void try_config(std::span<const std::uint8_t> bytes);
 /// is made up. A scene that is loaded must be valid by scenes/scene.h, at rest and in motion.
 void try_gltf(std::span<const std::uint8_t> bytes);
 
+/// The bytes as an OBJ file; what comes after a line "#mtl" is the material library a.mtl beside it.
+void try_obj(std::span<const std::uint8_t> bytes);
+
+/// The bytes as a PLY file.
+void try_ply(std::span<const std::uint8_t> bytes);
+
 }  // namespace marti::fuzz

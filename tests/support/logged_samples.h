@@ -12,7 +12,7 @@ namespace marti::test {
 
 /// The word that begins a ray.
 constexpr std::uint32_t ray_word(processors::RayKind kind, std::uint32_t bounce) {
-  return processors::make_word(processors::Step::ray, static_cast<std::uint32_t>(kind) | bounce << 2U);
+  return processors::make_word(processors::Step::ray, processors::ray_operand(kind, bounce));
 }
 
 /// The words of each of a pixel's samples: a log with one has them together, others begin a sample with each

@@ -131,8 +131,9 @@ class NaiveCounts {
     users_[{node / machine_.nodes, line}].insert(node);
   }
   Cell& cell(const NaiveAction& action) {
-    return cells_[{action.ray / 4, action.ray % 4, action.level, static_cast<std::size_t>(action.kind),
-                   action.splitting}];
+    return cells_[{processors::bounce_of(action.ray),
+                   static_cast<std::uint32_t>(processors::ray_kind_of(action.ray)), action.level,
+                   static_cast<std::size_t>(action.kind), action.splitting}];
   }
 
   MachineConfig machine_;

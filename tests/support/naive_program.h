@@ -59,7 +59,7 @@ inline void count_step(const WorkLog& log, const std::uint32_t* word, StepCounts
       break;
     }
     case Step::ray:
-      ++(steps.*ray_counters[operand & 3U]);
+      ++(steps.*ray_counters[ray_number_of(operand)]);
       break;
     case Step::shade:
       ++steps.shades;
@@ -211,7 +211,7 @@ class NaiveProgram {
         leaf(to, operand, word[1], word + 2);
         break;
       case Step::ray:
-        compute(to, Activity::traversal, ticks_.ray[operand & 3U]);
+        compute(to, Activity::traversal, ticks_.ray[ray_number_of(operand)]);
         break;
       case Step::shade:
         compute(to, Activity::shading, ticks_.shade);

@@ -71,9 +71,9 @@ inline processors::WorkLog random_ray_trees(Random& random, std::uint32_t width,
       for (std::uint32_t sample = 0; sample < samples; ++sample) {
         std::int64_t bounce = 0;
         for (std::int64_t rays = pick(random, 1, most_rays); rays > 0; --rays) {
-          const auto kind = bounce == 0 ? RayKind::camera : static_cast<RayKind>(pick(random, 1, 3));
-          row.words.push_back(make_word(
-              Step::ray, static_cast<std::uint32_t>(kind) | static_cast<std::uint32_t>(bounce) << 2U));
+          const auto kind = bounce == 0 ? RayKind::camera : static_cast<RayKind>(pick(random, 1, 4));
+          row.words.push_back(
+              make_word(Step::ray, processors::ray_operand(kind, static_cast<std::uint32_t>(bounce))));
           append_walk(random, log.topology, log.mailboxes, 0, row.words);
           if (kind != RayKind::shadow) {
             row.words.push_back(make_word(Step::shade, 0));

@@ -105,8 +105,8 @@ inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::
             }
             break;
           case 7:
-            row.words.push_back(
-                make_word(Step::ray, static_cast<std::uint32_t>(pick(random, 0, 3)) | (1U << 2U)));
+            row.words.push_back(make_word(
+                Step::ray, processors::ray_operand(static_cast<processors::RayKind>(pick(random, 0, 4)), 1)));
             break;
           case 8:
             row.words.push_back(make_word(Step::shade, static_cast<std::uint32_t>(pick(random, 0, 2))));
@@ -218,7 +218,8 @@ inline processors::WorkLog random_tree_log(Random& random, std::uint32_t width, 
     for (std::uint32_t x = 0; x < width; ++x) {
       row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
       for (std::int64_t rays = pick(random, 0, 3); rays > 0; --rays) {
-        row.words.push_back(make_word(Step::ray, static_cast<std::uint32_t>(pick(random, 0, 3))));
+        row.words.push_back(make_word(
+            Step::ray, processors::ray_operand(static_cast<processors::RayKind>(pick(random, 0, 4)), 0)));
         append_walk(random, log.topology, log.mailboxes, 0, row.words);
         if (random() % 2 == 0) {
           row.words.push_back(make_word(Step::shade, static_cast<std::uint32_t>(pick(random, 0, 1))));

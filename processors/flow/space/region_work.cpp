@@ -33,7 +33,7 @@ sim::Ticks compute_time(const WorkLog& log, const StepTicks& ticks, const std::u
     case Step::mailed_leaf:
       return sim::add_ticks(ticks.leaf, tests_time(log, ticks, word));
     case Step::ray:
-      return ticks.ray[operand_of(*word) & 3U];
+      return ticks.ray[ray_number_of(operand_of(*word))];
     case Step::shade:
       return ticks.shade;
     case Step::light:

@@ -28,6 +28,8 @@ void count_saved(Plan& plan, const SceneNeeds& needs, const scenes::Scene& scene
               "the plan left out reflected rays, and one was sent");
   sim::ensure(needs.refraction_rays || traced_of(processors::RayKind::refraction) == 0,
               "the plan left out refracted rays, and one was sent");
+  sim::ensure(needs.diffuse_rays || traced_of(processors::RayKind::diffuse) == 0,
+              "the plan has no use for diffuse rays, and one was sent");
   for (PlanEntry& entry : plan.entries) {
     if (entry.decision != PlanDecision::left_out) {
       continue;

@@ -233,7 +233,8 @@ bool is_left_out(const Plan& plan, PlanItem item) {
 processors::RenderOptions planned_options(const Plan& plan, const PlanFacts& facts) {
   processors::RenderOptions options = facts.render;
   // No material continues a chain of rays, so each chain is a single ray.
-  if (is_left_out(plan, PlanItem::reflection_rays) && is_left_out(plan, PlanItem::refraction_rays)) {
+  if (is_left_out(plan, PlanItem::reflection_rays) && is_left_out(plan, PlanItem::refraction_rays) &&
+      !facts.needs.diffuse_rays) {
     options.max_depth = 1;
   }
   // Without shadows there are no shadow rays to keep.

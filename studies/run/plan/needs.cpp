@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "processors/program/path_sampling.h"
 #include "processors/program/shading.h"
 #include "studies/run/plan/view.h"
 
@@ -9,7 +10,11 @@ namespace marti::studies {
 
 namespace {
 
-bool is_zero(const glm::dvec3& v) { return v.x == 0.0 && v.y == 0.0 && v.z == 0.0; }
+using processors::is_black;
+
+bool is_path(const processors::RenderOptions& options) {
+  return options.integrator == processors::Integrator::path;
+}
 
 bool transmits(const scenes::Material& material) { return material.transmission > 0.0; }
 
@@ -20,7 +25,11 @@ class Finder {
       : scene_(scene),
         options_(options),
         everything_(options.voxel_cut > 0.0),
-        in_view_(scene.triangles.size() + scene.quadrics.size()) {}
+        in_view_(scene.triangles.size() + scene.quadrics.size()) {
+    if (is_path(options)) {
+      emitters_ = processors::Emitters(scene);
+    }
+  }
 
   SceneNeeds find() {
     find_materials();
@@ -33,7 +42,12 @@ class Finder {
  private:
   // An average may reflect although one of its materials is black and another has no weight.
   [[nodiscard]] bool reflects(const scenes::Material& material) const {
-    return material.reflection > 0.0 && (everything_ || !is_zero(material.specular_color));
+    return material.reflection > 0.0 && (everything_ || !is_black(material.specular_color));
+  }
+
+  // Light that arrives anywhere is scattered on.
+  [[nodiscard]] bool sends_scattered(const scenes::Material& material) const {
+    return is_path(options_) && processors::scatters(material);
   }
 
   void find_materials() {
@@ -52,12 +66,18 @@ class Finder {
     }
     const bool deep = options_.max_depth > 1;
     const auto sends = [&](std::size_t i) {
-      return deep && seen[i] && (reflects(scene_.materials[i]) || transmits(scene_.materials[i]));
+      const scenes::Material& material = scene_.materials[i];
+      return deep && seen[i] && (reflects(material) || transmits(material) || sends_scattered(material));
     };
     for (std::size_t i = 0; i < seen.size() && !secondary_; ++i) {
       secondary_ = sends(i);
     }
     needs_.materials = secondary_ ? listed : seen;
+    for (std::uint32_t id = 0; id < scene_.triangles.size() && !emitters_.empty(); ++id) {
+      if (emitters_.has(id)) {
+        needs_.materials[scene_.triangles[id].material] = true;
+      }
+    }
   }
 
   void find_rays() {
@@ -71,6 +91,7 @@ class Finder {
       ++needs_.shaded;
       needs_.reflecting += reflects(material) ? 1U : 0U;
       needs_.transmitting += transmits(material) ? 1U : 0U;
+      needs_.diffuse_rays = needs_.diffuse_rays || (options_.max_depth > 1 && sends_scattered(material));
       const bool asks = processors::asks_lights(material);
       const bool shows = everything_ ? asks : processors::shows_light(material);
       needs_.unlit += asks && !shows ? 1U : 0U;
@@ -82,14 +103,18 @@ class Finder {
     needs_.reflection_rays = deep && (needs_.reflecting > 0 || needs_.transmitting > 0);
     needs_.lights = scene_.lights.size();
     for (const scenes::Light& light : scene_.lights) {
-      needs_.shining_lights += is_zero(light.color) ? 0U : 1U;
+      needs_.shining_lights += is_black(light.color) ? 0U : 1U;
+    }
+    if (!emitters_.empty()) {
+      ++needs_.lights;
+      ++needs_.shining_lights;
     }
     needs_.shadow_rays = options_.shadows && shows_ && needs_.shining_lights > 0;
   }
 
   void find_textures() {
     needs_.textures.resize(scene_.textures.size());
-    const bool any_light = needs_.shining_lights > 0 || !is_zero(scene_.ambient);
+    const bool any_light = needs_.shining_lights > 0 || !is_black(scene_.ambient) || is_path(options_);
     for (std::size_t i = 0; i < scene_.materials.size() && !scene_.uvs.empty(); ++i) {
       const scenes::Material& material = scene_.materials[i];
       if (!needs_.materials[i] || material.texture == scenes::no_texture) {
@@ -98,7 +123,7 @@ class Finder {
       ++needs_.textured;
       needs_.coordinates = true;
       // The colour of a texel is multiplied by the material's and goes into diffuse and ambient light alone.
-      if (everything_ || (any_light && material.diffuse > 0.0 && !is_zero(material.color))) {
+      if (everything_ || (any_light && material.diffuse > 0.0 && !is_black(material.color))) {
         needs_.textures[material.texture] = true;
       }
     }
@@ -106,7 +131,8 @@ class Finder {
 
   [[nodiscard]] bool uses_normal(const scenes::Material& material) const {
     const bool lit = needs_.shining_lights > 0 && processors::asks_lights(material);
-    return lit || (options_.max_depth > 1 && (reflects(material) || transmits(material)));
+    return lit || (options_.max_depth > 1 &&
+                   (reflects(material) || transmits(material) || sends_scattered(material)));
   }
 
   void find_normals() {
@@ -124,6 +150,7 @@ class Finder {
   const scenes::Scene& scene_;
   const processors::RenderOptions& options_;
   bool everything_;
+  processors::Emitters emitters_;  // wherever they are, points in view ask them for light
   std::vector<bool> in_view_;
   bool secondary_ = false;
   bool shows_ = false;

@@ -2,7 +2,7 @@
 //
 // A camera's rays meet only what lies in the view. Shadow rays ask whether they meet anything and shade
 // nothing. So as long as no material in view sends a reflected or a refracted ray, only the materials in view
-// are shaded; as soon as one does, any may be.
+// are shaded; as soon as one does, any may be. With Integrator::path scattering materials send rays too.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,15 @@ namespace marti::studies {
 /// `primitives` and `lights` count all there are, needed or not.
 struct SceneNeeds {
   std::uint64_t primitives = 0;
-  std::vector<bool> materials;  ///< that may be shaded, by index
+  std::vector<bool> materials;  ///< that may be shaded or asked for the light they emit, by index
   std::vector<bool> textures;   ///< whose texels may count in the image, by index
   std::uint64_t lights = 0;
-  std::uint64_t shining_lights = 0;  ///< with an intensity other than 0
-  bool shadow_rays = false;          ///< some may be sent that can change the image
+  /// With an intensity other than 0; with Integrator::path also the emissive triangles, together one light.
+  std::uint64_t shining_lights = 0;
+  bool shadow_rays = false;  ///< some may be sent that can change the image
   bool reflection_rays = false;
   bool refraction_rays = false;
+  bool diffuse_rays = false;
   bool coordinates = false;  ///< texture coordinates decide a texel, of which the work log keeps the number
   bool normals = false;      ///< vertex normals can change something
 

@@ -50,12 +50,12 @@ Outcome read_outcome(const sim::Config& config) {
 
 class Planner {
  public:
-  explicit Planner(sim::Config& config)
+  Planner(sim::Config& config, std::span<const std::string> axes)
       : config_(config),
         prices_(read_prices(config)),
         filter_(config.text("sweep.filter")),
         skip_invalid_(config.boolean("sweep.skip_invalid")),
-        table_(read_sweep_table(config)),
+        table_(read_sweep_table(config, axes)),
         points_(config, table_),
         used_(config.schema().keys().size()) {
     refuse_records(config);
@@ -330,6 +330,8 @@ std::uint64_t plan_bytes(std::uint64_t points, std::size_t axes) {
   return points * (machine + known + point + 4 * sizeof(std::size_t));
 }
 
-SweepPlan plan_sweep(sim::Config& config) { return Planner(config).plan(); }
+SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes) {
+  return Planner(config, axes).plan();
+}
 
 }  // namespace marti::studies

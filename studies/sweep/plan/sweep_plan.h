@@ -76,7 +76,7 @@ struct SweepPlan {
 /// is part of the frame's key. Throws UserError naming file, line and key; for a point whose machine cannot
 /// be built, of the first such point in order, with what the point gives; for a plan beyond
 /// host_machine.memory_limit, before its points are read.
-[[nodiscard]] SweepPlan plan_sweep(sim::Config& config);
+[[nodiscard]] SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes = {});
 
 /// A digest of program, frames and machines, the content of scenes included: 32 hexadecimal digits, on which
 /// all ranks of a sweep must agree.

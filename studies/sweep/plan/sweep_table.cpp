@@ -1,6 +1,7 @@
 #include "studies/sweep/plan/sweep_table.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <string_view>
 #include <unordered_map>
@@ -9,6 +10,7 @@
 #include "sim/config_errors.h"
 #include "sim/nearest.h"
 #include "sim/shown.h"
+#include "studies/sweep/plan/axis_argument.h"
 #include "studies/sweep/plan/axis_values.h"
 
 namespace marti::studies {
@@ -24,7 +26,10 @@ class TableReader {
  public:
   explicit TableReader(const sim::Config& config) : config_(config) {}
 
-  SweepTable read() {
+  SweepTable read(std::span<const std::string> arguments) {
+    for (const std::string& argument : arguments) {
+      add_argument(argument);
+    }
     const DocumentValue::Table& sweep = config_.free_section("sweep");
     for (const DocumentEntry& entry : sweep) {
       read_part(entry);
@@ -32,7 +37,7 @@ class TableReader {
     if (table_.axes.empty()) {
       fail(std::max(1, config_.free_section_line("sweep")), "sweep",
            "there is nothing to sweep over: give lists of values in [sweep.axes], [[sweep.zip]] or "
-           "[sweep.points.NAME]");
+           "[sweep.points.NAME], or --axis KEY=VALUE,VALUE,...");
     }
     std::stable_sort(table_.axes.begin(), table_.axes.end(), [](const SweepAxis& a, const SweepAxis& b) {
       const bool first = a.kind == SweepAxis::Kind::named;
@@ -49,10 +54,39 @@ class TableReader {
     sim::fail_at(config_, line, key, message);
   }
 
+  void add_argument(const std::string& argument) {
+    const std::string place = "--axis " + sim::shown(argument) + ": ";
+    AxisArgument given = read_axis_argument(config_, argument);
+    const std::string& name = config_.schema().names()[given.key];
+    if (!sweepable(name)) {
+      throw sim::UserError(place + std::string(not_sweepable));
+    }
+    if (!swept_.emplace(given.key, 0).second) {
+      throw sim::UserError(place + "another --axis sweeps over this key");
+    }
+    if (config_.given_at(given.key) && config_.where(name).starts_with("--set")) {
+      throw sim::UserError(place + "\"" + sim::shown(config_.where(name)) + "\" would have no effect");
+    }
+    SweepAxis axis{SweepAxis::Kind::list, 0, {given.key}, {}, {}};
+    for (sim::Setting& step : given.steps) {
+      axis.steps.push_back({std::move(step)});
+    }
+    table_.axes.push_back(std::move(axis));
+  }
+
+  // Whether an axis of the command line sweeps over the key.
+  [[nodiscard]] bool replaced(std::size_t key) const {
+    const auto found = swept_.find(key);
+    return found != swept_.end() && found->second == 0;
+  }
+
   void read_part(const DocumentEntry& entry) {
     const std::string name = "sweep." + entry.name;
     if (entry.name == "axes") {
       for_each_key(table_of(entry.value, name), name, "", [&](std::size_t key, const DocumentEntry& values) {
+        if (replaced(key)) {
+          return;
+        }
         enter(key, values.line);
         SweepAxis axis{SweepAxis::Kind::list, values.line, {key}, {}, {}};
         for (sim::Setting& step : axis_values(config_, key, values.value, false, table_.notes)) {
@@ -112,11 +146,18 @@ class TableReader {
     }
   }
 
+  static constexpr std::string_view not_sweepable =
+      "says nothing about the simulated machine; a sweep cannot change it";
+
+  static bool sweepable(std::string_view name) {
+    constexpr std::array<std::string_view, 4> others = {"host_machine.", "record.", "prices.", "sweep."};
+    return std::none_of(others.begin(), others.end(),
+                        [&](std::string_view section) { return name.starts_with(section); });
+  }
+
   void refuse_unsweepable(const std::string& name, int line) const {
-    for (const std::string_view section : {"host_machine.", "record.", "prices.", "sweep."}) {
-      if (name.starts_with(section)) {
-        fail(line, name, "says nothing about the simulated machine; a sweep cannot change it");
-      }
+    if (!sweepable(name)) {
+      fail(line, name, std::string(not_sweepable));
     }
   }
 
@@ -125,7 +166,10 @@ class TableReader {
     const std::string& name = config_.schema().names()[key];
     const auto [place, fresh] = swept_.emplace(key, line);
     if (!fresh) {
-      fail(line, name, "is swept over twice; the first time in line " + std::to_string(place->second));
+      fail(line, name,
+           place->second == 0
+               ? "changes together with other keys here, so that --axis cannot replace its values"
+               : "is swept over twice; the first time in line " + std::to_string(place->second));
     }
     if (config_.given_at(key) && config_.where(name).starts_with("--set")) {
       fail(line, name,
@@ -223,11 +267,13 @@ class TableReader {
 
   const sim::Config& config_;
   SweepTable table_;
-  std::unordered_map<std::size_t, int> swept_;  // key and line
+  std::unordered_map<std::size_t, int> swept_;  // key and line; 0: by the command line
 };
 
 }  // namespace
 
-SweepTable read_sweep_table(const sim::Config& config) { return TableReader(config).read(); }
+SweepTable read_sweep_table(const sim::Config& config, std::span<const std::string> arguments) {
+  return TableReader(config).read(arguments);
+}
 
 }  // namespace marti::studies

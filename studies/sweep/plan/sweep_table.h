@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,7 @@ struct SweepAxis {
   /// named: the points of [sweep.points], whose steps may give different keys.
   enum class Kind : std::uint8_t { list, zip, named };
   Kind kind = Kind::list;
-  int line = 0;                                  ///< of the file
+  int line = 0;                                  ///< of the file; 0: from the command line
   std::vector<std::size_t> keys;                 ///< indices into the schema, in the order of the file
   std::vector<std::vector<sim::Setting>> steps;  ///< what each step gives, in the order of the file
   std::vector<std::string> names;                ///< of named points, one for each step; else empty
@@ -33,9 +34,11 @@ struct SweepTable {
   std::vector<std::string> notes;                    ///< what a range had to be rounded to
 };
 
-/// Reads what the free section "sweep" holds. Throws UserError naming file, line and key: for an unknown or
-/// repeated key, one that no sweep may change, a wrong value, an empty axis, too many points, and where there
-/// is no axis at all.
-[[nodiscard]] SweepTable read_sweep_table(const sim::Config& config);
+/// Reads what the free section "sweep" holds, and the axes of the command line (axis_argument.h), which come
+/// first and replace axes of the file over their keys. Throws UserError naming file, line and key: for an
+/// unknown or repeated key, one that no sweep may change, a wrong value, an empty axis, too many points, and
+/// where there is no axis at all.
+[[nodiscard]] SweepTable read_sweep_table(const sim::Config& config,
+                                          std::span<const std::string> arguments = {});
 
 }  // namespace marti::studies

@@ -60,7 +60,8 @@ Column column_of(const std::string& name) {
       {"ordinal", {"", "number of the point in the sweep, from 0"}},
       {"machine", {"", "id of its machine in the store"}},
       {"base", {"", "id of the machine that its speed-up is measured against"}},
-      {"point", {"", "name in [sweep.points]"}}};
+      {"point", {"", "name in [sweep.points]"}},
+      {"best", {"1", "1 for the best within the budget, 0 for the others"}}};
   Column column{plain(name), ColumnType::real, "", "the key " + name};
   const auto describe = [&](const std::string& unit, const std::string& description) {
     column.unit = unit;
@@ -133,9 +134,16 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
                          (budget ? fmt::format(" within a cost of {:g}", *budget) : std::string()));
   }
   std::vector<Row> front;
+  std::vector<Row> marked;  // with whether it is the best
   for (const std::size_t index : pareto_front(offers, better)) {
     front.push_back(rows[index]);
+    marked.push_back(rows[index]);
+    const bool chosen =
+        offers[index].cost == offers[*best].cost && offers[index].metric == offers[*best].metric;
+    marked.back().figures.emplace_back(std::int64_t{chosen ? 1 : 0});
   }
+  std::vector<std::string> marked_names = names;
+  marked_names.emplace_back("best");
   // Times that differ in their fourth digit must not look alike.
   const bool time = figure.unit == "ps";
   const auto shown = [time](const Cell& cell) {
@@ -147,7 +155,7 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
   for (std::size_t axis = 0; axis < axes; ++axis) {
     text += (axis == 0 ? " " : ", ") + names[axis] + " = " + text_of(rows[*best].figures[axis]);
   }
-  Table table = table_of("best", "Points that no other beats in cost and " + metric, names, front);
+  Table table = table_of("best", "Points that no other beats in cost and " + metric, marked_names, marked);
   for (Row& row : front) {
     if (time) {
       row.figures.back() = shown(row.figures.back());

@@ -15,7 +15,9 @@ namespace marti::studies {
 
 /// Which points are worth their price.
 struct BestPoints {
-  Table front;       ///< "best": the points that no other beats in cost and metric, ascending by cost
+  /// "best": the points that no other beats in cost and metric, ascending by cost; its last column marks the
+  /// best within the budget.
+  Table front;
   std::string text;  ///< for people: the best within the budget, and the front
 };
 

@@ -34,7 +34,8 @@ struct Walk {
 };
 constexpr Walk octree_walk{accel::Traversal::octree, "octree", accel::BspWalk::recursive};
 
-MeasuredMixes measure(const scenes::Scene& scene, const Walk& walk = octree_walk, std::uint32_t side = 128) {
+MeasuredMixes measure(const scenes::Scene& scene, const Walk& walk = octree_walk, std::uint32_t side = 128,
+                      Integrator integrator = Integrator::whitted) {
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
   accel::StructureOptions options;
   options.octree.max_objects = options.bsp.max_objects = 9;
@@ -43,7 +44,19 @@ MeasuredMixes measure(const scenes::Scene& scene, const Walk& walk = octree_walk
   const auto structure = accel::make_structure(walk.kind, triangles, options);
   EXPECT_EQ(accel::traversal_of(*structure), walk.traversal);
   return measure_operation_mixes(scene, *triangles, *structure,
-                                 {.width = side, .height = side, .max_depth = 2});
+                                 {.width = side, .height = side, .max_depth = 2, .integrator = integrator});
+}
+
+/// The scene under a square that emits light.
+scenes::Scene under_a_panel(std::string_view name) {
+  scenes::Scene scene = scenes::make_procedural(name);
+  scenes::Material& light = scene.materials.emplace_back();
+  light.diffuse = 0.0;
+  light.emission = glm::dvec3(5.0);
+  const auto material = static_cast<std::uint32_t>(scene.materials.size() - 1);
+  test::add_quad(scene, {-2.0, 3.0, 8.0}, {2.0, 3.0, 8.0}, {2.0, -1.0, 8.0}, {-2.0, -1.0, 8.0}, material);
+  scene.normals.resize(scene.positions.size(), glm::dvec3(0.0));
+  return scene;
 }
 
 void expect_walk_close(const OperationMixes& measured, const OperationMixes& table) {
@@ -69,6 +82,14 @@ TEST_P(WalkMixes, TheTableIsWhatTheProgramDoes) {
     expect_close("light", teapot.mixes.light, table.light);
   }
   EXPECT_EQ(teapot.mixes.pixel, table.pixel);
+
+  const MeasuredMixes paths =
+      measure(under_a_panel(brute ? "teapot:4" : "teapot:12"), walk, brute ? 32 : 128, Integrator::path);
+  expect_close("scattered ray", paths.mixes.ray[4], table.ray[4]);
+  if (!brute) {
+    expect_close("shade of a path", paths.mixes.shade, table.path_shade);
+    expect_close("light of a path", paths.mixes.light, table.path_light);
+  }
 
   const MeasuredMixes gears =
       measure(scenes::make_procedural(brute ? "gears:1" : "gears:2"), walk, brute ? 16 : 128);

@@ -30,10 +30,11 @@ WorkLog small_log(const std::vector<std::uint32_t>& words) {
 }
 
 TEST(WorkLog, CountsEveryKindOfStep) {
-  const WorkLog log = small_log(
-      {make_word(Step::ray, 0), make_word(Step::branch, 0), make_word(Step::leaf, 1),
-       make_word(Step::leaf, 2), make_word(Step::shade, 1), make_word(Step::texel, 0), 3,
-       make_word(Step::ray, 1U | 1U << 2U), make_word(Step::partial_leaf, 1), 2, make_word(Step::light, 0)});
+  const WorkLog log =
+      small_log({make_word(Step::ray, 0), make_word(Step::branch, 0), make_word(Step::leaf, 1),
+                 make_word(Step::leaf, 2), make_word(Step::shade, 1), make_word(Step::texel, 0), 3,
+                 make_word(Step::ray, ray_operand(RayKind::shadow, 1)), make_word(Step::partial_leaf, 1), 2,
+                 make_word(Step::light, 0)});
   EXPECT_EQ(test::fault_of(log), "");
   std::vector<std::uint64_t> shades;
   const LogTotals totals = totals_of(log, &shades);
@@ -151,7 +152,7 @@ RC_GTEST_PROP(RowRecorder, WritesWhatItIsTold, ()) {
         switch (i % 7) {
           case 0:
             recorder.ray(RayKind::reflection, i, {});
-            words.push_back(make_word(Step::ray, 2U | i << 2U));
+            words.push_back(make_word(Step::ray, ray_operand(RayKind::reflection, i)));
             break;
           case 1:
             recorder.branch(i);

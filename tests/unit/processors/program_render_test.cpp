@@ -94,14 +94,14 @@ void check_order(std::span<const std::uint32_t> words, const RenderOptions& opti
     const Step step = step_of(words[at]);
     const std::uint32_t operand = operand_of(words[at]);
     if (step == Step::ray) {
-      const auto kind = static_cast<RayKind>(operand & 3U);
+      const auto kind = ray_kind_of(operand);
       shadow = kind == RayKind::shadow;
       if (shadow) {
         EXPECT_TRUE(shaded) << "a shadow ray belongs to a shaded point";
-        EXPECT_EQ(operand >> 2U, bounce + 1);
+        EXPECT_EQ(bounce_of(operand), bounce + 1);
       } else {
         EXPECT_EQ(kind == RayKind::camera, at == 0) << "one camera ray per pixel";
-        bounce = operand >> 2U;
+        bounce = bounce_of(operand);
         EXPECT_LT(bounce, options.max_depth);
         shaded = false;
       }
@@ -151,9 +151,10 @@ TEST_P(Frames, LogsSayWhatHappened) {
   EXPECT_EQ(totals.lights, frame.rays.traced[1] - frame.rays.hit[1]);
 
   CountingVisitor visitor;
+  const Emitters none;
   accel::visit_structure(*built.structure, [&](const auto& concrete) {
     Tracer<double, std::remove_cvref_t<decltype(concrete)>, CountingVisitor> tracer(
-        built.scene, concrete, built.scene.camera.image_plane(64, 48), options, visitor);
+        built.scene, concrete, none, built.scene.camera.image_plane(64, 48), options, visitor);
     for (std::uint32_t y = 0; y < 48; ++y) {
       for (std::uint32_t x = 0; x < 64; ++x) {
         static_cast<void>(tracer.trace(x, y));

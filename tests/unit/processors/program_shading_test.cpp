@@ -66,8 +66,8 @@ TEST(Shading, LambertAmbientAndEmission) {
   expect_color(frame.image.at(0, 0),
                {0.01 + 0.5 * 0.9 * (0.1 + 0.8 * 2.0), 0.02 + 0.25 * 0.9 * (0.2 + 0.8 * 1.0),
                 0.03 + 1.0 * 0.9 * (0.3 + 0.8 * 0.5)});
-  EXPECT_EQ(frame.rays.traced, (std::array<std::uint64_t, 4>{1, 1, 0, 0}));
-  EXPECT_EQ(frame.rays.hit, (std::array<std::uint64_t, 4>{1, 0, 0, 0}));
+  EXPECT_EQ(frame.rays.traced, (std::array<std::uint64_t, ray_kinds>{1, 1, 0, 0}));
+  EXPECT_EQ(frame.rays.hit, (std::array<std::uint64_t, ray_kinds>{1, 0, 0, 0}));
 }
 
 RC_GTEST_PROP(Shading, PointLightsFollowTheCosineAndTheirFallOff, ()) {
@@ -134,7 +134,7 @@ TEST(Shading, MirrorShowsTheBackgroundTinted) {
   test::add_floor(scene, 0.0, 20.0, 0);
   const Frame frame = Built(scene).render(test::one_pixel(2));
   expect_color(frame.image.at(0, 0), {0.15, 0.15, 0.1125});
-  EXPECT_EQ(frame.rays.traced, (std::array<std::uint64_t, 4>{1, 0, 1, 0}));
+  EXPECT_EQ(frame.rays.traced, (std::array<std::uint64_t, ray_kinds>{1, 0, 1, 0}));
 }
 
 TEST(Shading, ParallelMirrorsAddAGeometricSeriesUpToTheDepthLimit) {
@@ -192,11 +192,11 @@ TEST(Shading, TotalInternalReflectionCarriesAllTheWeight) {
   scene.camera.at = {3.0, 0.0, 0.0};  // 71.6 degrees; the critical angle is 41.8
   Frame frame = Built(scene).render(test::one_pixel(2));
   expect_color(frame.image.at(0, 0), {0.75, 0.75, 0.75});
-  EXPECT_EQ(frame.rays.traced, (std::array<std::uint64_t, 4>{1, 0, 1, 0}));
+  EXPECT_EQ(frame.rays.traced, (std::array<std::uint64_t, ray_kinds>{1, 0, 1, 0}));
   scene.camera.at = {0.5, 0.0, 0.0};  // 26.6 degrees
   frame = Built(scene).render(test::one_pixel(2));
   expect_color(frame.image.at(0, 0), {0.75, 0.75, 0.75});
-  EXPECT_EQ(frame.rays.traced, (std::array<std::uint64_t, 4>{1, 0, 1, 1}));
+  EXPECT_EQ(frame.rays.traced, (std::array<std::uint64_t, ray_kinds>{1, 0, 1, 1}));
 }
 
 RC_GTEST_PROP(Shading, RefractionObeysSnell, ()) {

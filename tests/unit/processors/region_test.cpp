@@ -209,7 +209,7 @@ TEST(RegionWork, FollowsARayFromRegionToRegion) {
   log.topology.nodes = {{1, 2, 1, false}, {0, 1, 2, true}, {1, 1, 2, true}};
   log.topology.entries = {0, 0};
   const auto ray = [](RayKind kind, std::uint32_t bounce) {
-    return make_word(Step::ray, static_cast<std::uint32_t>(kind) | bounce << 2U);
+    return make_word(Step::ray, ray_operand(kind, bounce));
   };
   // Pixel 0: the camera ray reads the top and leaf 2, then hits in leaf 1; its shadow ray ends in leaf 2.
   // Pixel 1 is left out by a step of 2; pixel 2 sees only the top.

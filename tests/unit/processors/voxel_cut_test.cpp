@@ -315,8 +315,9 @@ TEST_P(CutFrames, NeedNoVoxelsAboveTheFirstSmallLevel) {
     ASSERT_GT(frame.first_voxel_level, 1U);
     const CutStructure structure(octree_of(built), all, threshold);
     NullRecorder recorder;
+    const Emitters none;
     Tracer<double, CutStructure, NullRecorder> tracer(
-        built.scene, structure, built.scene.camera.image_plane(size, size), options, recorder);
+        built.scene, structure, none, built.scene.camera.image_plane(size, size), options, recorder);
     for (std::uint32_t y = 0; y < size; ++y) {
       for (std::uint32_t x = 0; x < size; ++x) {
         const Vec3<double> color = tracer.trace(x, y);

@@ -30,10 +30,10 @@ using testing::has_note;
 
 class GltfAnimation : public ::testing::Test {
  protected:
-  AnimatedScene open(const GltfFile& file, const GltfOptions& options = {}) {
+  AnimatedScene open(const GltfFile& file, const FileOptions& options = {}) {
     return open_gltf(file.write_glb(directory_.path(), "scene.glb"), options, {});
   }
-  std::string refusal(const GltfFile& file, const GltfOptions& options = {}, double time = 0.0) {
+  std::string refusal(const GltfFile& file, const FileOptions& options = {}, double time = 0.0) {
     return test::user_error_of([&] { static_cast<void>(open(file, options).at(time)); });
   }
   test::TemporaryDirectory directory_;
@@ -245,7 +245,7 @@ TEST_F(GltfAnimation, AnimationsAreChosen) {
   file.json["animations"][1]["name"] = "run";
   file.json["animations"][1]["samplers"][0]["output"] = file.add_positions({0, 0, 0, 8, 0, 0});
   const auto x = [&](const std::string& choice) {
-    GltfOptions options;
+    FileOptions options;
     options.animation = choice;
     return corner(open(file, options).at(1.0), 0, 0).x;
   };
@@ -254,7 +254,7 @@ TEST_F(GltfAnimation, AnimationsAreChosen) {
   EXPECT_EQ(x("run"), 8.0);
   EXPECT_EQ(x("1"), 8.0);
   EXPECT_EQ(x("none"), 0.0);
-  GltfOptions options;
+  FileOptions options;
   options.animation = "wlak";
   EXPECT_NE(refusal(file, options).find("did you mean \"walk\""), std::string::npos)
       << refusal(file, options);
@@ -281,7 +281,7 @@ TEST_F(GltfAnimation, OnlyTheChosenOneIsChecked) {
   file.json["animations"].push_back(file.json["animations"][0]);
   file.json["animations"][1]["samplers"][0]["input"] = 99;
   EXPECT_EQ(corner(open(file).at(1.0), 0, 0).x, 1.0);
-  GltfOptions options;
+  FileOptions options;
   options.animation = "1";
   EXPECT_NE(refusal(file, options).find("accessor 99"), std::string::npos);
   EXPECT_NE(test::user_error_of([&] { static_cast<void>(open(file).facts()); }).find("accessor 99"),

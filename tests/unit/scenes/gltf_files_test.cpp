@@ -16,7 +16,7 @@ namespace {
 
 using testing::GltfFile;
 
-std::string refusal(const std::filesystem::path& path, const GltfOptions& options = {},
+std::string refusal(const std::filesystem::path& path, const FileOptions& options = {},
                     const ImageDecoder& decode = {}) {
   return test::user_error_of([&] { static_cast<void>(load_gltf(path, options, decode)); });
 }
@@ -83,19 +83,12 @@ TEST_F(GltfFolder, FilesBeyondTheMemoryAreNotRead) {
   file.json["buffers"] = {{{"byteLength", std::uint64_t{1} << 31U}, {"uri", "sparse.bin"}}};
   testing::write_bytes(folder() / "sparse.bin", "");
   std::filesystem::resize_file(folder() / "sparse.bin", std::uintmax_t{1} << 31U);
-  GltfOptions options;
+  FileOptions options;
   options.memory = sim::MemoryBudget(std::uint64_t{1} << 20U);
   const std::string message = refusal(file.write_gltf(folder(), "scene.gltf"), options);
   EXPECT_TRUE(says(message, "sparse.bin")) << message;
   EXPECT_TRUE(says(message, "4 GiB")) << message;
   EXPECT_TRUE(says(message, "more than 1 MiB")) << message;
-}
-
-TEST(GltfCompressed, IsRefusedByTheNameOfItsExtension) {
-  const std::filesystem::path files = MARTI_COMPRESSED_SCENES;
-  EXPECT_TRUE(says(refusal(files / "meshopt.glb"), "requires the extension \"EXT_meshopt_compression\""));
-  EXPECT_TRUE(says(refusal(files / "draco.glb"), "requires the extension \"KHR_draco_mesh_compression\""));
-  EXPECT_TRUE(says(refusal(files / "draco_not_required.glb"), "by the extension KHR_draco_mesh_compression"));
 }
 
 TEST(GltfCompressed, IsReadWhereItsDataAreThereUncompressed) {
@@ -109,17 +102,6 @@ TEST(GltfCompressed, IsReadWhereItsDataAreThereUncompressed) {
   EXPECT_EQ(a.hi, b.hi);
   EXPECT_NEAR(a.hi.x, 1.0, 1e-4);
   EXPECT_NEAR(a.hi.z, 0.0625, 1e-4);
-}
-
-// The file does not say that the extension is required, and has data that could be taken for uncompressed.
-TEST(GltfCompressed, ViewsOfBytesThatAreNotThereAreRefused) {
-  const test::TemporaryDirectory directory;
-  GltfFile file = GltfFile::square();
-  file.json["extensionsUsed"] = {"EXT_meshopt_compression"};
-  file.json["buffers"] = {
-      {{"byteLength", file.bin.size()}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
-  const std::string message = refusal(file.write_glb(directory.path(), "a.glb"));
-  EXPECT_TRUE(says(message, "compressed by the extension EXT_meshopt_compression")) << message;
 }
 
 // A sparse accessor puts right indices that are all zeros, or some that are wrong.
@@ -194,7 +176,7 @@ TEST(GltfImages, TexelsAreCountedBeforeTheyAreDecoded) {
     ADD_FAILURE() << "an image that is too large is decoded";
     return {};
   };
-  GltfOptions options;
+  FileOptions options;
   options.size_first = [](std::span<const std::byte> /*file*/, std::string_view /*name*/) {
     return ImageSize{16384, 16384};
   };
@@ -221,7 +203,7 @@ TEST(GltfInstances, AreCountedBeforeTheyAreExpanded) {
   EXPECT_EQ(scene.triangles.size(), 2U * nodes);
   const std::uint64_t takes = host_bytes(scene);
   EXPECT_GT(takes, 2U * nodes * sizeof(Triangle));
-  GltfOptions options;
+  FileOptions options;
   options.memory = sim::MemoryBudget(takes);
   EXPECT_TRUE(says(refusal(path, options), "memory_limit")) << "its JSON takes more";
   options.memory = sim::MemoryBudget(20 * takes);

@@ -23,10 +23,10 @@ using testing::has_note;
 
 class GltfLoad : public ::testing::Test {
  protected:
-  Scene load(const GltfFile& file, const GltfOptions& options = {}, const ImageDecoder& decode = {}) {
+  Scene load(const GltfFile& file, const FileOptions& options = {}, const ImageDecoder& decode = {}) {
     return load_gltf(file.write_glb(directory_.path(), "scene.glb"), options, decode);
   }
-  std::string refusal(const GltfFile& file, const GltfOptions& options = {}) {
+  std::string refusal(const GltfFile& file, const FileOptions& options = {}) {
     return test::user_error_of([&] { static_cast<void>(load(file, options)); });
   }
   test::TemporaryDirectory directory_;
@@ -314,7 +314,7 @@ TEST_F(GltfLoad, CamerasAreChosen) {
   EXPECT_EQ(load(file).camera.eye, glm::dvec3(0, 0, 3));
   const glm::dvec3 forward = load(file).camera.at - load(file).camera.eye;
   EXPECT_EQ(glm::normalize(forward), glm::dvec3(0, 0, -1));
-  GltfOptions options;
+  FileOptions options;
   options.camera = "far";
   EXPECT_EQ(load(file, options).camera.vertical_fov, 0.25);
   options.camera = "1";
@@ -352,7 +352,7 @@ TEST_F(GltfLoad, ScenesAreChosen) {
   file.json["scenes"] = {{{"nodes", {0}}, {"name", "left"}}, {{"nodes", {1}}, {"name", "right"}}};
   file.json["scene"] = 1;
   EXPECT_EQ(bounds_of(load(file)).lo.x, 5.0);
-  GltfOptions options;
+  FileOptions options;
   options.scene = "left";
   EXPECT_EQ(bounds_of(load(file, options)).lo.x, 0.0);
   options.scene = "1";
@@ -421,18 +421,18 @@ TEST(OpenScene, ChoosesByTheEndOfTheName) {
               static_cast<void>(open_scene("other.gltf", options, {}));
             }).find("other.gltf"),
             std::string::npos);
-  options.gltf.camera = "x";
+  options.file.camera = "x";
   EXPECT_NE(
       test::user_error_of([&] { static_cast<void>(open_scene("tetra:1", options, {})); }).find("tetra:1"),
       std::string::npos);
-  options.gltf.camera.clear();
-  options.gltf.time = 2;
+  options.file.camera.clear();
+  options.file.time = 2;
   EXPECT_NE(test::user_error_of([&] {
               static_cast<void>(open_scene("tetra:1", options, {}));
             }).find("no animation plays"),
             std::string::npos);
   EXPECT_EQ(open_animated("tetra:1", options, {}).at(2.0).triangles.size(), 4U);
-  options.gltf.animation = "walk";
+  options.file.animation = "walk";
   EXPECT_NE(test::user_error_of([&] {
               static_cast<void>(open_animated("tetra:1", options, {}));
             }).find("no animations"),

@@ -200,7 +200,7 @@ TEST(HostileMotion, EveryFaultIsRefusedWithPathAndReason) {
 
 TEST(HostileMotion, LimitsHold) {
   const test::TemporaryDirectory directory;
-  GltfOptions options;
+  FileOptions options;
   options.max_triangles = 44;
   const auto message = [&](const GltfFile& file) {
     const auto path = file.write_glb(directory.path(), "many.glb");
@@ -224,7 +224,7 @@ TEST(HostileMotion, LimitsHold) {
 TEST(HostileMotion, ManyAnimationsOfOneLargeAccessorAreNotDescribedWithoutEnd) {
   const test::TemporaryDirectory directory;
   GltfFile file = everything();
-  GltfOptions options;
+  FileOptions options;
   options.max_triangles = 200;
   for (int i = 0; i < 20; ++i) {
     file.json["animations"].push_back(file.json["animations"][0]);
@@ -238,7 +238,7 @@ TEST(HostileMotion, ManyAnimationsOfOneLargeAccessorAreNotDescribedWithoutEnd) {
 TEST(HostileMotion, OneSamplerOfManyWeightsIsNotCopiedWithoutEnd) {
   const test::TemporaryDirectory directory;
   GltfFile file = everything();
-  GltfOptions options;
+  FileOptions options;
   options.max_triangles = 44;
   json& channels = file.json["animations"][0]["channels"];
   for (int i = 0; i < 20; ++i) {

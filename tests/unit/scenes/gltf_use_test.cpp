@@ -51,7 +51,7 @@ GltfFile two_scenes() {
 
 class GltfUse : public ::testing::Test {
  protected:
-  AnimatedScene open(const GltfFile& file, const GltfOptions& options) {
+  AnimatedScene open(const GltfFile& file, const FileOptions& options) {
     return open_gltf(file.write_glb(directory_.path(), "scene.glb"), options, grey_pixels);
   }
   test::TemporaryDirectory directory_;
@@ -72,7 +72,7 @@ TEST_F(GltfUse, CountsWhatTheSceneDoesNotUse) {
   EXPECT_EQ(parts["accessors"], Pair(3, 5));
   // Four tangents, three positions, one image.
   EXPECT_EQ(use.unread_bytes, 64U + 36U + 5U);
-  GltfOptions other;
+  FileOptions other;
   other.scene = "1";
   EXPECT_NE(test::user_error_of([&] { static_cast<void>(open(two_scenes(), other)); }).find("not a picture"),
             std::string::npos);
@@ -81,7 +81,7 @@ TEST_F(GltfUse, CountsWhatTheSceneDoesNotUse) {
 
 // With the item kept, unused parts are read and checked.
 TEST_F(GltfUse, ReadsWhatNobodyUsesWhenAsked) {
-  GltfOptions all;
+  FileOptions all;
   all.read_unused = true;
   GltfFile file = two_scenes();
   EXPECT_NE(test::user_error_of([&] { static_cast<void>(open(file, all)); }).find("not a picture"),
@@ -99,7 +99,7 @@ TEST_F(GltfUse, ReadsWhatNobodyUsesWhenAsked) {
 }
 
 TEST_F(GltfUse, ImagesWaitForTheirDecoding) {
-  GltfOptions waiting;
+  FileOptions waiting;
   waiting.size_only = two_by_one;
   const GltfFile file = two_scenes();
   const Scene whole = open(file, {}).at(0.0);

@@ -95,6 +95,7 @@ void expect_sound(const FunctionalRun& kept, const SceneNeeds& needs, const scen
   }
   ASSERT_TRUE(needs.reflection_rays || kept.frame.rays.traced[2] == 0) << what;
   ASSERT_TRUE(needs.refraction_rays || kept.frame.rays.traced[3] == 0) << what;
+  ASSERT_TRUE(needs.diffuse_rays || kept.frame.rays.traced[4] == 0) << what;
   const bool any = std::any_of(scene.materials.begin(), scene.materials.end(), processors::asks_lights);
   ASSERT_TRUE(any || kept.frame.rays.traced[1] == 0) << what;
 }

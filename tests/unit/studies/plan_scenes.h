@@ -227,6 +227,10 @@ inline FrameConfig random_frame(Random& random, const std::string& structure) {
   config.render.mailboxes = random.chance(0.3);
   config.render.min_weight = random.chance(0.3) ? 0.1 : 0.0;
   config.render.samples = random.chance(0.3) ? 1 + random.below(4) : 1;
+  if (random.chance(0.3)) {
+    config.render.integrator = processors::Integrator::path;
+    config.render.min_weight = 0.0;
+  }
   return config;
 }
 

@@ -77,9 +77,9 @@ void Program::step(std::vector<Operation>& operations) {
     }
     case Step::ray: {
       std::int64_t* const rays[] = {&steps_.camera_rays, &steps_.shadow_rays, &steps_.reflection_rays,
-                                    &steps_.refraction_rays};
-      ++*rays[operand % 4];
-      operations.push_back(compute(Activity::traversal, ticks_.ray[operand % 4]));
+                                    &steps_.refraction_rays, &steps_.diffuse_rays};
+      ++*rays[operand % 8];
+      operations.push_back(compute(Activity::traversal, ticks_.ray[operand % 8]));
       return;
     }
     case Step::shade:

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -8,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "scenes/gltf.h"
 #include "scenes/open.h"
 #include "scenes/texture.h"
 #include "sim/error.h"
@@ -101,30 +101,57 @@ scenes::Texture decode(std::span<const std::byte> /*file*/, std::string_view nam
 
 }  // namespace
 
-void try_gltf(std::span<const std::uint8_t> bytes) {
+namespace {
+
+const std::filesystem::path& folder() {
   static const test::TemporaryDirectory directory;
-  const std::filesystem::path path = directory.path() / "fuzz.glb";
-  const std::vector<std::uint8_t> file = file_of(bytes);
-  {
-    std::ofstream out(path, std::ios::binary | std::ios::trunc);
-    out.write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));
-    promise(out.good(), "the input could not be written to " + path.string());
-  }
+  return directory.path();
+}
+
+void write(const std::string& name, std::span<const std::uint8_t> bytes) {
+  std::ofstream out(folder() / name, std::ios::binary | std::ios::trunc);
+  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  promise(out.good(), "the input could not be written to " + (folder() / name).string());
+}
+
+/// Opens a file that was written.
+void try_file(const std::string& name) {
   try {
-    scenes::GltfOptions options;
+    scenes::FileOptions options;
     options.max_triangles = most_triangles;
     options.max_file_bytes = 1U << 20U;
     options.read_unused = true;
-    const scenes::AnimatedScene scene = scenes::open_gltf(path, options, decode);
+    const scenes::AnimatedScene scene = scenes::open_animated(name, {folder(), options}, decode);
     check(scene.at(0.0));
     for (const double part : {0.3, 1.0}) {
       check(scene.at(part * scene.duration()));
     }
     (void)scenes::describe(scene.facts());
   } catch (const sim::UserError& error) {
-    promise(std::string_view(error.what()).starts_with(path.string()),
+    promise(std::string_view(error.what()).starts_with(folder().string()),
             "a message without the path: " + std::string(error.what()));
   }
+}
+
+}  // namespace
+
+void try_gltf(std::span<const std::uint8_t> bytes) {
+  write("fuzz.glb", file_of(bytes));
+  try_file("fuzz.glb");
+}
+
+void try_obj(std::span<const std::uint8_t> bytes) {
+  constexpr std::string_view mark = "\n#mtl\n";
+  const auto library = std::search(bytes.begin(), bytes.end(), mark.begin(), mark.end());
+  const auto size = static_cast<std::size_t>(library - bytes.begin());
+  write("fuzz.obj", bytes.first(size));
+  write("a.mtl", bytes.subspan(std::min(size + mark.size(), bytes.size())));
+  try_file("fuzz.obj");
+}
+
+void try_ply(std::span<const std::uint8_t> bytes) {
+  write("fuzz.ply", bytes);
+  try_file("fuzz.ply");
 }
 
 }  // namespace marti::fuzz

@@ -1,4 +1,4 @@
-#include "scenes/gltf_index_views.h"
+#include "scenes/gltf_placeholders.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -6,6 +6,8 @@
 #include <cstring>
 
 #include <nlohmann/json.hpp>
+
+#include "scenes/gltf_extensions.h"
 
 namespace marti::scenes::gltf {
 
@@ -25,13 +27,9 @@ void set_number(std::string& bytes, std::size_t at, std::size_t value) {
   std::memcpy(bytes.data() + at, &number, sizeof number);
 }
 
-}  // namespace
-
-IndexViews given_index_views(std::string_view text) {
-  IndexViews given;
-  json file = json::parse(text, nullptr, false);
-  if (file.is_discarded() || list_in(file, "bufferViews").empty()) {
-    return given;
+void give_views(json& file, Placeholders& given) {
+  if (list_in(file, "bufferViews").empty()) {
+    return;
   }
   std::vector<std::size_t> indices;
   for (json& mesh : list_in(file, "meshes")) {
@@ -50,7 +48,37 @@ IndexViews given_index_views(std::string_view text) {
       given.accessors.push_back(static_cast<int>(index));
     }
   }
-  if (!given.accessors.empty()) {
+}
+
+void give_bytes(json& file, Placeholders& given) {
+  json& buffers = list_in(file, "buffers");
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    json& buffer = buffers[i];
+    if (!buffer.is_object() || buffer.contains("uri") || !buffer.contains("extensions")) {
+      continue;
+    }
+    for (const char* name : meshopt_names) {
+      if (buffer["extensions"].is_object() && buffer["extensions"].contains(name)) {
+        buffer["uri"] = "data:application/octet-stream;base64,AA==";
+        buffer["byteLength"] = 1;
+        given.buffers.push_back(static_cast<int>(i));
+        break;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Placeholders with_placeholders(std::string_view text) {
+  Placeholders given;
+  json file = json::parse(text, nullptr, false);
+  if (file.is_discarded()) {
+    return given;
+  }
+  give_views(file, given);
+  give_bytes(file, given);
+  if (!given.accessors.empty() || !given.buffers.empty()) {
     given.json = file.dump(-1, ' ', false, json::error_handler_t::replace);
   }
   return given;
@@ -70,10 +98,16 @@ std::string with_json(std::string_view glb, std::string json) {
   return file;
 }
 
-void take_index_views(const IndexViews& given, tinygltf::Model& file) {
+void remove_placeholders(const Placeholders& given, tinygltf::Model& file) {
   for (const int accessor : given.accessors) {
     if (static_cast<std::size_t>(accessor) < file.accessors.size()) {
       file.accessors[static_cast<std::size_t>(accessor)].bufferView = -1;
+    }
+  }
+  for (const int buffer : given.buffers) {
+    if (static_cast<std::size_t>(buffer) < file.buffers.size()) {
+      file.buffers[static_cast<std::size_t>(buffer)].uri.clear();
+      file.buffers[static_cast<std::size_t>(buffer)].data.clear();
     }
   }
 }

@@ -1,0 +1,34 @@
+// What the readers of scene files are told: which parts to use, how images are read, and the limits.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "scenes/texture.h"
+#include "sim/memory_budget.h"
+
+namespace marti::scenes {
+
+struct FileOptions {
+  std::string scene;   ///< index or name; empty: the file's default, else the first
+  std::string camera;  ///< index or name of a camera of the file; empty: the scene's first perspective one
+  /// Index or name of the animation that plays; empty: the first, if the file has one; "none": the static
+  /// pose, unless an animation has that name.
+  std::string animation;
+  double time = 0.0;  ///< of the pose that is asked for: seconds from the animation's beginning
+  /// If set, images are not decoded: textures have their size and their file, but no texels (see
+  /// decode_texels).
+  ImageSizer size_only;
+  /// If set without `size_only`: gives an image's size before it is decoded, so that an image too large for
+  /// `memory` is refused first.
+  ImageSizer size_first;
+  /// Also reads and checks parts that the scene does not use: all images, and all accessors of numbers.
+  bool read_unused = false;
+  std::uint64_t max_triangles = std::uint64_t{1} << 25;  ///< more than this is refused; also for vertices
+  std::uint64_t max_file_bytes = (std::uint64_t{1} << 32) - 1;  ///< of each file read
+  /// The memory that the files, the scene made of them and its textures may take together. Instances are
+  /// counted before they are expanded, texels before they are decoded.
+  sim::MemoryBudget memory;
+};
+
+}  // namespace marti::scenes

@@ -1,0 +1,75 @@
+#include "scenes/image_file.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "sim/error.h"
+#include "sim/shown.h"
+
+namespace marti::scenes {
+
+namespace {
+
+constexpr std::uint64_t bytes_a_texel = sizeof(decltype(Texture::texels)::value_type);
+constexpr const char* textures_take = "its textures take";
+
+void require_image(const SourceFile& file, const ImageFile& image, const ImageDecoder& decode) {
+  if (image.bytes.empty()) {
+    file.fail("image '" + sim::shown(image.name) + "' is missing, empty or cannot be read");
+  }
+  if (!decode) {
+    file.fail("it needs the texture '" + sim::shown(image.name) + "', and no image decoder is at hand");
+  }
+}
+
+/// Throws UserError when `decode`, a decoder or a sizer, fails.
+template <class Decode>
+auto read_image(const SourceFile& file, const ImageFile& image, const Decode& decode) {
+  try {
+    return decode(image.bytes, image.name);
+  } catch (const sim::UserError& error) {
+    file.fail("image '" + sim::shown(image.name) + "': " + error.what());
+  }
+}
+
+Texture size_image(const SourceFile& file, const ImageFile& image) {
+  const ImageSize size = read_image(file, image, file.options().size_only);
+  sim::ensure(size.width > 0 && size.height > 0, "an image sizer returned an image of no size");
+  Texture texture;
+  texture.name = image.name;
+  texture.width = size.width;
+  texture.height = size.height;
+  file.take_memory(image.bytes.size(), textures_take);
+  texture.file = std::make_shared<const std::vector<std::byte>>(image.bytes.begin(), image.bytes.end());
+  return texture;
+}
+
+}  // namespace
+
+Texture decode_image(const SourceFile& file, const ImageFile& image, const ImageDecoder& decode) {
+  require_image(file, image, decode);
+  if (const ImageSizer& sizer =
+          file.options().size_first ? file.options().size_first : file.options().size_only) {
+    const ImageSize size = read_image(file, image, sizer);
+    // Both the samples from the decoder and the texels made of them.
+    file.require_memory(2 * bytes_a_texel * size.width * size.height, textures_take);
+  }
+  Texture texture = read_image(file, image, decode);
+  sim::ensure(texture.width > 0 && texture.height > 0 && texture.texels.size() == texture.size(),
+              "an image decoder returned a texture whose size does not match its texels");
+  texture.name = image.name;
+  return texture;
+}
+
+Texture open_image(const SourceFile& file, const ImageFile& image, const ImageDecoder& decode) {
+  if (file.options().size_only) {
+    require_image(file, image, decode);
+    return size_image(file, image);
+  }
+  Texture texture = decode_image(file, image, decode);
+  file.take_memory(texture.size() * bytes_a_texel, textures_take);
+  return texture;
+}
+
+}  // namespace marti::scenes

@@ -1,0 +1,167 @@
+#include "scenes/obj_materials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <span>
+
+#include "scenes/image_file.h"
+#include "sim/error.h"
+#include "sim/shown.h"
+
+namespace marti::scenes {
+
+namespace {
+
+double largest_of(const glm::dvec3& color) { return std::max({color.x, color.y, color.z}); }
+
+/// The folder of a file, with a slash at the end; empty for a file in the folder itself.
+std::string folder_of(const std::string& name) {
+  const std::size_t slash = name.rfind('/');
+  return slash == std::string::npos ? std::string() : name.substr(0, slash + 1);
+}
+
+}  // namespace
+
+ObjMaterials::ObjMaterials(const SourceFile& file, const ImageDecoder& decode, Scene& scene,
+                           LeftOut& left_out)
+    : file_(file),
+      decode_(decode),
+      scene_(scene),
+      left_out_(left_out),
+      access_(file.path().parent_path(), file.options().max_file_bytes, file.memory(), "file name") {}
+
+std::string ObjMaterials::bytes_of(const std::string& path, const std::string& place) {
+  const std::string name = access_.directory() + path;
+  std::string bytes;
+  std::string error = "there is no such file";
+  const bool exists = access_.may_read(name);
+  if (exists) {
+    error.clear();
+  }
+  if (!exists || !access_.read(name, bytes, error)) {
+    throw sim::UserError(
+        place + ": " +
+        (access_.refusal().empty() ? in_quotes(path) + " cannot be read: " + error : access_.refusal()));
+  }
+  return bytes;
+}
+
+void ObjMaterials::add_libraries(const TextLines& statement) {
+  std::string whole(statement.from(1));
+  std::replace(whole.begin(), whole.end(), '\\', '/');
+  if (whole.empty()) {
+    statement.fail("mtllib needs the name of a file");
+  }
+  if (statement.words().size() == 2 || access_.may_read(access_.directory() + whole)) {
+    add_library(whole, statement);
+    return;
+  }
+  for (std::size_t i = 1; i < statement.words().size(); ++i) {
+    std::string name(statement.words()[i]);
+    std::replace(name.begin(), name.end(), '\\', '/');
+    add_library(name, statement);
+  }
+}
+
+void ObjMaterials::add_library(const std::string& name, const TextLines& statement) {
+  if (!libraries_.insert(name).second) {
+    return;
+  }
+  const std::string text = bytes_of(name, statement.place());
+  std::uint64_t most = 0;  // of its materials
+  for (std::size_t at = text.find("newmtl"); at != std::string::npos; at = text.find("newmtl", at + 1)) {
+    ++most;
+  }
+  // In both lists, with its places in the text and in the index of names.
+  file_.take_memory(most * (2 * sizeof(Known) + 512), "its materials take");
+  for (MtlMaterial& material : read_mtl(text, sim::shown(access_.directory() + name), left_out_)) {
+    const auto [known, is_new] = by_name_.try_emplace(material.name, known_.size());
+    if (!is_new) {
+      throw sim::UserError(material.place + ": the material " + in_quotes(material.name) +
+                           " is defined a second time; the first is at " +
+                           known_[known->second].source.place);
+    }
+    known_.push_back({std::move(material), folder_of(name), std::nullopt});
+  }
+}
+
+void ObjMaterials::choose(const TextLines& statement) {
+  const auto found = by_name_.find(statement.from(1));
+  if (found == by_name_.end()) {
+    statement.fail("there is no material " + in_quotes(statement.from(1)) +
+                   " in the libraries (mtllib) named before it");
+  }
+  chosen_ = found->second;
+}
+
+std::uint32_t ObjMaterials::current() {
+  std::optional<std::uint32_t>& place = chosen_ ? known_[*chosen_].in_scene : default_material_;
+  if (!place) {
+    const Material material = chosen_ ? convert(known_[*chosen_]) : Material{};
+    used_ += chosen_ ? 1U : 0U;
+    place = static_cast<std::uint32_t>(scene_.materials.size());
+    scene_.materials.push_back(material);
+  }
+  return *place;
+}
+
+Material ObjMaterials::convert(const Known& known) {
+  const MtlMaterial& source = known.source;
+  const std::int64_t model = source.illumination;
+  const bool refracts = model == 4 || model == 6 || model == 7 || model == 9;
+  const double specular = largest_of(source.specular);
+  Material material;
+  material.name = source.name;
+  material.color = source.diffuse;
+  material.emission = source.emission;
+  material.highlight = model >= 2 ? specular : 0.0;
+  material.reflection = model >= 3 && model <= 9 ? specular : 0.0;
+  material.specular_color = specular > 0.0 ? source.specular / specular : glm::dvec3(1.0);
+  material.shininess = std::max(1.0, source.exponent);
+  const double opacity = source.opacity.value_or(1.0 - source.transparency.value_or(0.0));
+  if (source.opacity && source.transparency &&
+      std::abs(*source.opacity + *source.transparency - 1.0) > 1e-3) {
+    left_out_.features["transparencies Tr that contradict d"] += 1;
+  }
+  material.diffuse = opacity;
+  material.transmission = 1.0 - opacity;
+  if (source.filter && (model == 6 || model == 7)) {
+    material.transmission = std::max(material.transmission, (1.0 - specular) * largest_of(*source.filter));
+  }
+  if (refracts && material.transmission > 0.0) {
+    left_out_.features["indices of refraction below 1"] += source.ior < 1.0 ? 1U : 0U;
+    material.ior = std::max(1.0, source.ior);
+  }
+  if (!source.texture.empty()) {
+    material.texture = texture_of(known);
+  }
+  return material;
+}
+
+std::uint32_t ObjMaterials::texture_of(const Known& known) {
+  const std::string path = known.folder + known.source.texture;
+  const auto [place, is_new] =
+      textures_.try_emplace({path, known.source.clamp}, static_cast<std::uint32_t>(scene_.textures.size()));
+  if (is_new) {
+    const std::string bytes = bytes_of(path, known.source.texture_place);
+    const ImageFile image{known.source.texture, std::as_bytes(std::span(bytes))};
+    Texture texture = open_image(file_, image, decode_);
+    texture.repeat_u = !known.source.clamp;
+    texture.repeat_v = !known.source.clamp;
+    scene_.textures.push_back(std::move(texture));
+  }
+  return place->second;
+}
+
+void ObjMaterials::check_unused() {
+  for (const Known& known : known_) {
+    if (!known.in_scene && !known.source.texture.empty()) {
+      const std::string bytes = bytes_of(known.folder + known.source.texture, known.source.texture_place);
+      static_cast<void>(
+          decode_image(file_, {known.source.texture, std::as_bytes(std::span(bytes))}, decode_));
+    }
+  }
+}
+
+}  // namespace marti::scenes

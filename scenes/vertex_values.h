@@ -1,0 +1,27 @@
+// Internal to scenes/: which positions and normals of files can be used.
+#pragma once
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+namespace marti::scenes {
+
+/// Beyond this, products of three differences of coordinates could overflow.
+inline constexpr double largest_coordinate = 1e30;
+
+[[nodiscard]] inline bool is_usable(const glm::dvec3& p) {
+  return std::abs(p.x) <= largest_coordinate && std::abs(p.y) <= largest_coordinate &&
+         std::abs(p.z) <= largest_coordinate;
+}
+
+/// A unit vector along n, or zero if n has no direction.
+[[nodiscard]] inline glm::dvec3 unit_or_zero(const glm::dvec3& n) {
+  const glm::dvec3 unit = n / glm::length(n);
+  const bool usable = std::isfinite(unit.x) && std::isfinite(unit.y) && std::isfinite(unit.z) &&
+                      std::abs(glm::length(unit) - 1.0) < 1e-6;
+  return usable ? unit : glm::dvec3(0.0);
+}
+
+}  // namespace marti::scenes

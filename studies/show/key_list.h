@@ -1,0 +1,17 @@
+// The configuration keys as `marti config` prints them.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "sim/schema.h"
+
+namespace marti::studies {
+
+/// `only`: the name of a key or section; empty: all. Throws UserError when there is none of this name.
+[[nodiscard]] std::string keys_as_text(const sim::Schema& schema, std::string_view only);
+/// A list of objects with name, type, list, default, minimum, maximum, choices, unit and meaning; sizes in
+/// bytes, durations in ps, frequencies in Hz, percentages as fractions.
+[[nodiscard]] std::string keys_as_json(const sim::Schema& schema, std::string_view only);
+
+}  // namespace marti::studies

@@ -1,0 +1,75 @@
+// One mesh in every format gives the same triangles, camera and light, and so the same image.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "loaded_scene.h"
+#include "random_mesh.h"
+#include "tests/unit/processors/program_scenes.h"
+#include "text_scene.h"
+
+namespace marti::scenes {
+namespace {
+
+using testing::corner;
+using testing::PlyOrder;
+using testing::RandomMesh;
+using testing::SceneFolder;
+
+void expect_same_triangles(const Scene& a, const Scene& b) {
+  ASSERT_EQ(a.triangles.size(), b.triangles.size());
+  EXPECT_EQ(a.polygons, b.polygons);
+  for (std::size_t t = 0; t < a.triangles.size(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      ASSERT_EQ(corner(a, t, i), corner(b, t, i)) << t;
+    }
+  }
+}
+
+void expect_same_image(const processors::test::Built& a, const Scene& b) {
+  const processors::RenderOptions options{.width = 40, .height = 40, .max_depth = 2};
+  const processors::Frame expected = a.render(options);
+  const processors::Frame frame = processors::test::Built(b, "octree").render(options);
+  EXPECT_EQ(frame.hit_hash, expected.hit_hash);
+  EXPECT_EQ(frame.image.pixels, expected.image.pixels);
+  const auto lit = std::count_if(frame.image.pixels.begin(), frame.image.pixels.end(),
+                                 [](const auto& pixel) { return pixel != decltype(pixel){}; });
+  EXPECT_GT(lit, 100);
+}
+
+// What the mesh itself says, without a reader.
+void expect_triangles_of(const RandomMesh& mesh, const Scene& scene) {
+  ASSERT_EQ(scene.triangles.size(), mesh.triangles());
+  for (std::size_t t = 0; t < mesh.triangles(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float* const p = mesh.positions.data() + 3 * std::size_t{mesh.indices[3 * t + i]};
+      ASSERT_EQ(corner(scene, t, i), glm::dvec3(p[0], p[1], p[2]));
+    }
+  }
+}
+
+TEST(Formats, TextAndBinaryGiveTheTrianglesAndTheImageOfGltf) {
+  const SceneFolder folder;
+  for (const std::uint32_t seed : {1U, 2U}) {
+    const RandomMesh mesh(seed, 6);
+    const Scene gltf = folder.open("mesh.glb", mesh.gltf().glb());
+    expect_triangles_of(mesh, gltf);
+    const processors::test::Built built(gltf, "octree");
+    const std::vector<std::pair<std::string, std::string>> files = {
+        {"mesh.obj", mesh.obj()},
+        {"text.ply", mesh.ply(PlyOrder::text)},
+        {"little.ply", mesh.ply(PlyOrder::little)},
+        {"big.ply", mesh.ply(PlyOrder::big)}};
+    for (const auto& [name, bytes] : files) {
+      SCOPED_TRACE(name);
+      const Scene scene = folder.open(name, bytes);
+      expect_same_triangles(gltf, scene);
+      expect_same_image(built, scene);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace marti::scenes
