@@ -151,14 +151,17 @@ HttpResponse Desk::answer(const HttpHead& head, const std::string& body) {
     if (name == "helps") {
       return simulate(body, Measuring::within_budget);
     }
+  } catch (const Stopped&) {
+    return nothing(409);
   } catch (const std::exception& error) {
     const Json json = {{"error", "internal error: " + std::string(error.what())}, {"key", nullptr}};
     return {500, json_type, json.dump(-1, ' ', false, Json::error_handler_t::replace)};
   }
+  turns_.stop();
   const std::lock_guard lock(mutex_);
   end_ = true;
   end_asked_.notify_all();
-  return nothing(204);  // cpp-httplib sends no more content when it is about to end
+  return nothing(204);
 }
 
 HttpResponse Desk::simulate(const std::string& body, Measuring what_helps) {
@@ -170,7 +173,7 @@ HttpResponse Desk::simulate(const std::string& body, Measuring what_helps) {
   if (!turn) {
     return nothing(409);
   }
-  return {200, json_type, session_.answer(request->settings, what_helps)};
+  return {200, json_type, session_.answer(request->settings, what_helps, &turn->stop())};
 }
 
 void Desk::wait_for_end(double seconds) {

@@ -113,7 +113,8 @@ Session::Session(const std::filesystem::path& file, std::vector<std::string> ass
   keys_ = keys_json(config);
 }
 
-std::string Session::timed(const Settings& settings, Measuring what_helps) const {
+std::string Session::timed(const Settings& settings, Measuring what_helps,
+                           const std::atomic<bool>* stop) const {
   std::vector<std::string> assignments = assignments_;
   for (const auto& [key, value] : settings) {
     const std::optional<std::size_t> index = schema_.find(key);
@@ -129,12 +130,15 @@ std::string Session::timed(const Settings& settings, Measuring what_helps) const
   options.prices = read_given_prices(config);
   options.what_helps = what_helps;
   options.functional = functional_;
+  options.stripped_logs = &stripped_logs_;
+  options.stop = stop;
   return json_of(run(config, std::move(options)));
 }
 
-std::string Session::answer(const Settings& settings, Measuring what_helps) const {
+std::string Session::answer(const Settings& settings, Measuring what_helps,
+                            const std::atomic<bool>* stop) const {
   try {
-    return timed(settings, what_helps);
+    return timed(settings, what_helps, stop);
   } catch (const sim::UserError& error) {
     return refusal(error.what(), key_of(error.what(), schema_));
   } catch (const std::bad_alloc&) {

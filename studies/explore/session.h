@@ -2,6 +2,7 @@
 // work log.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -31,18 +32,21 @@ class Session {
   [[nodiscard]] const std::string& keys() const { return keys_; }
 
   /// The result of the machine with these settings, as `marti run --json` prints it with them behind the
-  /// session's own; {"error": message, "key": name or null} when the machine is refused. Several threads may
-  /// call it.
-  [[nodiscard]] std::string answer(const Settings& settings, Measuring what_helps) const;
+  /// session's own; {"error": message, "key": name or null} when the machine is refused. Throws Stopped
+  /// when `stop` becomes true. Several threads may call it.
+  [[nodiscard]] std::string answer(const Settings& settings, Measuring what_helps,
+                                   const std::atomic<bool>* stop = nullptr) const;
 
  private:
-  [[nodiscard]] std::string timed(const Settings& settings, Measuring what_helps) const;
+  [[nodiscard]] std::string timed(const Settings& settings, Measuring what_helps,
+                                  const std::atomic<bool>* stop) const;
 
   std::string name_;
   std::string text_;  // of the file
   std::vector<std::string> assignments_;
   sim::Schema schema_;
   FunctionalRun functional_;
+  mutable KeptStrippedLogs stripped_logs_;  // guards itself
   std::string keys_;
 };
 

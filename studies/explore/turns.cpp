@@ -10,6 +10,15 @@ Turns::Turn::~Turn() {
   }
 }
 
+void Turns::stop() {
+  const std::lock_guard lock(mutex_);
+  ++newest_reader_;
+  ++newest_background_;
+  reader_waits_ = false;
+  stop_ = true;
+  changed_.notify_all();
+}
+
 std::optional<Turns::Turn> Turns::take(Asker asker) {
   std::unique_lock lock(mutex_);
   const bool reader = asker == Asker::reader;
@@ -18,6 +27,7 @@ std::optional<Turns::Turn> Turns::take(Asker asker) {
   if (reader) {
     ++newest_background_;
     reader_waits_ = true;
+    stop_ = true;
   }
   changed_.notify_all();  // those whose place is taken now
   changed_.wait(lock, [&] { return newest != mine || (!taken_ && (reader || !reader_waits_)); });
@@ -28,6 +38,7 @@ std::optional<Turns::Turn> Turns::take(Asker asker) {
     reader_waits_ = false;
   }
   taken_ = true;
+  stop_ = false;
   return std::optional<Turn>(std::in_place, *this);
 }
 

@@ -32,7 +32,7 @@
     const progress = setInterval(() => answer.waiting(`simulating for ${seconds()} s; a move takes its place`), 250);
     let found = null;
     try {
-      found = await server.time(now.settings);
+      while (found === null && mine === asked) found = await server.time(now.settings);
     } catch (error) {
       if (mine === asked) answer.waiting(`no answer: ${error.message}; is marti explore still running?`);
     }

@@ -1,6 +1,7 @@
 // Answers of an exploration: those of `marti run` with the same settings, byte for byte.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -95,10 +96,31 @@ TEST_F(Explored, EveryAnswerIsThatOfARun) {
   }
 }
 
+// A later machine walks the log that was stripped for one before it.
+TEST_F(Explored, AnswersDoNotDependOnThoseBefore) {
+  const Session session(file_, {});
+  for (const char* ways : {"2", "1", "4", "2", "1", "2"}) {
+    for (const char* size : {"1 KiB", "2 KiB"}) {
+      const Settings settings = {{"cache.ways", ways}, {"cache.size", size}};
+      EXPECT_EQ(session.answer(settings, Measuring::within_budget),
+                run_with(settings, Measuring::within_budget));
+    }
+  }
+}
+
 TEST_F(Explored, WhatWouldHelpIsThatOfARun) {
   const Session session(file_, {});
   const Settings settings = {{"machine.nodes", "5"}};
   EXPECT_EQ(session.answer(settings, Measuring::within_budget), run_with(settings, Measuring::within_budget));
+}
+
+TEST_F(Explored, AnAnswerForNobodyIsGivenUp) {
+  const Session session(file_, {});
+  const std::atomic<bool> stop = true;
+  EXPECT_THROW(static_cast<void>(session.answer({{"machine.nodes", "5"}}, Measuring::none, &stop)), Stopped);
+  const std::atomic<bool> go_on = false;
+  EXPECT_EQ(session.answer({{"machine.nodes", "5"}}, Measuring::none, &go_on),
+            run_with({{"machine.nodes", "5"}}));
 }
 
 TEST_F(Explored, SettingsComeBehindThoseOfTheCommand) {
@@ -183,6 +205,7 @@ TEST(Turns, TheNewestOfAReaderComesNextAndOthersGiveUp) {
   while (one.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready &&
          two.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready) {
   }
+  EXPECT_TRUE(running->stop());
   running.reset();
   EXPECT_NE(one.get(), two.get());
 }
