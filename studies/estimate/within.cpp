@@ -88,6 +88,9 @@ std::optional<std::string> not_sampled(const FrameConfig& frame) {
   if (frame.render.voxel_cut > 0.0) {
     return "a frame with the voxel cut is not sampled (image.voxel_cut)";
   }
+  if (frame.render.integrator == processors::Integrator::path) {
+    return "the errors of samples of path-traced frames have not been measured (image.integrator)";
+  }
   return std::nullopt;
 }
 

@@ -176,6 +176,22 @@ TEST_F(ReportCommand, ReportsAStudy) {
   EXPECT_EQ(read(place("study") / "report.html"), page);
 }
 
+TEST_F(ReportCommand, AStudysPageBeginsWithItsVerdict) {
+  const fs::path cases = made("cases",
+                              "study stability --set stability.rays=50 --set stability.nodes=8 --set "
+                              "'stability.only=[\"leaks-at-1e6\",\"zero-latencies\"]'");
+  ASSERT_EQ(marti("report " + quoted(cases)).status, 0);
+  EXPECT_EQ(data_of(cases / "report.html")["answer"][0], "2 of 2 cases pass.");
+  const std::string change =
+      "import sqlite3, sys; c = sqlite3.connect(sys.argv[1]); c.execute('UPDATE stability "
+      "SET verdict = ?, figure = ? WHERE rowid = 1', ('FAIL', '3 leaks')); c.commit()";
+  ASSERT_EQ(shell("python3 -c \"" + change + "\" " + quoted(cases / "results.sqlite")).status, 0);
+  ASSERT_EQ(marti("report " + quoted(cases)).status, 0);
+  const json answer = data_of(cases / "report.html")["answer"];
+  EXPECT_EQ(answer[0], "1 of 2 cases pass; the others:");
+  EXPECT_EQ(answer[1], "leaks-at-1e6: 3 leaks (FAIL).");
+}
+
 TEST_F(ReportCommand, GivesTheSameBytesTwice) {
   const fs::path sweep = made_sweep();
   ASSERT_EQ(marti("report " + quoted(sweep) + " -o " + quoted(place("a.html"))).status, 0);

@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
+#include <span>
+#include <string_view>
 
 #include "sim/error.h"
 #include "sim/files.h"
@@ -130,14 +133,38 @@ void take_text(const fs::path& file, ReportData& report) {
   }
 }
 
-// What a study has found, claim by claim (studies/tables/claim.h): its answer.
-void take_claims(SqliteConnection& connection, ReportData& report) {
-  SqliteStatement rows(connection,
-                       "SELECT CAST(coalesce(subject, '?') AS TEXT), CAST(coalesce(here, '?') AS TEXT), "
-                       "CAST(coalesce(verdict, '?') AS TEXT) FROM claims ORDER BY rowid LIMIT 12");
-  while (rows.next()) {
-    report.answer.push_back(fmt::format("{}: {} ({}).", rows.text(0), rows.text(1), rows.text(2)));
+// What a study has found: how many of its claims (studies/tables/claim.h) or cases hold, then each that does
+// not hold, or not everywhere.
+void take_verdicts(const Table& table, ReportData& report) {
+  const bool claims = table.name() == "claims";
+  const auto text = [&](std::size_t row, std::string_view column) {
+    const auto* found = std::get_if<std::string>(&table.at(row, column));
+    return found == nullptr ? std::string("?") : *found;
+  };
+  std::size_t holding = 0;
+  std::vector<std::string> others;
+  for (std::size_t row = 0; row < table.rows().size(); ++row) {
+    const std::string verdict = text(row, "verdict");
+    if (verdict == "agrees" || verdict == "pass") {
+      ++holding;
+    } else {
+      others.push_back(claims ? fmt::format("{}: {} ({}).", text(row, "subject"), text(row, "here"), verdict)
+                              : fmt::format("{}: {} ({}).", text(row, "case"), text(row, "figure"), verdict));
+    }
   }
+  report.answer.push_back(claims ? fmt::format("{} of {} claims of the paper are reproduced{}", holding,
+                                               table.rows().size(), others.empty() ? "." : "; the others:")
+                                 : fmt::format("{} of {} cases pass{}", holding, table.rows().size(),
+                                               others.empty() ? "." : "; the others:"));
+  report.answer.insert(report.answer.end(), others.begin(), others.end());
+}
+
+bool has_columns(const Table& table, std::span<const std::string_view> names) {
+  return std::all_of(names.begin(), names.end(), [&](std::string_view name) {
+    const auto columns = table.columns();
+    return std::any_of(columns.begin(), columns.end(),
+                       [&](const Column& column) { return column.name == name; });
+  });
 }
 
 }  // namespace
@@ -157,8 +184,11 @@ ReportData read_study_report(const fs::path& directory) {
       take_settings(table, report);
       continue;
     }
-    if (name == "claims") {
-      take_claims(connection, report);
+    constexpr std::array<std::string_view, 3> of_claims = {"subject", "here", "verdict"};
+    constexpr std::array<std::string_view, 3> of_cases = {"case", "figure", "verdict"};
+    if ((name == "claims" && has_columns(table, of_claims)) ||
+        (name == "stability" && has_columns(table, of_cases))) {
+      take_verdicts(table, report);
     }
     tables.push_back(std::move(table));
   }
@@ -174,8 +204,12 @@ ReportData read_study_report(const fs::path& directory) {
   for (const fs::path& image : files_ending_in(directory, ".png")) {
     take_image(image, image.stem().string(), report);
   }
-  report.answer.push_back(fmt::format("{} tables and {} charts below; the study's own report follows them.",
-                                      report.tables.size(), report.charts.size()));
+  const auto counted = [](std::size_t count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
+  report.answer.push_back(fmt::format("{} and {} below; the study's own report follows them.",
+                                      counted(report.tables.size(), "table"),
+                                      counted(report.charts.size(), "chart")));
   return report;
 }
 

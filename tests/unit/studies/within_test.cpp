@@ -39,6 +39,10 @@ TEST(Within, WhatIsNotSampledSaysWhy) {
   EXPECT_FALSE(not_sampled(frame));
   frame.render.voxel_cut = 1.0;
   EXPECT_TRUE(not_sampled(frame));
+  frame.render.voxel_cut = 0.0;
+  frame.render.integrator = processors::Integrator::path;
+  ASSERT_TRUE(not_sampled(frame));
+  EXPECT_NE(not_sampled(frame)->find("image.integrator"), std::string::npos);
 }
 
 FrameConfig teapot(std::uint32_t side) {
