@@ -48,8 +48,8 @@ const httplib::Headers& headers_of_all() {
 
 void put(HttpResponse made, httplib::Response& response) {
   response.status = made.status;
-  // cpp-httplib compresses types that begin with "text/", which takes longer than to send them, but not what a
-  // provider gives. Answers come from none, because stop() cuts providers off.
+  // cpp-httplib compresses types that begin with "text/", which takes longer than to send them, but not what
+  // a provider gives. Answers come from none, because stop() cuts providers off.
   if (made.content_type.starts_with("application/")) {
     response.set_content(made.body, made.content_type);
   } else if (!made.body.empty()) {
@@ -116,7 +116,7 @@ class Httplib : public HttpServer {
                    }
                  });
     server_.set_exception_handler([](const httplib::Request&, httplib::Response& response,
-                                     std::exception_ptr) { response.status = 500; });
+                                     const std::exception_ptr&) { response.status = 500; });
     server_.listen_after_bind();
     ended_ = true;
   }
