@@ -30,6 +30,6 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "simulator of multiprocessor ray-tracing machines
  Renders a scene with a real ray tracer, records every step, and says how long the frame takes on machines of
  processor nodes with caches, interconnects and memory banks, and what would make it shorter.")
-# The libraries that the program links to and those of its module name their packages themselves.
+# The libraries that the program links to and those of its modules name their packages themselves.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 include(CPack)

@@ -16,10 +16,13 @@ struct Examples {
   std::array<std::string_view, 2> calls;
 };
 
-constexpr std::array<Examples, 24> table = {{
+constexpr std::array<Examples, 25> table = {{
     {"run",
      {"marti run configs/marti.toml",
       "marti run configs/marti.toml --set machine.nodes=64 --set scene.source=mine.glb -o out"}},
+    {"explore",
+     {"marti explore configs/marti.toml --set image.width=256 --set image.height=256",
+      "marti explore mine.toml --port 8080 --no-browser"}},
     {"study", {"marti study schemes configs/schemes.toml -o out/schemes", "marti study stability"}},
     {"study operations",
      {"marti study operations", "marti study operations --set scene.source=gears:4 -o out/operations"}},

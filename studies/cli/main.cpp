@@ -34,6 +34,7 @@
 #include "studies/error/error.h"
 #include "studies/error/error_keys.h"
 #include "studies/estimate/within.h"
+#include "studies/explore/explore.h"
 #include "studies/frames/frames.h"
 #include "studies/host/host_threads.h"
 #include "studies/host/image_file.h"
@@ -351,6 +352,26 @@ void add_report_command(CLI::App& app, studies::ReportArguments& arguments) {
   report->callback([&] { studies::report_command(arguments, print); });
 }
 
+void add_explore_command(CLI::App& app, studies::ExploreArguments& arguments) {
+  CLI::App* explore = app.add_subcommand(
+      "explore",
+      "A page on this computer: every setting of a machine is a control, simulated as it is moved");
+  explore->add_option("CONFIG", arguments.config, "configuration file (TOML)")
+      ->type_name("FILE.toml")
+      ->required();
+  explore->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  explore->add_option("--port", arguments.port, "of 127.0.0.1; 0: a free one")
+      ->type_name("N")
+      ->check(CLI::Range(0, 65535));
+  explore->add_option("--for", arguments.seconds, "ends by itself after this time; 0: only when asked to")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, 1e6));
+  explore->add_flag("--no-browser", arguments.no_browser, "only print the address");
+  explore->callback([&] { studies::explore_command(arguments, print); });
+}
+
 void list_scenes() {
   std::string text;
   for (const scenes::ProceduralScene& scene : scenes::procedural_scenes()) {
@@ -467,6 +488,9 @@ int parse_and_run(int argc, char** argv) {
                 "does not measure what would make the frame shorter")
       ->excludes(what_helps);
   run->callback([&] { run_command(run_arguments); });
+
+  studies::ExploreArguments explore_arguments;
+  add_explore_command(app, explore_arguments);
 
   StudyArguments study_arguments;
   add_study_commands(app, study_arguments);

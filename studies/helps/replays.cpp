@@ -27,6 +27,7 @@ MachineConfig without_counting(const MachineConfig& machine) {
 }
 
 Replayed replay_one(const SharedLog& shared, const MachineConfig& machine) {
+  end_if_stopped(shared.stop);
   processors::ReplayOptions options = shared.options;
   options.stripped = stripped_for(shared, machine);
   try {

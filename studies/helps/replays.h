@@ -1,6 +1,7 @@
 // Replays of several machines at a time.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,6 +14,16 @@
 
 namespace marti::studies {
 
+/// Thrown in place of a result for which nobody waits any more.
+struct Stopped {};
+
+/// Throws Stopped if `stop` is true.
+inline void end_if_stopped(const std::atomic<bool>* stop) {
+  if (stop != nullptr && *stop) {
+    throw Stopped();
+  }
+}
+
 /// What replays share: the work log, a stripped log for the machines that it suits (null: none), what the
 /// replays are to keep, and the memory that is left for them.
 struct SharedLog {
@@ -20,6 +31,7 @@ struct SharedLog {
   std::shared_ptr<const processors::StrippedLog> stripped;
   processors::ReplayOptions options;
   sim::MemoryBudget memory;
+  const std::atomic<bool>* stop = nullptr;  ///< true: no further replay begins
 };
 
 /// The stripped log, if it suits the machine; else null.
@@ -36,7 +48,7 @@ struct Replayed {
 };
 
 /// Replays each machine, all of which have room. As many are replayed at a time as there are cores and memory
-/// for; results do not depend on it.
+/// for; results do not depend on it. Throws Stopped.
 [[nodiscard]] std::vector<Replayed> replay_all(const SharedLog& shared,
                                                std::span<const processors::MachineConfig* const> machines);
 

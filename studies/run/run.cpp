@@ -1,4 +1,7 @@
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
+#include <exception>
 #include <optional>
 #include <string>
 #include <utility>
@@ -122,7 +125,8 @@ std::shared_ptr<const processors::StrippedLog> strip_for_both(const FrameConfig&
                                                               const processors::WorkLog& log,
                                                               std::uint64_t log_bytes,
                                                               const processors::MachineConfig& machine,
-                                                              const processors::MachineConfig& other) {
+                                                              const processors::MachineConfig& other,
+                                                              KeptStrippedLogs* kept) {
   using processors::StrippedLog;
   // Stripping takes less time than the two save, but not where little is taken out.
   const bool pays = StrippedLog::ways_of(machine) != 0 &&
@@ -130,29 +134,51 @@ std::shared_ptr<const processors::StrippedLog> strip_for_both(const FrameConfig&
                     StrippedLog::key_of(machine) == StrippedLog::key_of(other);
   const std::uint64_t taken = log_bytes + processors::host_bytes(machine) + map_bytes(frame);
   const std::uint64_t left = frame.memory.left();
-  return pays && taken < left ? StrippedLog::make(log, machine, (left - taken) / 2) : nullptr;
+  if (!pays || taken >= left) {
+    return nullptr;
+  }
+  std::shared_ptr<const StrippedLog> stripped = kept == nullptr ? nullptr : kept->find(machine);
+  if (stripped == nullptr) {
+    stripped = StrippedLog::make(log, machine, (left - taken) / 2);
+    if (kept != nullptr && stripped != nullptr && stripped->bytes_of_words() <= (left - taken) / 4) {
+      kept->keep(stripped);
+    }
+  }
+  return stripped;
 }
 
-// Times the frame on the machine and on one node, and derives all other figures. Returns the stripped log of
-// both machines, if they had one.
+// Times the frame on the machine and on one node, at the same time, and derives all other figures. Returns
+// the stripped log of both machines, if they had one.
 std::shared_ptr<const processors::StrippedLog> time_frame(const RecordConfig& record,
-                                                          const std::filesystem::path& directory,
-                                                          RunResult& result) {
+                                                          const RunOptions& options, RunResult& result) {
   std::shared_ptr<const processors::StrippedLog> stripped;
   result.plan = result.functional.plan;
   const processors::WorkLog& log = *result.functional.frame.log;
   if (result.machine.all_nodes() == 1 && result.machine.scheme == processors::Scheme::image) {
-    result.timed = watched_replay(record, directory, nullptr, result);
+    result.timed = watched_replay(record, options.directory, nullptr, result);
     result.one_node = result.timed;
   } else {
     const processors::MachineConfig one_node = processors::one_node_of(result.machine);
-    stripped =
-        strip_for_both(result.frame_config, log, result.functional.totals.bytes, result.machine, one_node);
-    result.timed = watched_replay(record, directory, stripped.get(), result);
-    processors::ReplayOptions options;
-    keep(result.frame_config.keep, options);
-    options.stripped = stripped.get();
-    result.one_node = processors::replay(log, one_node, options);
+    stripped = strip_for_both(result.frame_config, log, result.functional.totals.bytes, result.machine,
+                              one_node, options.stripped_logs);
+    end_if_stopped(options.stop);
+    processors::ReplayOptions of_one;
+    keep(result.frame_config.keep, of_one);
+    of_one.stripped = stripped.get();
+    // What is wrong with the machine is told first, whichever is done first.
+    std::exception_ptr fault;
+    tbb::parallel_invoke(
+        [&] { result.timed = watched_replay(record, options.directory, stripped.get(), result); },
+        [&] {
+          try {
+            result.one_node = processors::replay(log, one_node, of_one);
+          } catch (...) {
+            fault = std::current_exception();
+          }
+        });
+    if (fault != nullptr) {
+      std::rethrow_exception(fault);
+    }
   }
   result.totals = totals_of(result.timed);
   result.counts = counts_of(result.machine, result.timed, result.totals);
@@ -168,7 +194,8 @@ WhatHelps measure_help(const sim::Config& config, const RunOptions& run,
   constexpr Work of_the_scene = 100'000'000;  // to read it and build its tree; enough for a small frame
   const Work of_the_run = run_work(result.functional.totals, result.timed, result.one_node, stripped.get());
   const Work budget = run.what_helps == Measuring::all ? unlimited_work : of_the_scene + of_the_run;
-  SharedLog shared{*result.functional.frame.log, std::move(stripped), {}, result.frame_config.memory};
+  SharedLog shared{
+      *result.functional.frame.log, std::move(stripped), {}, result.frame_config.memory, run.stop};
   keep(result.frame_config.keep, shared.options);
   const std::uint64_t taken = result.functional.totals.bytes + bytes_of(shared.stripped.get());
   shared.memory = sim::MemoryBudget(shared.memory.left() - std::min(taken, shared.memory.left()));
@@ -216,7 +243,7 @@ RunResult run(sim::Config& config, RunOptions options) {
   sim::with_places(config, [&] {
     result.functional =
         options.functional ? std::move(*options.functional) : run_functional(result.frame_config);
-    std::shared_ptr<const processors::StrippedLog> stripped = time_frame(record, options.directory, result);
+    std::shared_ptr<const processors::StrippedLog> stripped = time_frame(record, options, result);
     if (options.what_helps != Measuring::none) {
       result.helps = measure_help(config, options, std::move(stripped), result);
     }

@@ -1,6 +1,7 @@
 // Everything one `marti run` found out.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -18,6 +19,7 @@
 #include "studies/figures/derived_figures.h"
 #include "studies/helps/what_helps.h"
 #include "studies/run/functional_run.h"
+#include "studies/run/kept_stripped_logs.h"
 #include "studies/run/record/heat_map.h"
 #include "studies/run/record/timeline.h"
 
@@ -68,6 +70,11 @@ struct RunOptions {
   std::optional<FunctionalRun> functional{};
   Measuring what_helps = Measuring::none;  ///< of what would make the frame shorter
   std::optional<Prices> prices{};          ///< by which that is chosen
+  /// Stripped logs of that functional run, taken from here and kept here; null: none.
+  KeptStrippedLogs* stripped_logs = nullptr;
+  /// Becomes true when nobody waits for the result any more: the run then throws Stopped, at the latest when
+  /// the replays that have begun are done.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 /// Runs a configuration: one functional run, the machine and the same machine with one node. Throws UserError

@@ -62,7 +62,8 @@ room(studies/paper host keys run tables)
 room(studies/schemes figures keys paper run tables)
 room(studies/stability host keys run show tables)
 room(studies/error estimate figures host keys paper run tables)
-room(studies/cli compare error estimate figures frames host keys limits operations paper report run run/plan run/trace schemes show
+room(studies/explore keys report/page report/plots run show)
+room(studies/cli compare error estimate explore figures frames host keys limits operations paper report run run/plan run/trace schemes show
      stability sweep sweep/plan sweep/ranks sweep/store tables)
 
 # A header pattern and the pattern of the files that may include it. C++'s own headers, which anyone may
@@ -87,11 +88,12 @@ allow("^fmt/" "^(scenes|processors|studies)/[a-z_/]+[.]cpp$")
 allow("^SQLiteCpp/" "^studies/(tables/sqlite_connection|sweep/plan/sweep_filter)[.](h|cpp)$")
 allow("^sqlite3[.]h$" "^studies/(tables/sqlite_connection|sweep/plan/sweep_filter)[.]cpp$")
 allow("^mpi[.]h$" "^studies/sweep/ranks/mpi_ranks[.]cpp$")
-allow("^(poll|signal|spawn)[.]h$" "^studies/report/plots/child_process[.]cpp$")
+allow("^(poll|signal|spawn)[.]h$" "^studies/(report/plots/child_process|explore/open_page)[.]cpp$")
+allow("^httplib[.]h$" "^studies/explore/http_server[.]cpp$")
 allow("^sched[.]h$" "^studies/sweep/ranks/rank_threads[.]cpp$")
 allow("^CLI/" "^studies/cli/[a-z_]+[.](cpp|h)$")
 allow("^OpenImageIO/" "^studies/host/image_codec[.]cpp$")
-allow("^dlfcn[.]h$" "^studies/host/image_file[.]cpp$")
+allow("^dlfcn[.]h$" "^studies/(host/image_file|explore/load_http_server)[.]cpp$")
 allow("^(systemc|tlm|tlm_utils/[a-z_]+[.]h)$" "^(tests|bench)/")
 
 # The ray tracer says what is computed, the machine when it happens; they share only the work log. Files, headers

@@ -30,7 +30,7 @@ std::string bash_offers(const std::string& line, const std::filesystem::path& di
 }
 
 TEST(BashCompletion, OffersCommandsAndOptions) {
-  expect_in("run\nstudy\nsweep\n", bash_offers("marti "));
+  expect_in("run\nexplore\nstudy\nsweep\n", bash_offers("marti "));
   EXPECT_EQ(bash_offers("marti sw"), "sweep\n");
   EXPECT_EQ(bash_offers("marti study st"), "stability\n");
   EXPECT_EQ(bash_offers("marti run --verify"), "--verify-plan\n");

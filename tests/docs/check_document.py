@@ -20,7 +20,7 @@ from references import Checker, WrongReference
 
 # Times of the computer that runs the test differ from run to run.
 HOST_TIME = re.compile(r"\b(in|about) [\d.,]+ ?(ns|us|ms|s|min|h)\b")
-TAKES_SETTINGS = ("run", "sweep", "study", "trace")
+TAKES_SETTINGS = ("run", "explore", "sweep", "study", "trace")
 OTHER_PROGRAMS = ("sed", "sqlite3", "cat", "head", "ls", "cp", "mkdir")
 
 

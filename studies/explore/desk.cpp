@@ -1,0 +1,188 @@
+#include "studies/explore/desk.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string_view>
+#include <utility>
+
+#include "studies/explore/page_files.h"
+#include "studies/report/page/page_files.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// With its character set cpp-httplib does not know the type as one that it should compress.
+constexpr const char* json_type = "application/json; charset=utf-8";
+
+HttpResponse nothing(int status) { return {.status = status}; }
+
+struct Request {
+  Settings settings;
+  Asker asker = Asker::reader;
+};
+
+// std::nullopt for what the page does not send.
+std::optional<Request> parse(const std::string& body) {
+  const Json json = Json::parse(body, nullptr, false);
+  if (!json.is_object() || !json.contains("settings") || !json["settings"].is_object()) {
+    return std::nullopt;
+  }
+  Request request;
+  for (const auto& [key, value] : json["settings"].items()) {
+    if (!value.is_string()) {
+      return std::nullopt;
+    }
+    request.settings.emplace_back(key, value.get<std::string>());
+  }
+  if (const auto background = json.find("background"); background != json.end()) {
+    if (!background->is_boolean()) {
+      return std::nullopt;
+    }
+    request.asker = background->get<bool>() ? Asker::background : Asker::reader;
+  }
+  return request;
+}
+
+// Takes equally long wherever the texts differ.
+bool equal_texts(std::string_view a, std::string_view b) {
+  unsigned difference = a.size() == b.size() ? 0 : 1;
+  for (std::size_t i = 0; i < a.size() && i < b.size(); ++i) {
+    difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+  }
+  return difference == 0;
+}
+
+bool is_json(const HttpHead& head) {
+  return head.content_types.size() == 1 && (head.content_types[0] == "application/json" ||
+                                            head.content_types[0].starts_with("application/json;"));
+}
+
+}  // namespace
+
+std::string random_token() {
+  std::random_device random;
+  std::string token;
+  for (int i = 0; i < 4; ++i) {
+    token += fmt::format("{:08x}", random());
+  }
+  return token;
+}
+
+Desk::Desk(const Session& session, std::string token, int port)
+    : session_(session), token_(std::move(token)), port_(port) {}
+
+std::string Desk::address() const { return fmt::format("http://127.0.0.1:{}/{}/", port_, token_); }
+
+bool Desk::is_own(const HttpHead& head) const {
+  const std::array<std::string, 2> hosts = {fmt::format("127.0.0.1:{}", port_),
+                                            fmt::format("localhost:{}", port_)};
+  return head.hosts.size() == 1 && std::find(hosts.begin(), hosts.end(), head.hosts[0]) != hosts.end() &&
+         (head.origins.empty() || (head.origins.size() == 1 && head.origins[0] == "http://" + head.hosts[0]));
+}
+
+std::optional<std::string> Desk::below_token(const std::string& path) const {
+  const std::size_t end = path.find('/', 1);
+  if (!path.starts_with('/') || end == std::string::npos ||
+      !equal_texts(std::string_view(path).substr(1, end - 1), token_)) {
+    return std::nullopt;
+  }
+  return path.substr(end + 1);
+}
+
+std::optional<HttpResponse> Desk::file(const std::string& name) const {
+  const auto made = [](const char* type, std::string_view text) {
+    return HttpResponse{.content_type = type, .body = std::string(text)};
+  };
+  if (name.empty()) {
+    return made("text/html; charset=utf-8", explore_page_html());
+  }
+  if (name == "report.css") {
+    return made("text/css; charset=utf-8", report_page_css().text);
+  }
+  if (name == "explore.css") {
+    return made("text/css; charset=utf-8", explore_page_css());
+  }
+  if (name == "keys") {
+    return made(json_type, session_.keys());
+  }
+  for (const auto& [script, text] : explore_scripts()) {
+    if (name == script) {
+      return made("text/javascript; charset=utf-8", text);
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<HttpResponse> Desk::answer_head(const HttpHead& head) {
+  if (!is_own(head)) {
+    return nothing(403);
+  }
+  const std::optional<std::string> name = below_token(head.path);
+  if (!name) {
+    return nothing(404);
+  }
+  if (head.method == "GET") {
+    return file(*name).value_or(nothing(404));
+  }
+  if (head.method != "POST" || (*name != "time" && *name != "helps" && *name != "end")) {
+    return nothing(404);
+  }
+  if (!is_json(head)) {
+    return nothing(415);
+  }
+  return std::nullopt;
+}
+
+HttpResponse Desk::answer(const HttpHead& head, const std::string& body) {
+  const std::string name = below_token(head.path).value_or("");
+  try {
+    if (name == "time") {
+      return simulate(body, Measuring::none);
+    }
+    if (name == "helps") {
+      return simulate(body, Measuring::within_budget);
+    }
+  } catch (const Stopped&) {
+    return nothing(409);
+  } catch (const std::exception& error) {
+    const Json json = {{"error", "internal error: " + std::string(error.what())}, {"key", nullptr}};
+    return {500, json_type, json.dump(-1, ' ', false, Json::error_handler_t::replace)};
+  }
+  turns_.stop();
+  const std::lock_guard lock(mutex_);
+  end_ = true;
+  end_asked_.notify_all();
+  return nothing(204);
+}
+
+HttpResponse Desk::simulate(const std::string& body, Measuring what_helps) {
+  const std::optional<Request> request = parse(body);
+  if (!request) {
+    return nothing(400);
+  }
+  const std::optional<Turns::Turn> turn = turns_.take(request->asker);
+  if (!turn) {
+    return nothing(409);
+  }
+  return {200, json_type, session_.answer(request->settings, what_helps, &turn->stop())};
+}
+
+void Desk::wait_for_end(double seconds) {
+  std::unique_lock lock(mutex_);
+  if (seconds > 0) {
+    end_asked_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return end_; });
+  } else {
+    end_asked_.wait(lock, [this] { return end_; });
+  }
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,46 @@
+#include "studies/explore/explore.h"
+
+#include <memory>
+#include <thread>
+
+#include "studies/explore/desk.h"
+#include "studies/explore/http_server.h"
+#include "studies/explore/open_page.h"
+#include "studies/explore/session.h"
+
+namespace marti::studies {
+
+namespace {
+
+// Serves while it lives.
+class Serving {
+ public:
+  Serving(HttpServer& server, HttpService& service)
+      : server_(server), thread_([&] { server.serve(service, most_body_bytes); }) {}
+  ~Serving() {
+    server_.stop();
+    thread_.join();
+  }
+  Serving(const Serving&) = delete;
+  Serving& operator=(const Serving&) = delete;
+
+ private:
+  HttpServer& server_;
+  std::thread thread_;
+};
+
+}  // namespace
+
+void explore_command(const ExploreArguments& arguments, void (*print)(const std::string&)) {
+  const std::unique_ptr<HttpServer> server = make_http_server();
+  const Session session(arguments.config, arguments.assignments);
+  Desk desk(session, random_token(), server->bind(arguments.port));
+  const Serving serving(*server, desk);
+  print(desk.address() + "\n");
+  if (!arguments.no_browser && has_screen()) {
+    open_page(desk.address());
+  }
+  desk.wait_for_end(arguments.seconds);
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,67 @@
+// Asks marti: for the keys, for the answer of a machine, and in the background for more.
+"use strict";
+
+explore.server = (() => {
+  const kept = new Map();  // answers by kind and settings
+  const most_kept = 2000;
+
+  async function post(path, content) {
+    const response = await fetch(path, {
+      method: "POST",
+      headers: { "Content-Type": "application/json" },
+      body: JSON.stringify(content),
+    });
+    if ([204, 409].includes(response.status)) return null;
+    if (!response.ok && response.status !== 500) throw new Error(`marti answered ${response.status}`);
+    return response.json();
+  }
+
+  /** What the page uses of a result. */
+  const part_of = (result) =>
+    "error" in result
+      ? result
+      : { figures: result.figures.machine, keys: result.config.keys, helps: result.machine.what_helps };
+
+  function keep(name, answer) {
+    if (kept.size >= most_kept) kept.delete(kept.keys().next().value);
+    kept.set(name, answer);
+  }
+
+  /** The answer for these settings; null when a newer request has taken its place. */
+  async function ask(path, settings, background) {
+    const name = `${path}?${explore.state.text(settings)}`;
+    if (!kept.has(name)) {
+      const result = await post(path, { settings, background });
+      if (result === null) return null;
+      keep(name, part_of(result));
+    }
+    return kept.get(name);
+  }
+
+  return {
+    keys: async () => (await fetch("keys")).json(),
+    time: (settings, background = false) => ask("time", settings, background),
+    helps: (settings) => ask("helps", settings, true),
+    known: (settings) => kept.get(`time?${explore.state.text(settings)}`),
+    end: () => post("end", {}),
+  };
+})();
+
+/** Work for when nobody waits for an answer. */
+explore.background = (() => {
+  let generation = 0;
+  const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
+
+  return {
+    stop: () => void ++generation,
+    /** Runs each task, which gives null when it is to be tried again, until stop() or the next call. */
+    async run(tasks) {
+      const mine = ++generation;
+      await pause(60);
+      for (const task of tasks) {
+        while (mine === generation && (await task()) === null) await pause(200);
+        if (mine !== generation) return;
+      }
+    },
+  };
+})();

@@ -1,0 +1,149 @@
+#include "studies/explore/session.h"
+
+#include <algorithm>
+#include <array>
+#include <new>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "scenes/open.h"
+#include "sim/config.h"
+#include "sim/error.h"
+#include "sim/files.h"
+#include "studies/keys/config_file.h"
+#include "studies/keys/price_keys.h"
+
+namespace marti::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::int64_t longest_file = 1 << 20;
+
+constexpr std::array<std::string_view, 9> no_controls = {
+    "scene", "frames", "image", "structure", "host_machine", "record", "count", "sweep", "prices"};
+
+std::string section_of(const std::string& key) { return key.substr(0, key.rfind('.')); }
+
+// A text in a value of the configuration that is to hold in any directory.
+std::string value_anywhere(const sim::Config& config, const sim::Key& key, std::size_t index) {
+  if (key.name == "scene.source") {
+    const auto& source = std::get<std::string>(config.values_at(index).front());
+    if (scenes::names_a_file(source)) {
+      const std::filesystem::path beside = config.where(key.name).starts_with("--set")
+                                               ? std::filesystem::path()
+                                               : std::filesystem::path(config.name()).parent_path();
+      return sim::print_value(key.type,
+                              std::filesystem::absolute(beside / source).lexically_normal().string());
+    }
+  }
+  return sim::print_values(key, config.values_at(index));
+}
+
+Json key_json(const sim::Config& config, std::size_t index) {
+  const sim::Key& key = config.schema().keys()[index];
+  return {{"name", key.name},
+          {"section", section_of(key.name)},
+          {"type", name_of(key.type)},
+          {"list", key.is_list},
+          {"choices", key.choices},
+          {"range", print_range(key)},
+          {"unit", key.unit},
+          {"meaning", key.meaning},
+          {"value", sim::print_values(key, config.values_at(index))}};
+}
+
+std::string keys_json(const sim::Config& config) {
+  Json controls = Json::array();
+  Json given = Json::object();
+  for (std::size_t i = 0; i < config.schema().keys().size(); ++i) {
+    const sim::Key& key = config.schema().keys()[i];
+    if (is_control(key)) {
+      controls.push_back(key_json(config, i));
+    }
+    if (config.given_at(i)) {
+      given[key.name] = value_anywhere(config, key, i);
+    }
+  }
+  Json sections = Json::object();
+  for (const sim::Section& section : config.schema().sections()) {
+    sections[section.name] = section.meaning;
+  }
+  const Json keys = {{"file", config.name()},
+                     {"scene", config.text("scene.source")},
+                     {"sections", sections},
+                     {"controls", controls},
+                     {"given", given}};
+  return keys.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string refusal(const std::string& message, const std::optional<std::string>& key) {
+  const Json json = {{"error", message}, {"key", key ? Json(*key) : Json(nullptr)}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+// The key that a message about a configuration names: of "--set key=value: ..." or "file:line: key: ...".
+std::optional<std::string> key_of(const std::string& message, const sim::Schema& schema) {
+  for (const std::string& name : schema.names()) {
+    if (message.starts_with("--set " + name + "=") || message.find(": " + name + ": ") != std::string::npos) {
+      return name;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool is_control(const sim::Key& key) {
+  const std::string_view section = std::string_view(key.name).substr(0, key.name.find('.'));
+  return std::find(no_controls.begin(), no_controls.end(), section) == no_controls.end();
+}
+
+Session::Session(const std::filesystem::path& file, std::vector<std::string> assignments)
+    : name_(file.string()), assignments_(std::move(assignments)), schema_(run_schema()) {
+  require_config_file(file);
+  declare_price_keys(schema_);
+  text_ = sim::read_file(file, longest_file);
+  sim::Config config = sim::Config::from_text(schema_, text_, name_, assignments_);
+  RunOptions options;
+  options.prices = read_given_prices(config);
+  functional_ = run(config, std::move(options)).functional;
+  keys_ = keys_json(config);
+}
+
+std::string Session::timed(const Settings& settings, Measuring what_helps,
+                           const std::atomic<bool>* stop) const {
+  std::vector<std::string> assignments = assignments_;
+  for (const auto& [key, value] : settings) {
+    const std::optional<std::size_t> index = schema_.find(key);
+    // A name that is no key is refused below, with the nearest one.
+    if (index && !is_control(schema_.keys()[*index])) {
+      throw sim::UserError("--set " + key + "=" + value +
+                           ": is not a setting of the machine; the frame is rendered once, before the page");
+    }
+    assignments.push_back(key + "=" + value);
+  }
+  sim::Config config = sim::Config::from_text(schema_, text_, name_, assignments);
+  RunOptions options;
+  options.prices = read_given_prices(config);
+  options.what_helps = what_helps;
+  options.functional = functional_;
+  options.stripped_logs = &stripped_logs_;
+  options.stop = stop;
+  return json_of(run(config, std::move(options)));
+}
+
+std::string Session::answer(const Settings& settings, Measuring what_helps,
+                            const std::atomic<bool>* stop) const {
+  try {
+    return timed(settings, what_helps, stop);
+  } catch (const sim::UserError& error) {
+    return refusal(error.what(), key_of(error.what(), schema_));
+  } catch (const std::bad_alloc&) {
+    return refusal("not enough memory for this machine", std::nullopt);
+  }
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,53 @@
+// One configuration, explored: its frame is rendered once, and machines with other settings are timed on its
+// work log.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sim/schema.h"
+#include "studies/run/run_result.h"
+
+namespace marti::studies {
+
+/// Keys and their values, each as --set has them.
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+/// Whether the key describes the machine. Keys of the frame, of the computer and of what is recorded do not:
+/// the frame is rendered only once.
+[[nodiscard]] bool is_control(const sim::Key& key);
+
+class Session {
+ public:
+  /// Reads the configuration, renders its frame and times its machine. Throws UserError for anything that is
+  /// wrong with them.
+  Session(const std::filesystem::path& file, std::vector<std::string> assignments);
+
+  /// As JSON: the controls with section, type, range, choices and meaning, the value that each key has in the
+  /// configuration, and what else of the configuration a copy of it must have.
+  [[nodiscard]] const std::string& keys() const { return keys_; }
+
+  /// The result of the machine with these settings, as `marti run --json` prints it with them behind the
+  /// session's own; {"error": message, "key": name or null} when the machine is refused. Throws Stopped
+  /// when `stop` becomes true. Several threads may call it.
+  [[nodiscard]] std::string answer(const Settings& settings, Measuring what_helps,
+                                   const std::atomic<bool>* stop = nullptr) const;
+
+ private:
+  [[nodiscard]] std::string timed(const Settings& settings, Measuring what_helps,
+                                  const std::atomic<bool>* stop) const;
+
+  std::string name_;
+  std::string text_;  // of the file
+  std::vector<std::string> assignments_;
+  sim::Schema schema_;
+  FunctionalRun functional_;
+  mutable KeptStrippedLogs stripped_logs_;  // guards itself
+  std::string keys_;
+};
+
+}  // namespace marti::studies

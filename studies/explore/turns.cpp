@@ -1,0 +1,45 @@
+#include "studies/explore/turns.h"
+
+namespace marti::studies {
+
+Turns::Turn::~Turn() {
+  if (turns_ != nullptr) {
+    const std::lock_guard lock(turns_->mutex_);
+    turns_->taken_ = false;
+    turns_->changed_.notify_all();
+  }
+}
+
+void Turns::stop() {
+  const std::lock_guard lock(mutex_);
+  ++newest_reader_;
+  ++newest_background_;
+  reader_waits_ = false;
+  stop_ = true;
+  changed_.notify_all();
+}
+
+std::optional<Turns::Turn> Turns::take(Asker asker) {
+  std::unique_lock lock(mutex_);
+  const bool reader = asker == Asker::reader;
+  std::uint64_t& newest = reader ? newest_reader_ : newest_background_;
+  const std::uint64_t mine = ++newest;
+  if (reader) {
+    ++newest_background_;
+    reader_waits_ = true;
+    stop_ = true;
+  }
+  changed_.notify_all();  // those whose place is taken now
+  changed_.wait(lock, [&] { return newest != mine || (!taken_ && (reader || !reader_waits_)); });
+  if (newest != mine) {
+    return std::nullopt;
+  }
+  if (reader) {
+    reader_waits_ = false;
+  }
+  taken_ = true;
+  stop_ = false;
+  return std::optional<Turn>(std::in_place, *this);
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,260 @@
+// The page of `marti explore` in a browser: it shows the figures of `marti run`, its address brings it back, and no
+// other page can read or steer it.
+import assert from "node:assert/strict";
+import { execFile, spawn } from "node:child_process";
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { join } from "node:path";
+import { after, before, describe, it } from "node:test";
+import { promisify } from "node:util";
+import { startBrowser } from "./browser.mjs";
+import { download, overflow, unnamed } from "./inspect.mjs";
+
+const program = process.env.MARTI_PROGRAM;
+const work = join(process.env.MARTI_WORK, "explored");
+rmSync(work, { recursive: true, force: true });
+mkdirSync(work, { recursive: true });
+const config = join(work, "explored.toml");
+writeFileSync(config, '[scene]\nsource = "tetra:4"\n[image]\nwidth = 48\nheight = 40\n[machine]\nnodes = 4\n[cache]\nsize = "1 KiB"\n');
+
+const run = async (file, settings) => {
+  const set = Object.entries(settings).flatMap(([key, value]) => ["--set", `${key}=${value}`]);
+  const { stdout } = await promisify(execFile)(program, ["run", file, ...set, "--json"], { maxBuffer: 1 << 28 });
+  return JSON.parse(stdout);
+};
+
+/** The program serving the page, and its address. */
+async function explore() {
+  const child = spawn(program, ["explore", config, "--no-browser", "--for", "300"]);
+  const address = await new Promise((found) => child.stdout.once("data", (text) => found(String(text).trim())));
+  return { child, address, ended: new Promise((done) => child.once("exit", done)) };
+}
+
+let browser, served;
+before(async () => {
+  [browser, served] = await Promise.all([startBrowser(), explore()]);
+});
+after(async () => {
+  served?.child.kill();
+  await browser?.close();
+});
+
+/** The page with its answer; its faults are collected. */
+async function open(hash = "", address = served.address) {
+  const context = await browser.newContext({ viewport: { width: 1400, height: 900 } });
+  const page = await context.newPage();
+  const faults = [];
+  page.on("pageerror", (error) => faults.push(error.stack));
+  page.on("console", (message) => {
+    // A request whose place a newer one takes has status 409, which the browser reports.
+    if (message.type() === "error" && !message.text().includes("409")) faults.push(message.text());
+  });
+  page.on("request", (request) => {
+    if (!request.url().startsWith(address) && !request.url().startsWith("data:")) faults.push(request.url());
+  });
+  await page.goto(address + hash);
+  return { page, faults, close: () => context.close() };
+}
+
+/** Waits for the answer of exactly these settings. */
+const answer_of = async (page, settings) => {
+  const text = JSON.stringify(Object.entries(settings).sort());
+  await page.waitForFunction(
+    (text) => globalThis.explore?.answered && JSON.stringify(Object.entries(explore.answered.settings).sort()) === text,
+    text,
+  );
+  return page.evaluate(() => explore.answered.answer);
+};
+const withPage = async (hash, use) => {
+  const opened = await open(hash);
+  try {
+    await use(opened.page);
+    assert.deepEqual(opened.faults, []);
+  } finally {
+    await opened.close();
+  }
+};
+const control = (page, key) => page.locator(`[id="control-${key}"]`);
+
+describe("the page of marti explore", () => {
+  it("has the figures of marti run for every move", () =>
+    withPage("", async (page) => {
+      let settings = {};
+      const same = async () => {
+        const shown = await answer_of(page, settings);
+        const result = await run(config, settings);
+        assert.deepEqual(shown.figures, result.figures.machine);
+        const bars = await page.$$eval("#shares rect, #lost rect", (all) => all.map(({ dataset }) => ({ ...dataset })));
+        assert.ok(bars.length > 3);
+        for (const { figure, value } of bars) assert.equal(Number(value), result.figures.machine[figure], figure);
+        assert.match(await page.locator("#answer").textContent(), new RegExp(`on ${result.figures.machine.nodes} node`));
+      };
+      await same();
+      await page.getByRole("button", { name: "double machine.nodes" }).click();
+      settings = { "machine.nodes": "8" };
+      await same();
+      await control(page, "interconnect.kind").selectOption("crossbar");
+      settings = { ...settings, "interconnect.kind": "crossbar" };
+      await same();
+      await control(page, "cache.size").fill("1 B");
+      settings = { ...settings, "cache.size": "1 B" };
+      assert.equal((await answer_of(page, settings)).key, "cache.size");
+      await page.getByRole("button", { name: "halve machine.nodes" }).click();
+      await control(page, "cache.size").fill("4 KiB");
+      settings = { "interconnect.kind": "crossbar", "cache.size": "4 KiB" };
+      await same();
+      await page.getByRole("button", { name: "All settings as" }).click();
+      settings = {};
+      await same();
+    }));
+
+  it("says beside the control what is wrong with it", () =>
+    withPage("", async (page) => {
+      await answer_of(page, {});
+      await control(page, "machine.nodes").fill("0");
+      const refused = await answer_of(page, { "machine.nodes": "0" });
+      const said = page.locator(".control", { has: control(page, "machine.nodes") }).getByRole("alert");
+      assert.equal(await said.textContent(), refused.error);
+      await assert.rejects(run(config, { "machine.nodes": "0" }), (error) => error.stderr.trim() === `marti: ${refused.error}`);
+      await control(page, "machine.nodes").fill("2");
+      await answer_of(page, { "machine.nodes": "2" });
+      assert.equal(await said.count(), 0);
+    }));
+
+  it("fills in the curve exactly and says what would help", () =>
+    withPage("#axis=machine.nodes&values=1,2,5&figure=speed_up", async (page) => {
+      await page.waitForFunction(() => document.querySelectorAll("#curve circle").length === 3);
+      for (const { at, value } of await page.$$eval("#curve circle", (all) => all.map(({ dataset }) => ({ ...dataset })))) {
+        assert.equal(Number(value), (await run(config, { "machine.nodes": at })).figures.machine.speed_up);
+      }
+      const { machine } = await run(config, {});
+      await page.waitForFunction((text) => document.getElementById("helps").textContent === text, machine.what_helps.sentence);
+      const best = machine.what_helps.resources.find(({ step }) => step?.saved > 0);
+      await page.locator("#steps button").first().click();
+      const settings = Object.fromEntries(Object.entries(best.step.keys).map(([key, { to }]) => [key, to.replaceAll('"', "")]));
+      assert.equal((await answer_of(page, settings)).figures.end, best.step.frame_time_ps);
+    }));
+
+  it("is the same again by its address", () =>
+    withPage("", async (page) => {
+      await answer_of(page, {});
+      await page.getByRole("button", { name: "double machine.nodes" }).click();
+      await answer_of(page, { "machine.nodes": "8" });
+      await page.getByRole("button", { name: "Pin this machine" }).click();
+      await control(page, "cache.size").fill("2 KiB");
+      const settings = { "machine.nodes": "8", "cache.size": "2 KiB" };
+      await answer_of(page, settings);
+      const rows = () => page.waitForFunction(() => {
+        const rows = [...document.querySelectorAll("#pins tbody tr")].map((row) => row.innerText);
+        return rows.length === 3 && rows.every((row) => / [mun]?s\b/.test(row)) && rows.join("\n");
+      }).then((found) => found.jsonValue());
+      const before = await rows();
+      await page.reload();
+      await answer_of(page, settings);
+      assert.equal(await control(page, "cache.size").inputValue(), "2 KiB");
+      assert.equal(await rows(), before);
+      await page.evaluate(() => (location.hash = "#machine.nodes=2"));
+      await answer_of(page, { "machine.nodes": "2" });
+    }));
+
+  it("saves what marti runs and sweeps", () =>
+    withPage("#machine.nodes=6&axis=cache.size&values=512 B,2 KiB", async (page) => {
+      const { figures } = await answer_of(page, { "machine.nodes": "6" });
+      const saved = await download(page, page.getByRole("link", { name: "Save as configuration" }));
+      writeFileSync(join(work, saved.name), saved.text);
+      assert.deepEqual((await run(join(work, saved.name), {})).figures.machine, figures);
+      const sweep = await download(page, page.getByRole("link", { name: "Save the curve" }));
+      writeFileSync(join(work, sweep.name), sweep.text);
+      await promisify(execFile)(program, ["sweep", join(work, sweep.name), "-o", join(work, "sweep"), "--quiet"]);
+      const rows = readFileSync(join(work, "sweep", "points.csv"), "utf8").trim().split("\n");
+      assert.equal(rows.length, 3);
+    }));
+
+  it("has a name for everything and fits a phone", () =>
+    withPage("", async (page) => {
+      await answer_of(page, {});
+      assert.deepEqual(await unnamed(page), []);
+      await page.setViewportSize({ width: 360, height: 740 });
+      assert.deepEqual(await overflow(page), { pixels: 0, elements: [] });
+      if (process.env.MARTI_PICTURES) {
+        await page.setViewportSize({ width: 1400, height: 1000 });
+        await page.waitForTimeout(3000);
+        await page.screenshot({ path: join(process.env.MARTI_PICTURES, "explore.png"), fullPage: true });
+      }
+    }));
+
+  it("can be neither read nor steered by a page of another origin", async () => {
+    const hostile = createServer((_, response) => {
+      response.setHeader("Content-Type", "text/html");
+      response.end("<!DOCTYPE html><title>hostile</title><p>hostile");
+    });
+    await new Promise((ready) => hostile.listen(0, "127.0.0.1", ready));
+    const context = await browser.newContext();
+    const page = await context.newPage();
+    await page.goto(`http://127.0.0.1:${hostile.address().port}/`);
+    // It even knows the address.
+    const outcome = await page.evaluate(async (address) => {
+      const tried = {};
+      const attempt = async (name, options, path = "time") => {
+        try {
+          const response = await fetch(address + path, options);
+          tried[name] = response.type === "opaque" ? "nothing to read" : await response.text();
+        } catch {
+          tried[name] = "refused";
+        }
+      };
+      const body = JSON.stringify({ settings: {} });
+      await attempt("read", {}, "keys");
+      await attempt("read blindly", { mode: "no-cors" }, "keys");
+      await attempt("json", { method: "POST", headers: { "Content-Type": "application/json" }, body });
+      await attempt("plain", { method: "POST", body });
+      await attempt("end", { method: "POST", mode: "no-cors", body: "{}" }, "end");
+      const loaded = (element, source) =>
+        new Promise((done) => {
+          const made = document.createElement(element);
+          made.onload = () => done("loaded");
+          made.onerror = () => done("refused");
+          made.src = address + source;
+          document.body.append(made);
+        });
+      tried.script = await loaded("script", "state.js");
+      const frame = document.createElement("iframe");
+      frame.src = address;
+      document.body.append(frame);
+      await new Promise((done) => (frame.onload = done));
+      try {
+        tried.frame = frame.contentDocument === null ? "nothing to read" : frame.contentDocument.body.innerText;
+      } catch {
+        tried.frame = "refused";
+      }
+      const form = Object.assign(document.createElement("form"), { method: "post", action: `${address}end`, target: "sink", enctype: "text/plain" });
+      document.body.append(Object.assign(document.createElement("iframe"), { name: "sink" }), form);
+      form.submit();
+      await new Promise((done) => setTimeout(done, 300));
+      return tried;
+    }, served.address);
+    hostile.close();
+    const { frame, ...others } = outcome;
+    assert.ok(["refused", "nothing to read"].includes(frame), frame);
+    for (const [name, got] of Object.entries(others)) assert.ok(["refused", "nothing to read"].includes(got), `${name}: ${got}`);
+    await context.close();
+    // The same, by a name that its name server leads to this computer.
+    const rebound = await promisify(execFile)("node", ["-e", `
+      require("node:http").get(${JSON.stringify(served.address)}, { headers: { Host: "evil.example" } }, (answer) => console.log(answer.statusCode));
+    `]);
+    assert.equal(rebound.stdout.trim(), "403");
+    // It still serves its own page.
+    await withPage("", (own) => answer_of(own, {}));
+  });
+
+  it("ends when the page asks for it", async () => {
+    const own = await explore();
+    const { page, faults, close } = await open("", own.address);
+    await answer_of(page, {});
+    await page.getByRole("button", { name: "End marti explore" }).click();
+    assert.equal(await own.ended, 0);
+    await page.waitForFunction(() => document.getElementById("state").textContent.includes("has ended"));
+    assert.deepEqual(faults, []);
+    await close();
+  });
+});

@@ -1,0 +1,229 @@
+// Answers of an exploration: those of `marti run` with the same settings, byte for byte.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studies/explore/session.h"
+#include "studies/explore/turns.h"
+#include "studies/keys/price_keys.h"
+#include "studies/run/run_result.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/support/user_error.h"
+
+namespace marti::studies {
+namespace {
+
+constexpr const char* text = R"([scene]
+source = "tetra:3"
+[image]
+width = 24
+height = 20
+[machine]
+nodes = 3
+[cache]
+size = "1 KiB"
+ways = 2
+[interconnect]
+kind = "bus"
+clock = "33 MHz"
+)";
+
+class Explored : public testing::Test {
+ protected:
+  Explored() { std::ofstream(file_) << text; }
+
+  [[nodiscard]] std::string run_with(const Settings& settings, Measuring what_helps = Measuring::none) const {
+    std::vector<std::string> assignments;
+    for (const auto& [key, value] : settings) {
+      assignments.push_back(key + "=" + value);
+    }
+    sim::Schema schema = run_schema();
+    declare_price_keys(schema);
+    sim::Config config = sim::Config::from_file(schema, file_, assignments);
+    RunOptions options;
+    options.what_helps = what_helps;
+    options.prices = read_given_prices(config);
+    return json_of(run(config, std::move(options)));
+  }
+
+  // The refusal's key, or "accepted".
+  static std::string refused_key(const std::string& answer) {
+    const auto json = nlohmann::json::parse(answer);
+    return !json.contains("error") ? "accepted"
+           : json["key"].is_null() ? "none"
+                                   : json["key"].get<std::string>();
+  }
+
+  test::TemporaryDirectory directory_;
+  std::filesystem::path file_ = directory_.path() / "explored.toml";
+};
+
+TEST_F(Explored, EveryAnswerIsThatOfARun) {
+  const Session session(file_, {});
+  for (const Settings& settings : std::vector<Settings>{
+           {},
+           {{"machine.nodes", "7"}},
+           {{"machine.nodes", "1"}, {"cache.size", "64 KiB"}},
+           {{"cache.ways", "1"}, {"cache.replacement", "random"}, {"packets.width", "4"}},
+           {{"interconnect.kind", "crossbar"}, {"memory.banks", "2"}},
+           {{"interconnect.kind", "ideal"}},
+           {{"machine.clusters", "2"}, {"node.contexts", "2"}},
+           {{"build.sharing", "none"}},
+           {{"machine.scheme", "pipeline"}, {"machine.nodes", "6"}},
+           {{"node.clock", "\"80 MHz\""}, {"energy.preset", "45nm"}},
+       }) {
+    const std::string expected = [&] {
+      try {
+        return run_with(settings);
+      } catch (const sim::UserError& error) {
+        return std::string(error.what());
+      }
+    }();
+    const std::string answer = session.answer(settings, Measuring::none);
+    if (expected.starts_with("{")) {
+      EXPECT_EQ(answer, expected);
+    } else {
+      EXPECT_EQ(nlohmann::json::parse(answer)["error"], expected);
+    }
+  }
+}
+
+// A later machine walks the log that was stripped for one before it.
+TEST_F(Explored, AnswersDoNotDependOnThoseBefore) {
+  const Session session(file_, {});
+  for (const char* ways : {"2", "1", "4", "2", "1", "2"}) {
+    for (const char* size : {"1 KiB", "2 KiB"}) {
+      const Settings settings = {{"cache.ways", ways}, {"cache.size", size}};
+      EXPECT_EQ(session.answer(settings, Measuring::within_budget),
+                run_with(settings, Measuring::within_budget));
+    }
+  }
+}
+
+TEST_F(Explored, WhatWouldHelpIsThatOfARun) {
+  const Session session(file_, {});
+  const Settings settings = {{"machine.nodes", "5"}};
+  EXPECT_EQ(session.answer(settings, Measuring::within_budget), run_with(settings, Measuring::within_budget));
+}
+
+TEST_F(Explored, AnAnswerForNobodyIsGivenUp) {
+  const Session session(file_, {});
+  const std::atomic<bool> stop = true;
+  EXPECT_THROW(static_cast<void>(session.answer({{"machine.nodes", "5"}}, Measuring::none, &stop)), Stopped);
+  const std::atomic<bool> go_on = false;
+  EXPECT_EQ(session.answer({{"machine.nodes", "5"}}, Measuring::none, &go_on),
+            run_with({{"machine.nodes", "5"}}));
+}
+
+TEST_F(Explored, SettingsComeBehindThoseOfTheCommand) {
+  const Session session(file_, {"machine.nodes=6", "image.width=16"});
+  EXPECT_EQ(session.answer({{"machine.nodes", "2"}}, Measuring::none),
+            run_with({{"machine.nodes", "6"}, {"image.width", "16"}, {"machine.nodes", "2"}}));
+  EXPECT_EQ(session.answer({}, Measuring::none), run_with({{"machine.nodes", "6"}, {"image.width", "16"}}));
+}
+
+TEST_F(Explored, ARefusalNamesTheKeyAndTheNextAnswerIsRightAgain) {
+  const Session session(file_, {});
+  const auto key = [&](const char* name, const char* value) {
+    return refused_key(session.answer({{name, value}}, Measuring::none));
+  };
+  EXPECT_EQ(key("machine.nodes", "0"), "machine.nodes");
+  EXPECT_EQ(key("machine.nodes", "many"), "machine.nodes");
+  EXPECT_EQ(key("cache.size", "-4 KiB"), "cache.size");
+  EXPECT_EQ(key("cache.ways", "3"), refused_key(session.answer({{"cache.ways", "3"}}, Measuring::none)));
+  EXPECT_EQ(key("cache.replacement", "\"newest\""), "cache.replacement");
+  EXPECT_NE(key("pipeline.queue", "4"), "accepted");
+  EXPECT_NE(key("no.such.key", "1"), "accepted");
+  EXPECT_NE(key("machine.nodes", "4\nimage.width = 9"), "accepted");
+  EXPECT_EQ(session.answer({}, Measuring::none), run_with({}));
+}
+
+TEST_F(Explored, KeysOfTheFrameAreNoSettings) {
+  const Session session(file_, {});
+  for (const Settings& settings : std::vector<Settings>{{{"image.width", "8"}},
+                                                        {{"scene.source", "/etc/passwd"}},
+                                                        {{"structure.kind", "grid"}},
+                                                        {{"host_machine.memory_limit", "0 B"}},
+                                                        {{"record.timeline", "true"}},
+                                                        {{"frames.count", "2"}}}) {
+    EXPECT_EQ(refused_key(session.answer(settings, Measuring::none)), settings[0].first);
+  }
+}
+
+TEST_F(Explored, EveryOtherKeyIsAControlWithItsValue) {
+  const Session session(file_, {"machine.nodes=5"});
+  const auto keys = nlohmann::json::parse(session.keys());
+  sim::Schema schema = run_schema();
+  std::size_t controls = 0;
+  for (const sim::Key& key : schema.keys()) {
+    controls += is_control(key) ? 1 : 0;
+  }
+  ASSERT_EQ(keys["controls"].size(), controls);
+  std::map<std::string, std::string> values;
+  for (const auto& key : keys["controls"]) {
+    values[key["name"]] = key["value"];
+  }
+  EXPECT_EQ(values["machine.nodes"], "5");
+  EXPECT_EQ(values["cache.size"], "\"1 KiB\"");
+  EXPECT_EQ(values.count("image.width"), 0U);
+  EXPECT_EQ(keys["given"]["image.width"], "24");
+  // Each value as a setting changes nothing of the figures, unless the machine has no use for the key.
+  const auto plain = nlohmann::json::parse(session.answer({}, Measuring::none));
+  for (const auto& [key, effective] : plain["config"]["keys"].items()) {
+    if (values.count(key) == 1) {
+      const auto same = nlohmann::json::parse(session.answer({{key, values[key]}}, Measuring::none));
+      EXPECT_EQ(same["figures"], plain["figures"]) << key;
+    }
+  }
+}
+
+TEST_F(Explored, AWrongConfigurationIsRefusedBeforeAnythingElse) {
+  EXPECT_NE(test::user_error_of([&] { Session(file_, {"cache.size=1 B"}); }).find("cache.size"),
+            std::string::npos);
+  EXPECT_NE(test::user_error_of([&] { Session(directory_.path() / "none.toml", {}); }).find("none.toml"),
+            std::string::npos);
+}
+
+TEST(Turns, TheNewestOfAReaderComesNextAndOthersGiveUp) {
+  Turns turns;
+  std::optional<Turns::Turn> running = turns.take(Asker::background);
+  ASSERT_TRUE(running);
+  const auto taken = [&](Asker asker) {
+    return std::async(std::launch::async, [&turns, asker] { return turns.take(asker).has_value(); });
+  };
+  // Whichever of the two came last has the turn, the other none, however the threads are scheduled.
+  auto one = taken(Asker::reader);
+  auto two = taken(Asker::reader);
+  while (one.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready &&
+         two.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready) {
+  }
+  EXPECT_TRUE(running->stop());
+  running.reset();
+  EXPECT_NE(one.get(), two.get());
+}
+
+TEST(Turns, AReaderIsNotKeptByTheBackground) {
+  Turns turns;
+  for (int i = 0; i < 100; ++i) {
+    std::optional<Turns::Turn> running = turns.take(Asker::background);
+    ASSERT_TRUE(running);
+    auto background =
+        std::async(std::launch::async, [&] { return turns.take(Asker::background).has_value(); });
+    auto reader = std::async(std::launch::async, [&] { return turns.take(Asker::reader).has_value(); });
+    running.reset();
+    EXPECT_TRUE(reader.get());
+    // It waited before the reader, who took its place, or came later and has its turn.
+    static_cast<void>(background.get());
+  }
+}
+
+}  // namespace
+}  // namespace marti::studies
