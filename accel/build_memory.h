@@ -32,9 +32,10 @@ template <class Vector>
 }
 
 /// Throws UserError when `bytes`, which the tree takes so far, exceed the budget. `kind` is the structure's.
-inline void require_tree(const sim::MemoryBudget& budget, std::uint64_t bytes, std::string_view kind) {
-  budget.require(bytes, "so far the structure (" + std::string(kind) + ") takes",
-                 "lower structure.max_level or raise structure.max_objects");
+inline void require_tree(
+    const sim::MemoryBudget& budget, std::uint64_t bytes, std::string_view kind,
+    std::string_view remedy = "lower structure.max_level or raise structure.max_objects") {
+  budget.require(bytes, "so far the structure (" + std::string(kind) + ") takes", remedy);
 }
 
 }  // namespace marti::accel

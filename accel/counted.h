@@ -1,7 +1,7 @@
 // Scalars that count their own operations, so that the cost of the real templates (intersection kernel,
 // traversal, shading) is measured by running them.
 //
-// How operations on Counted are counted:
+// How operations on Counted and CountedFloat are counted:
 //   add          + and - of two values, += and -=
 //   multiply     *
 //   divide       /
@@ -59,71 +59,76 @@ struct OperationCounts {
   return counts;
 }
 
-/// A double that counts. Converts from double implicitly (so literals work), to double explicitly.
-class Counted {
+/// A floating-point number that counts. Converts from its value implicitly (so literals work), to it
+/// explicitly.
+template <class Value>
+class CountedValue {
  public:
-  Counted() = default;
-  Counted(double value) : value_(value) {}  // implicit on purpose: templates mix in literals
+  CountedValue() = default;
+  CountedValue(Value value) : value_(value) {}  // implicit on purpose: templates mix in literals
 
-  explicit operator double() const { return value_; }
-  [[nodiscard]] double value() const { return value_; }
+  explicit operator Value() const { return value_; }
+  [[nodiscard]] Value value() const { return value_; }
 
-  friend Counted operator+(Counted a, Counted b) {
+  friend CountedValue operator+(CountedValue a, CountedValue b) {
     ++operation_counts().add;
     return {a.value_ + b.value_};
   }
-  friend Counted operator-(Counted a, Counted b) {
+  friend CountedValue operator-(CountedValue a, CountedValue b) {
     ++operation_counts().add;
     return {a.value_ - b.value_};
   }
-  friend Counted operator*(Counted a, Counted b) {
+  friend CountedValue operator*(CountedValue a, CountedValue b) {
     ++operation_counts().multiply;
     return {a.value_ * b.value_};
   }
-  friend Counted operator/(Counted a, Counted b) {
+  friend CountedValue operator/(CountedValue a, CountedValue b) {
     ++operation_counts().divide;
     return {a.value_ / b.value_};
   }
-  friend Counted operator-(Counted a) { return {-a.value_}; }
-  Counted& operator+=(Counted b) { return *this = *this + b; }
-  Counted& operator-=(Counted b) { return *this = *this - b; }
-  Counted& operator*=(Counted b) { return *this = *this * b; }
-  Counted& operator/=(Counted b) { return *this = *this / b; }
+  friend CountedValue operator-(CountedValue a) { return {-a.value_}; }
+  CountedValue& operator+=(CountedValue b) { return *this = *this + b; }
+  CountedValue& operator-=(CountedValue b) { return *this = *this - b; }
+  CountedValue& operator*=(CountedValue b) { return *this = *this * b; }
+  CountedValue& operator/=(CountedValue b) { return *this = *this / b; }
 
-  friend bool operator==(Counted a, Counted b) {
+  friend bool operator==(CountedValue a, CountedValue b) {
     ++operation_counts().compare;
     return a.value_ == b.value_;
   }
-  friend bool operator<(Counted a, Counted b) {
+  friend bool operator<(CountedValue a, CountedValue b) {
     ++operation_counts().compare;
     return a.value_ < b.value_;
   }
-  friend bool operator<=(Counted a, Counted b) {
+  friend bool operator<=(CountedValue a, CountedValue b) {
     ++operation_counts().compare;
     return a.value_ <= b.value_;
   }
-  friend bool operator>(Counted a, Counted b) { return b < a; }
-  friend bool operator>=(Counted a, Counted b) { return b <= a; }
+  friend bool operator>(CountedValue a, CountedValue b) { return b < a; }
+  friend bool operator>=(CountedValue a, CountedValue b) { return b <= a; }
 
-  friend Counted sqrt(Counted a) {
+  friend CountedValue sqrt(CountedValue a) {
     ++operation_counts().square_root;
     return {std::sqrt(a.value_)};
   }
-  friend Counted abs(Counted a) {
+  friend CountedValue abs(CountedValue a) {
     ++operation_counts().compare;
     return {std::abs(a.value_)};
   }
-  friend Counted min(Counted a, Counted b) { return b < a ? b : a; }
-  friend Counted max(Counted a, Counted b) { return a < b ? b : a; }
-  friend Counted fma(Counted a, Counted b, Counted c) {
+  friend CountedValue min(CountedValue a, CountedValue b) { return b < a ? b : a; }
+  friend CountedValue max(CountedValue a, CountedValue b) { return a < b ? b : a; }
+  friend CountedValue fma(CountedValue a, CountedValue b, CountedValue c) {
     ++operation_counts().multiply;
     ++operation_counts().add;
     return {std::fma(a.value_, b.value_, c.value_)};
   }
 
  private:
-  double value_ = 0.0;
+  Value value_ = 0;
 };
+
+using Counted = CountedValue<double>;
+using CountedFloat = CountedValue<float>;
 
 /// A 32-bit unsigned integer that counts its operations.
 class CountedInt {
@@ -170,6 +175,7 @@ using IntegerOf = std::conditional_t<std::is_same_v<Real, Counted>, CountedInt, 
 /// The value of a plain or counting scalar, uncounted.
 [[nodiscard]] inline double plain(double a) { return a; }
 [[nodiscard]] inline double plain(Counted a) { return a.value(); }
+[[nodiscard]] inline float plain(CountedFloat a) { return a.value(); }
 [[nodiscard]] inline std::uint32_t plain(std::uint32_t a) { return a; }
 [[nodiscard]] inline std::uint32_t plain(CountedInt a) { return a.value(); }
 

@@ -80,13 +80,6 @@ Octree::Octree(std::shared_ptr<const TriangleSet> triangles, const OctreeOptions
   pack();
 }
 
-#ifdef MARTI_ACCEL_AVX2
-bool has_avx2() {
-  static const bool has = __builtin_cpu_supports("avx2") != 0;
-  return has;
-}
-#endif
-
 void Octree::pack() {
   require_tree(options_.memory, bytes_of(topology_) + walk_bytes(topology_, *triangles_), kind_name);
   const std::size_t count = topology_.nodes.size();

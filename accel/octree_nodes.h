@@ -4,32 +4,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <new>
-#include <vector>
 
+#include "accel/cache_aligned.h"
 #include "accel/frame.h"
 #include "accel/triangles.h"
 
 namespace marti::accel {
-
-/// An array aligned to a cache line.
-template <class T>
-struct CacheLineAllocator {
-  using value_type = T;
-  static constexpr std::align_val_t alignment{64};
-
-  CacheLineAllocator() = default;
-  template <class U>
-  explicit CacheLineAllocator(const CacheLineAllocator<U>& /*other*/) {}
-
-  [[nodiscard]] T* allocate(std::size_t n) {
-    return static_cast<T*>(::operator new(n * sizeof(T), alignment));
-  }
-  void deallocate(T* p, std::size_t /*n*/) { ::operator delete(p, alignment); }
-  bool operator==(const CacheLineAllocator&) const = default;
-};
-template <class T>
-using CacheAligned = std::vector<T, CacheLineAllocator<T>>;
 
 /// Eight bytes. Branch: `first` is its first child's number, the low eight bits of `info` say which
 /// children are not empty leaves. Leaf: `first` is its first entry, `info` the number of entries | leaf_bit.

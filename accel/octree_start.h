@@ -29,8 +29,9 @@ struct NodeSpan {
 template <class Real>
 struct WalkStart {
   NodeSpan<Real> root;
-  IntegerOf<Real> mask = 0U;  ///< bit a: the direction is negative along axis a
-  Real slack{0.0};            ///< 4 delta as a parameter
+  IntegerOf<Real> mask = 0U;    ///< bit a: the direction is negative along axis a
+  Real slack{0.0};              ///< 4 delta as a parameter
+  std::array<Real, 3> inverse;  ///< 1 / |direction component|, at most RootFrame::largest_inverse
   bool hits_root = false;
   bool far = false;  ///< take the slow walk instead; the other members are not set
 };
@@ -64,6 +65,7 @@ template <class Real>
     // A zero component, of either sign, gives the cap: the planes' parameters are then huge, with the right
     // sign, and so is the average of two.
     const Real inverse = min(Real(1.0) / abs(d[a]), Real(frame.largest_inverse));
+    start.inverse[a] = inverse;
     if (d[a] < Real(0.0)) {
       start.mask = start.mask | (1U << a);
       root.s0[a] = (o[a] - Real(hi[a])) * inverse;

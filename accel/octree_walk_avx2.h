@@ -3,8 +3,9 @@
 // the same, bit for bit.
 #pragma once
 
-#if defined(__x86_64__)
-#define MARTI_ACCEL_AVX2 1
+#include "accel/avx2.h"
+
+#ifdef MARTI_ACCEL_AVX2
 
 #include <immintrin.h>
 
@@ -22,9 +23,6 @@
 #include "accel/watertight.h"
 
 namespace marti::accel {
-
-/// Whether this machine has AVX2.
-[[nodiscard]] bool has_avx2();
 
 /// A waiting node: NodeSpan with its axes in vectors (the fourth lane is not used).
 struct VectorSpan {

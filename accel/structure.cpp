@@ -7,8 +7,8 @@ namespace marti::accel {
 
 namespace {
 
-constexpr std::array<std::string_view, 4> kinds{Octree::kind_name, Bsp::kind_name, Grid::kind_name,
-                                                BruteForce::kind_name};
+constexpr std::array<std::string_view, 5> kinds{Octree::kind_name, Bsp::kind_name, Grid::kind_name,
+                                                Bvh::kind_name, BruteForce::kind_name};
 
 }  // namespace
 
@@ -29,11 +29,15 @@ std::unique_ptr<Structure> make_structure(std::string_view kind, std::shared_ptr
     }
     return std::make_unique<StructureOf<Grid>>(Grid::build(std::move(triangles), grid));
   }
+  if (kind == Bvh::kind_name) {
+    return std::make_unique<StructureOf<Bvh>>(Bvh::build(std::move(triangles), options.bvh));
+  }
   if (kind == BruteForce::kind_name) {
     return std::make_unique<StructureOf<BruteForce>>(BruteForce(std::move(triangles)));
   }
   std::string message("unknown structure \"");
-  message.append(kind).append("\"; there are \"octree\", \"bsp\", \"grid\" and \"none\" (brute force)");
+  message.append(kind).append(
+      "\"; there are \"octree\", \"bsp\", \"grid\", \"bvh\" and \"none\" (brute force)");
   throw sim::UserError(message);
 }
 
@@ -48,7 +52,8 @@ std::uint64_t host_bytes(const Structure& structure) {
       structure.kind() == Octree::kind_name ? Octree::walk_bytes(topology, structure.triangles()) : 0;
   const std::uint64_t planes =
       structure.kind() == Bsp::kind_name ? sizeof(double) * topology.nodes.size() : 0;
-  return bytes_of(topology) + records + planes;
+  const auto* bvh = dynamic_cast<const StructureOf<Bvh>*>(&structure);
+  return bytes_of(topology) + records + planes + (bvh == nullptr ? 0 : bvh->concrete().walk_bytes());
 }
 
 Traversal traversal_of(const Structure& structure) {
@@ -56,7 +61,7 @@ Traversal traversal_of(const Structure& structure) {
     using Concrete = std::remove_cvref_t<decltype(concrete)>;
     if constexpr (std::is_same_v<Concrete, Octree> || std::is_same_v<Concrete, LazyOctree>) {
       return Traversal::octree;
-    } else if constexpr (std::is_same_v<Concrete, Bsp>) {
+    } else if constexpr (std::is_same_v<Concrete, Bsp> || std::is_same_v<Concrete, Bvh>) {
       return concrete.traversal();
     } else if constexpr (std::is_same_v<Concrete, Grid>) {
       return Traversal::grid;

@@ -8,6 +8,7 @@
 
 #include "accel/brute_force.h"
 #include "accel/bsp.h"
+#include "accel/bvh.h"
 #include "accel/grid.h"
 #include "accel/grid_match.h"
 #include "accel/lazy_octree.h"
@@ -69,11 +70,13 @@ struct StructureOptions {
   OctreeOptions octree;
   BspOptions bsp;
   GridOptions grid;
+  BvhOptions bvh;
   /// If not density: an octree with the options above is built to measure it, and then deleted.
   GridMatch grid_match = GridMatch::density;
 };
 
-/// The kinds that make_structure accepts: "octree", "bsp", "grid" and "none" (brute force).
+/// The kinds that make_structure accepts: "octree", "bsp", "grid", "bvh" and "none" (brute
+/// force).
 [[nodiscard]] std::span<const std::string_view> structure_kinds();
 
 /// Builds a structure. Throws UserError for an unknown kind or an option out of range.
@@ -103,6 +106,9 @@ decltype(auto) visit_structure(const Structure& structure, F&& f) {
   }
   if (const auto* grid = dynamic_cast<const StructureOf<Grid>*>(&structure)) {
     return std::forward<F>(f)(grid->concrete());
+  }
+  if (const auto* bvh = dynamic_cast<const StructureOf<Bvh>*>(&structure)) {
+    return std::forward<F>(f)(bvh->concrete());
   }
   if (const auto* brute = dynamic_cast<const StructureOf<BruteForce>*>(&structure)) {
     return std::forward<F>(f)(brute->concrete());

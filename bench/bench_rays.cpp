@@ -1,5 +1,5 @@
 // All structures, their walks, with mailboxes and without, against Embree: primary rays on one thread, the
-// same triangles and the same rays.
+// same triangles and the same rays; and what the hierarchies cost by the surface area heuristic.
 //   bench_rays [--scene NAME] [--size PIXELS] [--objects N] [--level N] [--json FILE]
 #include <embree3/rtcore.h>
 
@@ -22,6 +22,7 @@
 #include "bench/report.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
+#include "tests/support/embree_bvh.h"
 
 namespace {
 
@@ -217,13 +218,13 @@ std::vector<Contestant> build_all(const std::shared_ptr<const TriangleSet>& tria
   structure_options.octree = options.octree;
   structure_options.bsp.max_objects = options.octree.max_objects;
   structure_options.bsp.max_level = options.octree.max_level;
-  const auto add = [&](const char* name, const char* kind) {
+  const auto add = [&](const std::string& name, const char* kind) {
     for (const bool mailboxes : {false, true}) {
       if (mailboxes && std::string_view(kind) == "none") {
         continue;
       }
       Contestant& contestant = all.emplace_back();
-      contestant.name = std::string(name) + (mailboxes ? ", mailboxes" : "");
+      contestant.name = name + (mailboxes ? ", mailboxes" : "");
       contestant.mailboxes = mailboxes;
       contestant.hits.resize(rays);
       const double begin = cpu_seconds();
@@ -240,10 +241,39 @@ std::vector<Contestant> build_all(const std::shared_ptr<const TriangleSet>& tria
   add("grid, octree's nodes", "grid");
   structure_options.grid_match = marti::accel::GridMatch::octree_cells;
   add("grid, octree's cells", "grid");
+  for (std::size_t node = 0; node < marti::accel::bvh_node_names.size(); ++node) {
+    structure_options.bvh.node = static_cast<marti::accel::BvhNodeKind>(node);
+    add("bvh, " + std::string(marti::accel::bvh_node_names[node]) + " children", "bvh");
+  }
   if (static_cast<double>(triangles->size()) * static_cast<double>(rays) <= most_tests) {
     add("none", "none");
   }
   return all;
+}
+
+std::optional<marti::bench::Aim> aim_of(std::string_view name) {
+  if (name == "octree") {
+    return marti::bench::Aim{0.4};
+  }
+  return name == "bvh, 8 children" ? std::optional(marti::bench::Aim{0.6}) : std::nullopt;
+}
+
+/// The hierarchies' costs by the surface area heuristic, beside those of Embree's builder.
+void compare_costs(marti::bench::Report& report, const std::vector<Contestant>& ours) {
+  for (const Contestant& contestant : ours) {
+    const auto* of =
+        dynamic_cast<const marti::accel::StructureOf<marti::accel::Bvh>*>(contestant.structure.get());
+    if (of == nullptr || contestant.mailboxes) {
+      continue;
+    }
+    const marti::accel::Bvh& bvh = of->concrete();
+    const double theirs = marti::tests::embree_sah_cost(
+        bvh.triangles(), marti::accel::bvh_children(bvh.options().node), bvh.options().max_objects);
+    std::printf("%-32s cost by the surface area heuristic %.3f, Embree rtcBuildBVH %.3f: %.3f\n",
+                contestant.name.c_str(), bvh.sah_cost(), theirs, bvh.sah_cost() / theirs);
+    report.add(marti::bench::against("cost: " + contestant.name, "visits and tests", bvh.sah_cost(),
+                                     "Embree rtcBuildBVH", theirs, marti::bench::Aim{1.05, false}));
+  }
 }
 
 void run(marti::bench::Report& report, const Options& options) {
@@ -299,13 +329,13 @@ void run(marti::bench::Report& report, const Options& options) {
 
   using marti::bench::against;
   for (std::size_t k = 0; k < ours.size(); ++k) {
-    const std::optional<marti::bench::Aim> aim =
-        k == 0 ? std::optional(marti::bench::Aim{0.4}) : std::nullopt;
+    const std::optional<marti::bench::Aim> aim = aim_of(ours[k].name);
     report.add(against("primary rays: " + ours[k].name, "M rays/s", million / seconds[k],
                        "Embree rtcIntersect1", million / seconds[ours.size()], aim));
   }
   report.add(against("primary rays: " + ours[0].name, "M rays/s", million / seconds[0], "Embree, robust",
                      million / seconds[ours.size() + 1]));
+  compare_costs(report, ours);
 }
 
 }  // namespace

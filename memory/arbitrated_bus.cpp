@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "memory/late_dram.h"
+
 namespace marti::memory {
 
 using sim::add_ticks;
@@ -9,13 +11,11 @@ using sim::Ticks;
 
 ArbitratedBus::ArbitratedBus(const InterconnectConfig& config, const BankConfig& banks,
                              const InterconnectSite& site)
-    : site_(site),
+    : Banked(banks, site, config.clock.cycles(config.address_cycles)),
       mode_(config.mode),
       arbitration_(config.arbitration),
       beats_(config),
       address_(config.clock.cycles(config.address_cycles)),
-      bank_access_(banks.clock.cycles(banks.access_cycles)),
-      banks_(banks),
       ports_(site.ports),
       data_(site.ports),
       asking_(site.ports),
@@ -24,7 +24,7 @@ ArbitratedBus::ArbitratedBus(const InterconnectConfig& config, const BankConfig&
 }
 
 Ticks ArbitratedBus::unloaded_read(std::uint32_t bytes) const {
-  return add_ticks(add_ticks(address_, bank_access_), beats_(bytes));
+  return add_ticks(add_ticks(address_, banks_.unloaded_read(bytes)), beats_(bytes));
 }
 
 void ArbitratedBus::read(const Transaction& transaction) {
@@ -67,7 +67,23 @@ std::uint32_t ArbitratedBus::choose() const {
   return next != PortSet::none ? next : asking_.at_or_after(0);
 }
 
-void ArbitratedBus::proceed(std::uint32_t /*port*/, std::uint32_t /*sequence*/) {
+void ArbitratedBus::proceed(std::uint32_t port, std::uint32_t sequence) {
+  if (sequence > 0) {
+    Banked::proceed(port, sequence);
+    return;
+  }
+  grant();
+}
+
+void ArbitratedBus::late_read(const LateAccess& read) {
+  Port& port = ports_[read.transaction.port];
+  port.service.wait_bank = read.start - read.arrival;
+  port.service.bank = read.ready - read.start;
+  site_.engine.post(
+      sim::Event::make(read.ready, site_.reply_class, site_.first_component + read.transaction.port));
+}
+
+void ArbitratedBus::grant() {
   called_ = false;
   const std::uint32_t winner = choose();
   Port& port = ports_[winner];
@@ -113,7 +129,14 @@ void ArbitratedBus::grant_read(const Request& request) {
   const auto& [port, address, bytes] = request.transaction;
   const Ticks now = site_.engine.now();
   const Ticks sent = add_ticks(now, address_);
-  const BankAccess access = banks_.read(address, sent);
+  if (late()) {
+    take(request.asked, address_);
+    ports_[port].service = {0, now - request.asked, address_, 0, 0};
+    ports_[port].bytes = bytes;
+    ask_late(request.transaction, false, sent);
+    return;
+  }
+  const BankAccess access = banks_.read(address, bytes, sent);
   Service service = {0, now - request.asked, address_, access.start - sent, access.ready - access.start};
   if (mode_ == BusMode::split) {
     take(request.asked, address_);
@@ -132,7 +155,11 @@ void ArbitratedBus::grant_read(const Request& request) {
 void ArbitratedBus::grant_write(const Request& request) {
   const Ticks length = add_ticks(address_, beats_(request.transaction.bytes));
   take(request.asked, length);
-  const BankAccess access = banks_.write(request.transaction.address, free_at_);
+  if (late()) {
+    ask_late(request.transaction, true, free_at_);
+    return;
+  }
+  const BankAccess access = banks_.write(request.transaction.address, request.transaction.bytes, free_at_);
   site_.client.write_done(request.transaction.port, access.ready);
 }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "memory/interconnect.h"
+#include "memory/banked.h"
 #include "memory/link.h"
 #include "memory/port_set.h"
 
@@ -13,7 +13,7 @@ namespace marti::memory {
 /// class grants it, so that all ports that ask at that instant compete. A port offers one transfer at a time:
 /// data that are ready for it, else the oldest of its requests. Reads and writes keep the order in which they
 /// were made, so that no read of a port overtakes its writes.
-class ArbitratedBus final : public Interconnect {
+class ArbitratedBus final : public Banked {
  public:
   ArbitratedBus(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site);
 
@@ -22,12 +22,6 @@ class ArbitratedBus final : public Interconnect {
   void reply(std::uint32_t port) override;
   void proceed(std::uint32_t port, std::uint32_t sequence) override;
   [[nodiscard]] const InterconnectStatistics& statistics() const override { return statistics_; }
-  [[nodiscard]] const std::vector<BankStatistics>& bank_statistics() const override {
-    return banks_.statistics();
-  }
-  [[nodiscard]] const SharedCacheStatistics* cache_statistics() const override {
-    return banks_.cache_statistics();
-  }
   [[nodiscard]] sim::Ticks unloaded_read(std::uint32_t bytes) const override;
   /// The port that the bus was granted to last; at first the highest.
   [[nodiscard]] std::uint32_t last_granted() const { return last_; }
@@ -52,17 +46,17 @@ class ArbitratedBus final : public Interconnect {
   [[nodiscard]] std::uint32_t choose() const;
   // Begins a tenure of `length` for a transfer that was asked for at `asked`.
   void take(sim::Ticks asked, sim::Ticks length);
+  void late_read(const LateAccess& read) override;
+  // Grants the bus to the port that gets it next.
+  void grant();
   void grant_data(std::uint32_t port);
   void grant_read(const Request& request);
   void grant_write(const Request& request);
 
-  InterconnectSite site_;
   BusMode mode_;
   Arbitration arbitration_;
   BeatTime beats_;
   sim::Ticks address_;
-  sim::Ticks bank_access_;
-  Banks banks_;
   std::vector<Port> ports_;
   PortSet data_;        // ports whose data are ready
   PortSet asking_;      // ports with data or requests

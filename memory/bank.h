@@ -1,12 +1,15 @@
-// Memory banks: interleaved by line, each serves one access at a time in order of arrival; with or without a
-// cache before them.
+// Memory banks: interleaved by line, each serves one access at a time in order of arrival; or DRAM channels
+// in their place. With or without a cache before them.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "memory/dram_config.h"
+#include "memory/dram_statistics.h"
 #include "memory/record_kind.h"
 #include "memory/shared_cache.h"
 #include "memory/wait_statistics.h"
@@ -14,8 +17,11 @@
 
 namespace marti::memory {
 
-/// `access_cycles` pass from the start of an access until its data are there; the bank can start the next
-/// one `busy_cycles` after the start of the last.
+class Dram;
+class DramMapping;
+
+/// Without `dram`: `access_cycles` pass from the start of an access until its data are there; the bank can
+/// start the next one `busy_cycles` after the start of the last.
 struct BankConfig {
   std::uint32_t count = 4;
   std::uint32_t interleave = 32;  ///< bytes in a row that share a bank; a power of two
@@ -23,12 +29,23 @@ struct BankConfig {
   std::int64_t access_cycles = 4;
   std::int64_t busy_cycles = 6;
   std::optional<SharedCacheConfig> cache{};  ///< before the banks; std::nullopt: no cache
+  std::optional<DramConfig> dram{};          ///< a DRAM memory instead: each of its channels is as a bank
+
+  [[nodiscard]] std::uint32_t banks() const { return dram ? dram->channels : count; }
 };
 
+/// Of a DRAM channel: busy is the time of its data bus, and a wait ends when the controller takes an access
+/// up.
 struct BankStatistics {
   std::int64_t accesses = 0;
   sim::Ticks busy = 0;
   WaitStatistics waits;  ///< from an access's arrival to its start
+
+  void add(sim::Ticks busy_for, sim::Ticks waited) {
+    ++accesses;
+    busy = sim::add_ticks(busy, busy_for);
+    waits.add(waited);
+  }
 
   static constexpr auto counters() {
     using C = sim::Counter<BankStatistics>;
@@ -46,39 +63,52 @@ struct BankAccess {
 class Banks {
  public:
   explicit Banks(const BankConfig& config);
+  Banks(const Banks&) = delete;
+  Banks& operator=(const Banks&) = delete;
+  Banks(Banks&&) = delete;
+  Banks& operator=(Banks&&) = delete;
+  ~Banks();
 
   [[nodiscard]] std::uint32_t bank_of(Address address) const {
+    if (channels_) {
+      return channel_of(address);
+    }
     const Address unit = address >> interleave_shift_;
     return static_cast<std::uint32_t>((count_ & (count_ - 1)) == 0 ? unit & (count_ - 1) : unit % count_);
   }
   /// A read or write whose address arrives at `arrival`, at the cache if there is one, else at its bank.
   /// Calls must come in order of arrival.
-  BankAccess read(Address address, sim::Ticks arrival) {
-    return cache_ ? read_cached(address, arrival) : access(bank_of(address), arrival);
+  BankAccess read(Address address, std::uint32_t bytes, sim::Ticks arrival) {
+    return fixed_only_ ? access(bank_of(address), arrival) : read_otherwise(address, bytes, arrival);
   }
-  BankAccess write(Address address, sim::Ticks arrival) { return access(bank_of(address), arrival); }
+  BankAccess write(Address address, std::uint32_t bytes, sim::Ticks arrival) {
+    return dram_ ? access_dram(address, bytes, true, arrival) : access(bank_of(address), arrival);
+  }
+  /// The time of a read that waits for nothing and that no cache serves; DRAM: of a row that is closed.
+  [[nodiscard]] sim::Ticks unloaded_read(std::uint32_t bytes) const;
 
   /// Queues an access that arrives at `arrival` and bypasses the cache. Accesses to one bank must come in
   /// order of arrival.
   BankAccess access(std::uint32_t bank, sim::Ticks arrival) {
     const sim::Ticks start = std::max(arrival, free_at_[bank]);
     free_at_[bank] = sim::add_ticks(start, busy_ticks_);
-    BankStatistics& statistics = statistics_[bank];
-    ++statistics.accesses;
-    statistics.busy = sim::add_ticks(statistics.busy, busy_ticks_);
-    statistics.waits.add(start - arrival);
+    statistics_[bank].add(busy_ticks_, start - arrival);
     return {start, sim::add_ticks(start, access_ticks_)};
   }
 
   [[nodiscard]] std::uint32_t count() const { return count_; }
   [[nodiscard]] const std::vector<BankStatistics>& statistics() const { return statistics_; }
+  /// Of each channel of a DRAM memory; empty if it is none.
+  [[nodiscard]] std::vector<DramStatistics> dram_statistics() const;
   /// Statistics of the cache; null without a cache.
   [[nodiscard]] const SharedCacheStatistics* cache_statistics() const {
     return cache_ ? &cache_->statistics() : nullptr;
   }
 
  private:
-  BankAccess read_cached(Address address, sim::Ticks arrival);
+  [[nodiscard]] std::uint32_t channel_of(Address address) const;
+  BankAccess read_otherwise(Address address, std::uint32_t bytes, sim::Ticks arrival);
+  BankAccess access_dram(Address address, std::uint32_t bytes, bool write, sim::Ticks arrival);
 
   std::uint32_t count_;
   std::uint32_t interleave_shift_;
@@ -87,6 +117,10 @@ class Banks {
   std::vector<sim::Ticks> free_at_;
   std::vector<BankStatistics> statistics_;
   std::optional<SharedCache> cache_;
+  std::unique_ptr<DramMapping> channels_;  // where the banks are DRAM channels
+  std::unique_ptr<Dram> dram_;             // where these serve first come, first served
+  std::optional<DramConfig> dram_config_;
+  bool fixed_only_;  // neither a cache nor DRAM
 };
 
 }  // namespace marti::memory

@@ -1,20 +1,34 @@
 #include "memory/bus.h"
 
+#include "memory/late_dram.h"
+
 namespace marti::memory {
 
 Bus::Bus(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site)
-    : site_(site),
+    : Banked(banks, site, config.clock.cycles(config.address_cycles)),
       mode_(config.mode),
       beats_(config),
       address_(config.clock.cycles(config.address_cycles)),
-      bank_access_(banks.clock.cycles(banks.access_cycles)),
-      banks_(banks),
       pending_(config.mode == BusMode::split ? site.ports : 0) {
   statistics_.links = 1;
 }
 
 sim::Ticks Bus::unloaded_read(std::uint32_t bytes) const {
-  return sim::add_ticks(sim::add_ticks(address_, bank_access_), beats_(bytes));
+  return sim::add_ticks(sim::add_ticks(address_, banks_.unloaded_read(bytes)), beats_(bytes));
+}
+
+void Bus::read_late(const Transaction& transaction) {
+  const sim::Ticks now = site_.engine.now();
+  const sim::Ticks start = take(now, address_);
+  pending_[transaction.port] = {{0, start - now, address_, 0, 0}, transaction.bytes};
+  ask_late(transaction, false, sim::add_ticks(start, address_));
+}
+
+void Bus::late_read(const LateAccess& read) {
+  const std::uint32_t port = read.transaction.port;
+  pending_[port].service.wait_bank = read.start - read.arrival;
+  pending_[port].service.bank = read.ready - read.start;
+  site_.engine.post_in_order(sim::Event::make(read.ready, site_.reply_class, site_.first_component + port));
 }
 
 }  // namespace marti::memory

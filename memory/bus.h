@@ -1,7 +1,7 @@
 // One bus for a cluster: one transfer at a time, first come first served.
 #pragma once
 
-#include "memory/interconnect.h"
+#include "memory/banked.h"
 #include "memory/link.h"
 
 namespace marti::memory {
@@ -9,7 +9,7 @@ namespace marti::memory {
 /// A read sends its address, waits for its bank, and receives its data; a write sends address and data in one
 /// tenure and does not wait for the bank. In `held` mode a read keeps the bus from its address to its data;
 /// in `split` mode it gives the bus back, and the data ask for the bus again when they are ready.
-class Bus final : public Interconnect {
+class Bus final : public Banked {
  public:
   Bus(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site);
 
@@ -29,12 +29,6 @@ class Bus final : public Interconnect {
   }
 
   [[nodiscard]] const InterconnectStatistics& statistics() const override { return statistics_; }
-  [[nodiscard]] const std::vector<BankStatistics>& bank_statistics() const override {
-    return banks_.statistics();
-  }
-  [[nodiscard]] const SharedCacheStatistics* cache_statistics() const override {
-    return banks_.cache_statistics();
-  }
   [[nodiscard]] sim::Ticks unloaded_read(std::uint32_t bytes) const override;
 
  private:
@@ -46,16 +40,16 @@ class Bus final : public Interconnect {
 
   // Grants the bus to a tenure of `length` that arrives at `arrival`; returns when it starts.
   sim::Ticks take(sim::Ticks arrival, sim::Ticks length);
+  // Sends the address of a read whose data are ready at a time that is not known yet.
+  void read_late(const Transaction& transaction);
+  void late_read(const LateAccess& read) override;
   // Sends the data of the port's read, which are ready at `ready`.
   template <class Client>
   void send_data(Client& client, std::uint32_t port, sim::Ticks ready);
 
-  InterconnectSite site_;
   BusMode mode_;
   BeatTime beats_;
   sim::Ticks address_;
-  sim::Ticks bank_access_;
-  Banks banks_;
   Link link_;
   std::vector<Pending> pending_;
   InterconnectStatistics statistics_;
@@ -74,11 +68,15 @@ void Bus::read_for(Client& client, const Transaction& transaction) {
   using sim::add_ticks;
   ++statistics_.reads;
   statistics_.bytes += transaction.bytes;
+  if (late()) [[unlikely]] {
+    read_late(transaction);
+    return;
+  }
   const sim::Ticks now = site_.engine.now();
   if (mode_ == BusMode::split) {
     const sim::Ticks start = take(now, address_);
     const sim::Ticks sent = add_ticks(start, address_);
-    const BankAccess access = banks_.read(transaction.address, sent);
+    const BankAccess access = banks_.read(transaction.address, transaction.bytes, sent);
     pending_[transaction.port] = {
         {0, start - now, address_, access.start - sent, access.ready - access.start}, transaction.bytes};
     if (site_.ports == 1) {
@@ -92,7 +90,7 @@ void Bus::read_for(Client& client, const Transaction& transaction) {
   }
   const sim::Ticks start = link_.begin(now);
   const sim::Ticks sent = add_ticks(start, address_);
-  const BankAccess access = banks_.read(transaction.address, sent);
+  const BankAccess access = banks_.read(transaction.address, transaction.bytes, sent);
   const sim::Ticks data = beats_(transaction.bytes);
   const sim::Ticks done = add_ticks(access.ready, data);
   take(now, done - start);
@@ -117,7 +115,11 @@ void Bus::write_for(Client& client, const Transaction& transaction) {
   statistics_.bytes += transaction.bytes;
   const sim::Ticks length = sim::add_ticks(address_, beats_(transaction.bytes));
   const sim::Ticks sent = sim::add_ticks(take(site_.engine.now(), length), length);
-  const BankAccess access = banks_.write(transaction.address, sent);
+  if (late()) [[unlikely]] {
+    ask_late(transaction, true, sent);
+    return;
+  }
+  const BankAccess access = banks_.write(transaction.address, transaction.bytes, sent);
   client.write_done(transaction.port, access.ready);
 }
 

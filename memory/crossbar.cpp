@@ -1,30 +1,45 @@
 #include "memory/crossbar.h"
 
+#include "memory/late_dram.h"
+
 namespace marti::memory {
 
 using sim::add_ticks;
 using sim::Ticks;
 
 Crossbar::Crossbar(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site)
-    : site_(site),
+    : Banked(banks, site, config.clock.cycles(config.latency_cycles)),
       beats_(config),
       latency_(config.clock.cycles(config.latency_cycles)),
-      bank_access_(banks.clock.cycles(banks.access_cycles)),
-      banks_(banks),
-      links_(banks.count) {
-  statistics_.links = banks.count;
+      links_(banks_.count()) {
+  statistics_.links = banks_.count();
 }
 
 Ticks Crossbar::unloaded_read(std::uint32_t bytes) const {
-  return add_ticks(add_ticks(add_ticks(latency_, bank_access_), beats_(bytes)), latency_);
+  return add_ticks(add_ticks(add_ticks(latency_, banks_.unloaded_read(bytes)), beats_(bytes)), latency_);
 }
 
 void Crossbar::read(const Transaction& transaction) {
   ++statistics_.reads;
   statistics_.bytes += transaction.bytes;
-  const std::uint32_t bank = banks_.bank_of(transaction.address);
   const Ticks arrival = add_ticks(site_.engine.now(), latency_);
-  const BankAccess access = banks_.read(transaction.address, arrival);
+  if (late()) {
+    ask_late(transaction, false, arrival);
+    return;
+  }
+  send_data(transaction, arrival, banks_.read(transaction.address, transaction.bytes, arrival));
+}
+
+void Crossbar::late_read(const LateAccess& read) {
+  send_data(read.transaction, read.arrival, {read.start, read.ready});
+}
+
+Ticks Crossbar::end_of_write(const LateAccess& write) const {
+  return add_ticks(write.ready, beats_(write.transaction.bytes));
+}
+
+void Crossbar::send_data(const Transaction& transaction, Ticks arrival, const BankAccess& access) {
+  const std::uint32_t bank = banks_.bank_of(transaction.address);
   const Ticks data = beats_(transaction.bytes);
   const Ticks start = links_[bank].begin(access.ready);
   const Ticks sent = add_ticks(start, data);
@@ -42,7 +57,11 @@ void Crossbar::write(const Transaction& transaction) {
   statistics_.bytes += transaction.bytes;
   statistics_.waits.add(0);
   const Ticks arrival = add_ticks(site_.engine.now(), latency_);
-  const BankAccess access = banks_.write(transaction.address, arrival);
+  if (late()) {
+    ask_late(transaction, true, arrival);
+    return;
+  }
+  const BankAccess access = banks_.write(transaction.address, transaction.bytes, arrival);
   site_.client.write_done(transaction.port, add_ticks(access.ready, beats_(transaction.bytes)));
 }
 

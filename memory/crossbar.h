@@ -1,7 +1,7 @@
 // A crossbar: a link and a queue for each bank, so only transactions of the same bank wait for each other.
 #pragma once
 
-#include "memory/interconnect.h"
+#include "memory/banked.h"
 #include "memory/link.h"
 
 namespace marti::memory {
@@ -10,27 +10,23 @@ namespace marti::memory {
 /// over the bank's own link in the order of the requests, and arrive `latency_cycles` after their last beat.
 /// A write is queued at the bank when its address arrives; its data follow after the bank's access, over a
 /// separate path that is never the bottleneck and is not counted as a link.
-class Crossbar final : public Interconnect {
+class Crossbar final : public Banked {
  public:
   Crossbar(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site);
 
   void read(const Transaction& transaction) override;
   void write(const Transaction& transaction) override;
   [[nodiscard]] const InterconnectStatistics& statistics() const override { return statistics_; }
-  [[nodiscard]] const std::vector<BankStatistics>& bank_statistics() const override {
-    return banks_.statistics();
-  }
-  [[nodiscard]] const SharedCacheStatistics* cache_statistics() const override {
-    return banks_.cache_statistics();
-  }
   [[nodiscard]] sim::Ticks unloaded_read(std::uint32_t bytes) const override;
 
  private:
-  InterconnectSite site_;
+  void late_read(const LateAccess& read) override;
+  [[nodiscard]] sim::Ticks end_of_write(const LateAccess& write) const override;
+  // Sends what the bank has read over its link. Calls for one bank must come in the order of the ends.
+  void send_data(const Transaction& transaction, sim::Ticks arrival, const BankAccess& access);
+
   BeatTime beats_;
   sim::Ticks latency_;
-  sim::Ticks bank_access_;
-  Banks banks_;
   std::vector<Link> links_;  // read data from each bank
   InterconnectStatistics statistics_;
 };

@@ -115,6 +115,8 @@ class Interconnect {
   [[nodiscard]] virtual const InterconnectStatistics& statistics() const = 0;
   /// Statistics of the banks; empty where no banks are modelled.
   [[nodiscard]] virtual const std::vector<BankStatistics>& bank_statistics() const = 0;
+  /// Statistics of each channel of a DRAM memory; empty where there is none.
+  [[nodiscard]] virtual std::vector<DramStatistics> dram_statistics() const { return {}; }
   /// The destinations of accesses to a distributed memory; null for all others.
   [[nodiscard]] virtual const DistributedStatistics* distribution() const { return nullptr; }
   [[nodiscard]] virtual const NetworkStatistics* network_statistics() const { return nullptr; }

@@ -9,13 +9,16 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "memory/record_kind.h"
 
 namespace marti::memory {
 
-enum class NodeOrder : std::uint8_t { breadth_first, depth_first };
+enum class NodeOrder : std::uint8_t { breadth_first, depth_first, treelets };
+inline constexpr std::array<std::string_view, 3> node_order_names = {"breadth_first", "depth_first",
+                                                                     "treelets"};
 
 /// Record sizes in bytes, each at least 1.
 struct LayoutConfig {
@@ -30,6 +33,7 @@ struct LayoutConfig {
   std::uint32_t record_alignment = 4;      ///< a power of two
   std::uint32_t section_alignment = 4096;  ///< a power of two; every section starts on a multiple of it
   NodeOrder node_order = NodeOrder::breadth_first;
+  std::uint32_t treelet_bytes = 4096;  ///< the node records of a treelet take at most so many
 };
 
 /// Number of records in each section; primitives include quadrics.

@@ -104,7 +104,7 @@ StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words, 
     steps.ray[kind] = price(mixes.ray[kind], cycles, 0);
   }
   steps.branch = price(mixes.branch, cycles, read_record(cycles, words.node));
-  steps.leaf = price(mixes.leaf, cycles, read_record(cycles, words.node));
+  steps.leaf = price(mixes.leaf, cycles, accel::walks_bvh(traversal) ? 0 : read_record(cycles, words.node));
   const std::int64_t entry = read_record(cycles, words.entry);
   const std::int64_t primitive = read_record(cycles, words.primitive);
   const std::int64_t quadric = read_record(cycles, words.quadric);

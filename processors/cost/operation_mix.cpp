@@ -139,6 +139,10 @@ class CountingRecorder {
     switch (traversal) {
       case accel::Traversal::octree:
       case accel::Traversal::bsp_recursive:
+      case accel::Traversal::bvh_two:
+      case accel::Traversal::bvh_four:
+      case accel::Traversal::bvh_eight:
+      case accel::Traversal::bvh_eight_quantised:
         return &Buckets::branch;  // the walk of its parent continues
       case accel::Traversal::bsp_push_point:
       case accel::Traversal::grid:
@@ -356,6 +360,38 @@ const OperationMixes& operation_mixes(accel::Traversal traversal) {
                     .branch = {},
                     .leaf = {},
                     .test = {18014, 12011, 0, 0, 3328, 0}}),
+      with_shading({.ray = {{{32207, 35790, 7000, 1000, 39305, 8166},
+                             {36000, 34000, 6000, 0, 44000, 6473},
+                             {44182, 55183, 7000, 1000, 50000, 7792},
+                             {45000, 59000, 7000, 2000, 50000, 7003},
+                             {52146, 66428, 8000, 3000, 51282, 40279}}},
+                    .branch = {12037, 12039, 0, 0, 15188, 1063},
+                    .leaf = {},
+                    .test = {21123, 14429, 347, 0, 9159, 0}}),
+      with_shading({.ray = {{{32207, 35790, 7000, 1000, 39305, 8166},
+                             {36000, 34000, 6000, 0, 44000, 6473},
+                             {44182, 55183, 7000, 1000, 50000, 7792},
+                             {45000, 59000, 7000, 2000, 50000, 7003},
+                             {52146, 66428, 8000, 3000, 51282, 40279}}},
+                    .branch = {24038, 24042, 0, 0, 29525, 1209},
+                    .leaf = {},
+                    .test = {21260, 14536, 362, 0, 9421, 0}}),
+      with_shading({.ray = {{{32207, 35790, 7000, 1000, 39305, 8166},
+                             {36000, 34000, 6000, 0, 44000, 6473},
+                             {44182, 55183, 7000, 1000, 50000, 7792},
+                             {45000, 59000, 7000, 2000, 50000, 7003},
+                             {52146, 66428, 8000, 3000, 51282, 40279}}},
+                    .branch = {46224, 46230, 0, 0, 55658, 1306},
+                    .leaf = {},
+                    .test = {21274, 14546, 364, 0, 9447, 0}}),
+      with_shading({.ray = {{{32207, 35790, 7000, 1000, 39305, 8166},
+                             {36000, 34000, 6000, 0, 44000, 6473},
+                             {44182, 55183, 7000, 1000, 50000, 7792},
+                             {45000, 59000, 7000, 2000, 50000, 7003},
+                             {52146, 66428, 8000, 3000, 51282, 40279}}},
+                    .branch = {52196, 52203, 0, 0, 55652, 52647},
+                    .leaf = {},
+                    .test = {21195, 14485, 355, 0, 9298, 0}}),
   };
   return table[static_cast<std::size_t>(traversal)];
 }

@@ -36,12 +36,12 @@ struct OperationMix {
 /// One mix for each kind of step that StepCycles prices. What belongs to which:
 ///   ray     making the ray (camera arithmetic, or the secondary direction and its origin out of the
 ///           surface), setting up kernel and traversal, and the background where it misses
-///   branch  octree, recursive BSP tree: everything done between one node visit and the next: ordering
-///           children, clipping, popping. Pushed points: choosing a branch's half on the way from the root.
-///           Grid: nothing, its header is read once
+///   branch  octree, recursive BSP tree, bounding volume hierarchy: everything done between one node visit
+///           and the next: ordering children, clipping or testing boxes, popping. Pushed points: choosing a
+///           branch's half on the way from the root. Grid: nothing, its header is read once
 ///   leaf    octree, recursive BSP tree: nothing but reading it; its record's fetch is priced from the
-///           layout. Pushed points: finding the face by which the leaf is left, and the point beyond it.
-///           Grid: the step to the next cell
+///           layout. Bounding volume hierarchy: nothing, it has no record. Pushed points: finding the face by
+///           which the leaf is left, and the point beyond it. Grid: the step to the next cell
 ///   lookup  comparing a mailbox with the ray's number
 ///   test    one run of the kernel for triangles; sphere_test and cone_test: one of the kernels for spheres
 ///           and for cylinders and cones
@@ -71,11 +71,11 @@ struct OperationMixes {
 };
 
 /// The table that step_cycles prices. Measured on teapot:12 in an octree or a BSP tree (max_objects 9,
-/// max_level 12) or a grid (density 4), 128 x 128, depth 2; brute force on teapot:4, 32 x 32; refraction on
-/// gears:2, which has glass; scattered rays, shading and lights of paths on teapot:12 under an emissive
-/// square; the tests of spheres, cylinders and cones on lattice:4 in the octree; the texel
-/// on a textured square. Sampling the texel and converting the pixel are counted by hand (operation_mix.cpp
-/// says how).
+/// max_level 12), a grid (density 4) or a bounding volume hierarchy (at most 3 in a leaf), 128 x 128, depth
+/// 2; brute force on teapot:4, 32 x 32; refraction on gears:2, which has glass; scattered rays, shading and
+/// lights of paths on teapot:12 under an emissive square; the tests of spheres, cylinders and cones on
+/// lattice:4 in the octree; the texel on a textured square. Sampling the texel and converting the pixel are
+/// counted by hand (operation_mix.cpp says how).
 [[nodiscard]] const OperationMixes& operation_mixes(accel::Traversal traversal);
 
 /// The result of a measurement: the means, and how many steps they are means of.

@@ -93,6 +93,9 @@ std::int64_t of_memory(const EnergyUnits& units, const EnergyCounts& counts) {
   Sum sum("the energy of memory");
   sum.add(units.memory_read, counts.memory_reads);
   sum.add(units.memory_write, counts.memory_writes);
+  sum.add(units.dram_activation, counts.dram.activations);
+  sum.add(units.dram_read, counts.dram.read_bursts);
+  sum.add(units.dram_write, counts.dram.write_bursts);
   return sum.in_units_of(attojoules_a_femtojoule);
 }
 

@@ -6,6 +6,7 @@
 
 #include "accel/traversal.h"
 #include "memory/cache.h"
+#include "memory/dram_statistics.h"
 #include "processors/cost/accounting.h"
 #include "processors/machine/machine_config.h"
 #include "processors/node/build_result.h"
@@ -30,6 +31,7 @@ struct EnergyCounts {
   std::int64_t hop_bytes = 0;           ///< over networks: bytes times links
   std::int64_t memory_reads = 0;        ///< of banks and of nodes' own memories; each reads a line
   std::int64_t memory_writes = 0;
+  memory::DramStatistics dram;  ///< of a memory of DRAM, whose accesses are not among the two before
   sim::Ticks end = 0;
 };
 

@@ -139,12 +139,16 @@ EnergyUnits energy_units(const MachineConfig& config) {
   units.hop_byte = switched(energy, "wire", figures.wire * figures.hop_length * bits);
   // Memory has a supply of its own.
   const Wide line = config.reference_bytes();
-  const auto of_memory = [&](std::string_view key, double of_byte) {
-    return whole("memory_access", figures.memory_access, attojoules_a_picojoule) +
-           line * whole(key, of_byte, attojoules_a_picojoule);
-  };
-  units.memory_read = of_memory("memory_read", figures.memory_read);
-  units.memory_write = of_memory("memory_write", figures.memory_write);
+  const Wide access = whole("memory_access", figures.memory_access, attojoules_a_picojoule);
+  const Wide byte_read = whole("memory_read", figures.memory_read, attojoules_a_picojoule);
+  const Wide byte_written = whole("memory_write", figures.memory_write, attojoules_a_picojoule);
+  units.memory_read = access + line * byte_read;
+  units.memory_write = access + line * byte_written;
+  if (config.banks.dram) {
+    units.dram_activation = access;
+    units.dram_read = config.banks.dram->burst_bytes * byte_read;
+    units.dram_write = config.banks.dram->burst_bytes * byte_written;
+  }
   constexpr double square = square_micrometres_a_square_millimetre;
   units.node_area += whole("node_area", figures.node_area, square) +
                      Wide{config.contexts - 1} * whole("context_area", figures.context_area, square);

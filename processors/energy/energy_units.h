@@ -32,6 +32,9 @@ struct EnergyUnits {
   std::int64_t hop_byte = 0;
   Wide memory_read = 0;   ///< of one access, with the bytes of a line
   Wide memory_write = 0;  ///< of one access, with the bytes of a line
+  Wide dram_activation = 0;
+  Wide dram_read = 0;     ///< of one burst
+  Wide dram_write = 0;    ///< of one burst
   Wide node_area = 0;     ///< with its caches
   Wide cluster_area = 0;  ///< beside its nodes
   std::int64_t leakage = 0;

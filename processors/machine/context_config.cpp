@@ -32,7 +32,8 @@ void check_contexts(const MachineConfig& config) {
 
 void check_prefetch(const PrefetchConfig& config, accel::Traversal traversal) {
   if (config.children && (traversal == accel::Traversal::grid || traversal == accel::Traversal::none)) {
-    throw sim::KeyError("prefetch.children", "only an octree or a bsp tree has branches with children");
+    throw sim::KeyError("prefetch.children",
+                        "only an octree, a bsp tree or a bvh has branches with children");
   }
 }
 

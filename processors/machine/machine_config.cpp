@@ -15,11 +15,33 @@ void check_order(const MachineConfig& config) {
   if (config.build.sharing != Sharing::shared || !writes_done_later(config)) {
     return;
   }
-  throw sim::KeyError(
-      "build.sharing",
-      "a read may overtake another node's write on a bus that is not granted first come first "
-      "served, so nodes cannot share a tree that is built; use interconnect.arbitration = \"fifo\", or "
-      "\"private\" or \"none\"");
+  throw sim::KeyError("build.sharing",
+                      "a read may overtake another node's write on a bus that is not granted first come "
+                      "first served, and in a "
+                      "memory that is not, so nodes cannot share a tree that is built; use "
+                      "interconnect.arbitration = \"fifo\" "
+                      "and dram.policy = \"fcfs\", or \"private\" or \"none\"");
+}
+
+void check_dram(const MachineConfig& config) {
+  if (!config.banks.dram) {
+    return;
+  }
+  memory::check(*config.banks.dram, config.reference_bytes());
+  if (config.banks.dram->policy != memory::DramPolicy::frfcfs) {
+    return;
+  }
+  if (config.interconnect.kind == memory::InterconnectKind::bus &&
+      config.interconnect.mode == memory::BusMode::held) {
+    throw sim::KeyError("dram.policy",
+                        "\"frfcfs\" has nothing to choose from on a bus that each read keeps until its data "
+                        "have come; use interconnect.mode = \"split\", or \"fcfs\"");
+  }
+  if (config.l2.sharing == SecondLevel::shared) {
+    throw sim::KeyError("dram.policy",
+                        "a shared second level must know at a miss when its line will come, and with "
+                        "\"frfcfs\" that depends on later accesses; use \"fcfs\", or private second levels");
+  }
 }
 
 void check_distribution(const MachineConfig& config) {
@@ -47,7 +69,8 @@ void check_distribution(const MachineConfig& config) {
 bool writes_done_later(const MachineConfig& config) {
   return config.placement == Placement::distributed ||
          (config.interconnect.kind == memory::InterconnectKind::bus &&
-          config.interconnect.arbitration != memory::Arbitration::fifo);
+          config.interconnect.arbitration != memory::Arbitration::fifo) ||
+         (config.banks.dram && config.banks.dram->policy == memory::DramPolicy::frfcfs);
 }
 
 MachineConfig one_node_of(const MachineConfig& config) {
@@ -89,6 +112,7 @@ void check(const MachineConfig& config) {
       config.local.width == 0) {
     throw sim::KeyError("local.width", "local memory must be at least one byte wide");
   }
+  check_dram(config);
   if (config.cache.organisation == CacheOrganisation::unified) {
     (void)sim::KeyError::reported_under("cache.size", [&] { return memory::shape_of(config.cache.cache); });
   }

@@ -11,14 +11,22 @@ BankCourses::BankCourses(const memory::BankConfig& config, const memory::Interco
       interleave_(config.interleave),
       access_(config.clock.cycles(config.access_cycles)),
       busy_(config.clock.cycles(config.busy_cycles)),
-      banks_(config.count) {
+      banks_(config.banks()) {
+  if (config.dram) {
+    dram_.emplace(*config.dram);
+  }
   if (config.cache) {
     hit_ = config.cache->clock.cycles(config.cache->hit_cycles);
     line_ = config.cache->cache.line;
   }
 }
 
-PathTip BankCourses::access(memory::Address address, const PathTip& arriving, const PathOwner& owner) {
+PathTip BankCourses::access(memory::Address address, std::uint32_t bytes, bool write, const PathTip& arriving,
+                            const PathOwner& owner) {
+  if (dram_) {
+    const sim::Ticks ready = dram_->access(address, bytes, write, arriving.end()).ready;
+    return pieces_.append(arriving, ready - arriving.end(), owner, PathKind::bank_access);
+  }
   PathTip& bank = banks_[bank_of(address)];
   const PathTip before = later_of(arriving, bank);
   PathTip ready = pieces_.append(before, access_, owner, PathKind::bank_access);
@@ -27,14 +35,15 @@ PathTip BankCourses::access(memory::Address address, const PathTip& arriving, co
   return ready;
 }
 
-PathTip BankCourses::read(memory::Address address, const PathTip& arriving, const PathOwner& owner) {
+PathTip BankCourses::read(memory::Address address, std::uint32_t bytes, const PathTip& arriving,
+                          const PathOwner& owner) {
   if (!hit_) {
-    return access(address, arriving, owner);
+    return access(address, bytes, false, arriving, owner);
   }
   const memory::Address line = address / line_;
   const std::int64_t hits = memory_.cache_statistics()->lookups.hits;
   if (hits == hits_) {
-    PathTip ready = access(address, arriving, owner);
+    PathTip ready = access(address, bytes, false, arriving, owner);
     if (coming_.size() >= most_coming_) {
       forget_arrived(arriving.end());
       most_coming_ = std::max<std::size_t>(64, 2 * coming_.size());

@@ -44,19 +44,19 @@ class CrossbarCourse final : public MemoryCourse {
         beats_(config.interconnect),
         latency_(config.interconnect.clock.cycles(config.interconnect.latency_cycles)),
         banks_(banks_of(config), memory, pieces),
-        links_(banks_of(config).count) {}
+        links_(banks_of(config).banks()) {}
   void ask(const PathRequest& request) override { request_ = request; }
   PathTip read_done(std::uint32_t /*port*/) override {
     const auto& [transaction, asking, owner, write] = request_;
     PathTip& link = links_[banks_.bank_of(transaction.address)];
-    const PathTip ready = banks_.read(transaction.address, cross(asking), owner);
+    const PathTip ready = banks_.read(transaction.address, transaction.bytes, cross(asking), owner);
     link = pieces_.append(later_of(ready, link), beats_(transaction.bytes), owner, PathKind::transfer);
     return cross(link);
   }
   PathTip write_done(std::uint32_t /*port*/) override {
     const auto& [transaction, asking, owner, write] = request_;
-    return pieces_.append(banks_.access(transaction.address, cross(asking), owner), beats_(transaction.bytes),
-                          owner, PathKind::transfer);
+    return pieces_.append(banks_.write(transaction.address, transaction.bytes, cross(asking), owner),
+                          beats_(transaction.bytes), owner, PathKind::transfer);
   }
 
  private:
@@ -118,7 +118,7 @@ class BusCourse final : public MemoryCourse {
     const auto [transaction, asking, owner, write] = take_request(port, true);
     bus_ = pieces_.append(later_of(asking, bus_), sim::add_ticks(address_, beats_(transaction.bytes)), owner,
                           PathKind::transfer);
-    return banks_.access(transaction.address, bus_, owner);
+    return banks_.write(transaction.address, transaction.bytes, bus_, owner);
   }
 
  private:
@@ -141,7 +141,7 @@ class BusCourse final : public MemoryCourse {
     granting_ = nobody;
     PathRequest request = take_request(port, false);
     bus_ = pieces_.append(later_of(request.asking, bus_), address_, request.owner, PathKind::transfer);
-    request.asking = banks_.read(request.transaction.address, bus_, request.owner);
+    request.asking = banks_.read(request.transaction.address, request.transaction.bytes, bus_, request.owner);
     ports_[port].under_way = std::move(request);
   }
 
@@ -182,7 +182,7 @@ std::uint64_t course_bytes(const MachineConfig& config) {
   const std::uint64_t links = memory::network_bytes(config.network, config.nodes) / sizeof(Ticks);
   const std::uint64_t places = config.placement == Placement::distributed
                                    ? config.nodes + links
-                                   : 2 * std::uint64_t{banks_of(config).count};
+                                   : 2 * std::uint64_t{banks_of(config).banks()};
   return config.all_nodes() * (config.ports_of_node() * bytes_a_port + config.write_buffer * bytes_a_write) +
          config.clusters * places * sizeof(PathTip);
 }

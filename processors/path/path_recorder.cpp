@@ -29,6 +29,11 @@ void check_critical_path(const MachineConfig& config) {
         "it is recorded with machine.scheme = \"image\" only: where rays move, a node waits for other "
         "nodes' rays, and which ray it was that it waited for is not recorded");
   }
+  if (config.banks.dram && config.banks.dram->policy == memory::DramPolicy::frfcfs) {
+    throw sim::KeyError(key,
+                        "with dram.policy = \"frfcfs\" an access waits for whatever is chosen before it, "
+                        "which is not recorded; use \"fcfs\"");
+  }
 }
 
 void PathRecorder::begin(const ReplayInput& input) {

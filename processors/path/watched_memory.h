@@ -29,6 +29,9 @@ class WatchedMemory final : public memory::Interconnect, private memory::Interco
   [[nodiscard]] const std::vector<memory::BankStatistics>& bank_statistics() const override {
     return memory_->bank_statistics();
   }
+  [[nodiscard]] std::vector<memory::DramStatistics> dram_statistics() const override {
+    return memory_->dram_statistics();
+  }
   [[nodiscard]] const memory::DistributedStatistics* distribution() const override {
     return memory_->distribution();
   }

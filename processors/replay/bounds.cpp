@@ -115,8 +115,9 @@ FrameBounds frame_bounds(const MachineConfig& config, const MachineResult& resul
   }
   bounds.mean_work = workers > 0 ? all / workers : 0;
   // Between two accesses a bank is busy for its busy time; the last access ends with its data instead. A
-  // distributed memory is busy for exactly as long as its accesses take.
-  const sim::Ticks last = config.placement == Placement::distributed
+  // distributed memory is busy for exactly as long as its accesses take, and DRAM for as long as it moves
+  // data.
+  const sim::Ticks last = config.placement == Placement::distributed || config.banks.dram
                               ? 0
                               : config.banks.clock.cycles(config.banks.access_cycles) -
                                     config.banks.clock.cycles(config.banks.busy_cycles);
@@ -144,7 +145,8 @@ void check_bounds(const MachineConfig& config, const MachineResult& result) {
 }
 
 std::optional<Prediction> predict(const MachineConfig& config, const MachineResult& result) {
-  if (config.ports_of_node() > 1 || config.placement == Placement::distributed) {
+  // How long a DRAM bank takes depends on the accesses before, so it is no station with a demand of its own.
+  if (config.ports_of_node() > 1 || config.placement == Placement::distributed || config.banks.dram) {
     return std::nullopt;
   }
   std::optional<Prediction> longest;

@@ -49,7 +49,7 @@ struct Prediction {
 
 /// The prediction for the cluster with the longest predicted frame (by mean values). std::nullopt when no
 /// node reads over an interconnect, the frame takes no time, nodes have several reads outstanding (contexts,
-/// prefetching), or the database is distributed.
+/// prefetching), the database is distributed, or the memory is one of DRAM.
 [[nodiscard]] std::optional<Prediction> predict(const MachineConfig& config, const MachineResult& result);
 
 }  // namespace marti::processors

@@ -43,6 +43,14 @@ void check_distributed(const ClusterResult& cluster) {
   require(served == traffic.reads + traffic.writes, "every access is served by one memory");
 }
 
+void check_dram(const ClusterResult& cluster) {
+  for (const memory::DramStatistics& channel : cluster.dram) {
+    require(channel.row_hits + channel.row_misses + channel.row_conflicts ==
+                channel.read_bursts + channel.write_bursts,
+            "every burst of DRAM finds its row open, another row or none");
+  }
+}
+
 void check_contexts(const MachineConfig& config, const MachineResult& result) {
   const sim::Ticks each = config.clock.cycles(config.switch_cycles);
   for (std::size_t node = 0; node < result.contexts.nodes.size(); ++node) {
@@ -88,6 +96,7 @@ void check_conservation(const WorkLog& log, const MachineConfig& config, const M
       bank_waits = sim::add_ticks(bank_waits, bank.waits.sum);
     }
     check_distributed(cluster);
+    check_dram(cluster);
   }
   const BuildCounts built = result.build.counts();
   const bool own_memories = config.placement == Placement::replicated || config.scheme == Scheme::space;

@@ -50,6 +50,16 @@ EnergyCounts energy_counts(const WorkLog& log, const MachineConfig& config, cons
   // its branch.
   const std::int64_t served = config.l2.sharing == SecondLevel::shared ? counts.l2.hits : 0;
   counts.memory_reads = reads_beyond_caches(config, result) + counts.build.locks - served;
+  for (const ClusterResult& cluster : result.clusters) {
+    for (std::size_t channel = 0; channel < cluster.dram.size(); ++channel) {
+      sim::merge(counts.dram, cluster.dram[channel]);
+      counts.memory_reads -= cluster.banks[channel].accesses;
+    }
+    // Of the accesses of DRAM, these are not among the reads.
+    const std::int64_t writes = cluster.dram.empty() ? 0 : cluster.interconnect.writes;
+    counts.memory_reads += writes;
+    counts.memory_writes -= writes;
+  }
   counts.end = result.end;
   return counts;
 }

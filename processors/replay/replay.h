@@ -39,6 +39,7 @@ struct ClusterResult {
   memory::InterconnectStatistics interconnect;
   std::vector<memory::BankStatistics> banks;
   std::optional<DistributedResult> distributed{};
+  std::vector<memory::DramStatistics> dram{};  ///< of each channel, if the memory is one of DRAM
 };
 
 /// A timed frame. All figures are integers; ratios are computed where they are printed.

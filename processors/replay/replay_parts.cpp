@@ -32,6 +32,7 @@ MachineResult common_result(const MachineConfig& config, const sim::Engine& engi
   result.nodes = nodes.statistics();
   for (const auto& interconnect : interconnects) {
     result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
+    result.clusters.back().dram = interconnect->dram_statistics();
     if (const memory::DistributedStatistics* const accesses = interconnect->distribution()) {
       result.clusters.back().distributed = {*accesses, *interconnect->network_statistics()};
     }

@@ -13,7 +13,7 @@ void refuse_without_work(const accel::Topology& topology) {
   if (topology.work.size() != topology.nodes.size()) {
     throw sim::KeyError("build.sharing",
                         "only an octree or a bsp tree is built by splitting nodes; with structure.kind = "
-                        "\"grid\" or \"none\" it must be \"given\"");
+                        "\"grid\", \"bvh\" or \"none\" it must be \"given\"");
   }
 }
 

@@ -18,6 +18,7 @@
 #include "processors/walk/lines_under_way.h"
 #include "processors/walk/log_cursor.h"
 #include "processors/walk/node_caches.h"
+#include "processors/walk/node_order.h"
 #include "processors/walk/replay_input.h"
 #include "processors/walk/visit_plan.h"
 
@@ -418,6 +419,9 @@ class LogWalker {
                   Stop& stop) {
     note_node(cursor, tree_node);
     const std::uint32_t record = rank_ == nullptr ? tree_node : rank_[tree_node];
+    if (record == no_record) {
+      return true;
+    }
     return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::node, record, node_bytes_, stop);
   }
 

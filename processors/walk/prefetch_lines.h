@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "processors/walk/node_order.h"
 #include "processors/walk/replay_input.h"
 
 namespace marti::processors {
@@ -50,8 +51,9 @@ class PrefetchLines {
         node.count, node_bytes_, shift_,
         [&](std::uint32_t number) -> std::optional<memory::Address> {
           const std::uint32_t child = node.first + number;
-          return input_.layout.address(memory::RecordKind::node,
-                                       input_.node_rank.empty() ? child : input_.node_rank[child]);
+          const std::uint32_t record = input_.node_rank.empty() ? child : input_.node_rank[child];
+          return record == no_record ? std::nullopt
+                                     : std::optional(input_.layout.address(memory::RecordKind::node, record));
         },
         visit);
   }

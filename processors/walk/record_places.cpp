@@ -8,8 +8,22 @@
 
 namespace marti::processors {
 
+namespace {
+
+// Number of nodes that have a record in a tree that is given.
+std::uint64_t node_records(const WorkLog& log) {
+  const std::vector<accel::TopologyNode>& nodes = log.topology.nodes;
+  if (!accel::walks_bvh(log.traversal)) {
+    return nodes.size();
+  }
+  return static_cast<std::uint64_t>(
+      std::count_if(nodes.begin(), nodes.end(), [](const accel::TopologyNode& node) { return !node.leaf; }));
+}
+
+}  // namespace
+
 memory::Layout layout_of(const WorkLog& log, const MachineConfig& config, std::optional<TreePlan>& plan) {
-  const memory::RecordCounts counts = {plan ? plan->initial_nodes() : log.topology.nodes.size(),
+  const memory::RecordCounts counts = {plan ? plan->initial_nodes() : node_records(log),
                                        plan ? plan->initial_entries() : log.topology.entries.size(),
                                        log.primitives,
                                        log.materials,
@@ -27,8 +41,7 @@ memory::Layout layout_of(const WorkLog& log, const MachineConfig& config, std::o
 }
 
 std::vector<std::uint32_t> node_ranks(const WorkLog& log, const MachineConfig& config) {
-  return config.layout.node_order == memory::NodeOrder::depth_first ? depth_first_rank(log.topology)
-                                                                    : std::vector<std::uint32_t>{};
+  return node_rank(log.topology, !accel::walks_bvh(log.traversal), config.layout);
 }
 
 }  // namespace marti::processors

@@ -17,7 +17,7 @@ namespace marti::processors {
 [[nodiscard]] memory::Layout layout_of(const WorkLog& log, const MachineConfig& config,
                                        std::optional<TreePlan>& plan);
 
-/// The record number of each tree node; empty when the record number is the node number.
+/// The record number of each tree node, or no_record (node_order.h); empty when it is the node number.
 [[nodiscard]] std::vector<std::uint32_t> node_ranks(const WorkLog& log, const MachineConfig& config);
 
 }  // namespace marti::processors

@@ -25,7 +25,7 @@ struct ReplayInput {
   const MachineConfig& config;
   const memory::Layout& layout;
   const PacketList& packets;
-  std::span<const std::uint32_t> node_rank;  ///< record number of each tree node; empty: the node number
+  std::span<const std::uint32_t> node_rank;  ///< see node_ranks (record_places.h)
   bool step_by_step = false;                 ///< an event for every reference
   const TreePlan* tree = nullptr;            ///< how the tree is built; null when it is given
   bool report_built = false;                 ///< report at the end which branches are built

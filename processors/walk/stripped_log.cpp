@@ -180,6 +180,9 @@ std::string StrippedLog::key_of(const MachineConfig& config) {
     add(bytes);
   }
   add(static_cast<unsigned>(layout.node_order));
+  if (layout.node_order == memory::NodeOrder::treelets) {
+    add(layout.treelet_bytes);
+  }
   const OperationCycles& cost = config.operations;
   for (const std::int64_t cycles : {cost.add, cost.multiply, cost.divide, cost.square_root, cost.compare,
                                     cost.integer, cost.load, cost.store, config.cache.hit_cycles}) {

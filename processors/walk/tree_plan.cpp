@@ -56,11 +56,9 @@ std::uint32_t TreePlan::listed(std::uint32_t node) const {
 void TreePlan::number_records(const MachineConfig& config) {
   std::vector<std::uint32_t> order(places_.size());
   std::iota(order.begin(), order.end(), 0U);
-  if (config.layout.node_order == memory::NodeOrder::depth_first) {
-    const std::vector<std::uint32_t> rank = depth_first_rank(topology_);
-    for (std::uint32_t node = 0; node < rank.size(); ++node) {
-      order[rank[node]] = node;
-    }
+  const std::vector<std::uint32_t> rank = node_rank(topology_, true, config.layout);
+  for (std::uint32_t node = 0; node < rank.size(); ++node) {
+    order[rank[node]] = node;
   }
   for (const std::uint32_t node : order) {
     if (places_[node].home == none) {

@@ -1,5 +1,6 @@
 #include "processors/walk/visit_plan.h"
 
+#include "processors/walk/node_order.h"
 #include "sim/error.h"
 
 namespace marti::processors {
@@ -105,7 +106,9 @@ VisitPlan plan_visits(const WorkLog& log, const memory::Layout& layout, std::spa
     if (node.leaf) {
       planner.count(VisitCount::leaf);
     }
-    planner.read(RecordKind::node, rank.empty() ? number : rank[number], 1, VisitCount::node_line);
+    if (const std::uint32_t record = rank.empty() ? number : rank[number]; record != no_record) {
+      planner.read(RecordKind::node, record, 1, VisitCount::node_line);
+    }
     if (node.leaf && node.count != 0) {
       planner.count(VisitCount::list);
       planner.read(RecordKind::list, node.first, node.count, VisitCount::list_line);

@@ -120,6 +120,12 @@ class Planner {
     grid.grid_match = accel::GridMatch::density;
     add_exact("grid", "grid", grid);
     add_exact("grid, mailboxes", "grid", grid, true);
+    for (std::size_t node = 0; node < accel::bvh_node_names.size(); ++node) {
+      accel::StructureOptions options = own;
+      options.bvh.node = static_cast<accel::BvhNodeKind>(node);
+      options.bvh.max_objects = std::min(own.bvh.max_objects, accel::bvh_largest_leaf(options.bvh.node));
+      add_exact(fmt::format("bvh, {} children", accel::bvh_node_names[node]), "bvh", options);
+    }
     const double tests = static_cast<double>(scene_.triangles.size() + scene_.quadrics.size()) *
                          plan_.base.width * plan_.base.height * plan_.base.samples;
     if (tests <= most_tests) {

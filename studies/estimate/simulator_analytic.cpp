@@ -185,6 +185,9 @@ void check_analytic(const MachineConfig& machine) {
                                                                                 : "cache.replacement",
            "unified LRU caches");
   }
+  if (machine.banks.dram) {
+    refuse("memory.model", "memory.model = \"fixed\", whose accesses all take the same time,");
+  }
   if (machine.interconnect.kind == memory::InterconnectKind::crossbar ||
       (machine.interconnect.kind == memory::InterconnectKind::bus &&
        machine.interconnect.arbitration != memory::Arbitration::fifo)) {

@@ -98,14 +98,15 @@ void add_memory(FigureParts& parts, const MachineTotals& totals) {
             only(totals.interconnect.has_value(), totals.most_interconnect_busy));
   parts.add_all("interconnect_wait_", "waits for the interconnects", totals.interconnect_waits);
   const bool banks = totals.bank.has_value();
-  parts.add(
-      "banks",
-      {"1", "banks of all clusters; distributed memory: the nodes' memories", Merge::sum, Better::neither},
-      only(banks, totals.banks));
-  parts.add_all("bank_", "all banks (distributed memory: the nodes' memories)", totals.bank);
+  parts.add("banks",
+            {"1", "banks of all clusters; distributed memory: the nodes' memories; DRAM: channels",
+             Merge::sum, Better::neither},
+            only(banks, totals.banks));
+  parts.add_all("bank_", "all banks (distributed memory: the nodes' memories; DRAM: channels)", totals.bank);
   parts.add("most_bank_busy", {"ps", "busy time of the busiest bank", Merge::largest},
             only(banks, totals.most_bank_busy));
   parts.add_all("bank_wait_", "waits for the banks", totals.bank_waits);
+  parts.add_all("dram_", "DRAM channels", totals.dram);
   parts.add_all("distributed_", "distributed memory", totals.distributed);
   parts.add_all("network_", "networks of all clusters", totals.network);
   parts.add("most_network_busy",

@@ -107,6 +107,19 @@ void add_memory(std::vector<FigureEntry>& all) {
       least(Formula(1.0), own("most_bank_busy") / end));
   add("mean_bank_utilisation", "1", "share of the frame time that the banks are busy", Better::lower,
       least(Formula(1.0), own("bank_busy") / (end * own("banks"))));
+  const Formula bursts = own("dram_row_hits") + own("dram_row_misses") + own("dram_row_conflicts");
+  add("dram_row_hit_ratio", "1", "of the bursts of DRAM, those that found their row open", Better::higher,
+      own("dram_row_hits") / bursts);
+  add("dram_row_conflict_ratio", "1", "of the bursts of DRAM, those that found another row open",
+      Better::lower, own("dram_row_conflicts") / bursts);
+  const Formula channel_time = end * own("banks");
+  add("dram_refresh_share", "1",
+      "share of the frame time for which a channel's oldest access waits for a refresh", Better::lower,
+      own("dram_refresh_stall") / channel_time);
+  add("dram_queue_length", "1", "mean number of accesses of a channel that have not got their data commands",
+      Better::lower, own("dram_queued") / channel_time);
+  add("dram_bandwidth", "byte/s", "data that DRAM moves, in whole bursts", Better::higher,
+      own("dram_bytes") * Formula(1e12) / end);
   add("network_utilisation", "1", "share of the frame time that messages hold the busiest cluster's links",
       Better::lower, of_links("network"));
   add("hops_a_message", "1", "links that a message crosses", Better::lower,

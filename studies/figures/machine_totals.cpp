@@ -38,6 +38,9 @@ void add_cluster(MachineTotals& totals, const processors::ClusterResult& cluster
     totals.most_bank_busy = std::max(totals.most_bank_busy, part.busy);
     ++totals.banks;
   }
+  for (const memory::DramStatistics& channel : cluster.dram) {
+    merge_into(totals.dram, channel);
+  }
   if (cluster.distributed) {
     merge_into(totals.distributed, cluster.distributed->accesses);
     add_network(totals, cluster.distributed->network);

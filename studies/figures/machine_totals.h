@@ -13,6 +13,7 @@ namespace marti::studies {
 struct MachineTotals {
   std::optional<memory::InterconnectStatistics> interconnect;
   std::optional<memory::BankStatistics> bank;
+  std::optional<memory::DramStatistics> dram;
   std::optional<memory::DistributedStatistics> distributed;
   std::optional<memory::NetworkStatistics> network;
   std::optional<processors::NodeStatistics> node;

@@ -6,6 +6,7 @@
 
 #include "studies/helps/better.h"
 #include "studies/helps/cache_resources.h"
+#include "studies/helps/dram_resources.h"
 #include "studies/helps/flow_resources.h"
 
 namespace marti::studies {
@@ -85,6 +86,10 @@ void add_shared_memory(const Changer& changer, const MachineConfig& machine, con
     resources.push_back(fewer(changer, Part::interconnect, "interconnect.latency_cycles"));
   }
   if (machine.interconnect.kind == memory::InterconnectKind::ideal) {
+    return;
+  }
+  if (machine.banks.dram) {
+    add_dram(changer, *machine.banks.dram, resources);
     return;
   }
   resources.push_back(faster_clock(changer, Part::banks, "memory.clock"));

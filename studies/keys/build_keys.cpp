@@ -75,6 +75,11 @@ BuildConfig read_build(sim::Config& config) {
     return build;
   }
   const std::string& structure = config.choice_name("structure.kind");
+  if (structure == "bvh") {
+    config.fail("build.sharing",
+                "must be \"given\" with structure.kind = \"bvh\": a split there depends on all primitives "
+                "below it, so the machine would have to sort them all before its first ray");
+  }
   if (structure != "octree" && structure != "bsp") {
     config.fail("build.sharing", "must be \"given\" with structure.kind = \"" + structure +
                                      "\": only an octree or a bsp tree is built by splitting nodes");

@@ -20,9 +20,10 @@ void read_prefetch(sim::Config& config, processors::MachineConfig& machine) {
     prefetch.next_line = config.boolean("prefetch.next_line");
     prefetch.children = config.boolean("prefetch.children");
     const std::string& structure = config.choice_name("structure.kind");
-    if (prefetch.children && structure != "octree" && structure != "bsp") {
-      config.fail("prefetch.children", "must be false with structure.kind = \"" + structure +
-                                           "\": only an octree or a bsp tree has branches with children");
+    if (prefetch.children && structure != "octree" && structure != "bsp" && structure != "bvh") {
+      config.fail("prefetch.children",
+                  "must be false with structure.kind = \"" + structure +
+                      "\": only an octree, a bsp tree or a bvh has branches with children");
     }
     if (prefetch.on()) {
       prefetch.outstanding = static_cast<std::uint32_t>(config.integer("prefetch.outstanding"));

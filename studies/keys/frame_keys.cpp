@@ -29,6 +29,19 @@ void read_tree_limits(const sim::Config& config, accel::StructureOptions& option
   options.bsp.max_level = options.octree.max_level;
 }
 
+void read_bvh(const sim::Config& config, accel::BvhOptions& options) {
+  options.node = config.choice_as<accel::BvhNodeKind>("structure.bvh_children");
+  options.max_objects = static_cast<std::uint32_t>(config.integer("structure.bvh_leaf"));
+  options.bins = static_cast<std::uint32_t>(config.integer("structure.bvh_bins"));
+  const std::uint32_t largest = accel::bvh_largest_leaf(options.node);
+  if (options.max_objects > largest) {
+    config.fail("structure.bvh_leaf", "must be at most " + std::to_string(largest) +
+                                          " with structure.bvh_children = \"" +
+                                          config.choice_name("structure.bvh_children") +
+                                          "\", whose records count a leaf's primitives in three bits");
+  }
+}
+
 void read_structure(sim::Config& config, FrameConfig& frame) {
   accel::StructureOptions& options = frame.structure_options;
   frame.structure = config.choice_name("structure.kind");
@@ -39,6 +52,8 @@ void read_structure(sim::Config& config, FrameConfig& frame) {
   } else if (frame.structure == "bsp") {
     read_tree_limits(config, options);
     options.bsp.walk = config.choice_as<accel::BspWalk>("structure.bsp_walk");
+  } else if (frame.structure == "bvh") {
+    read_bvh(config, options.bvh);
   } else if (frame.structure == "grid") {
     options.grid_match = config.choice_as<accel::GridMatch>("structure.grid_resolution");
     if (options.grid_match == accel::GridMatch::density) {
@@ -106,10 +121,9 @@ void declare_frame_keys(sim::Schema& schema) {
   for (const std::string_view kind : accel::structure_kinds()) {
     kinds.emplace_back(kind);
   }
-  schema.choice(
-      "structure.kind", "octree", kinds,
-      "octree; bsp, a binary tree with the octree's planes; grid of equal cells; or none: every ray tests "
-      "every primitive");
+  schema.choice("structure.kind", "octree", kinds,
+                "octree; bsp, a binary tree with the octree's planes; grid of equal cells; bvh, boxes around "
+                "primitives within boxes (docs/bvh.md); or none: every ray tests every primitive");
   schema.integer("structure.max_objects", 8, {1, 1'000'000}, "primitives",
                  "octree and bsp: a node with more than this many is split");
   schema.integer(
@@ -125,6 +139,13 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.choice("structure.bsp_walk", "recursive", names_of(accel::bsp_walk_names),
                 "bsp: from the root down, or from leaf to leaf by a point pushed through their faces and "
                 "located from the root");
+  schema.choice("structure.bvh_children", "8", names_of(accel::bvh_node_names),
+                "bvh: most children of a node, whose record has 32 bytes for each; 8_quantised: eight in 80 "
+                "bytes");
+  schema.integer("structure.bvh_leaf", 3, {1, accel::bvh_largest_leaf(accel::BvhNodeKind::two)}, "primitives",
+                 "bvh: most that a leaf lists; 8_quantised: at most 3");
+  schema.integer("structure.bvh_bins", 32, {2, accel::bvh_most_bins}, "",
+                 "bvh: intervals of each axis between which the builder looks for a node's best split");
   schema.boolean("structure.mailboxes", false,
                  "no ray tests a primitive twice: each remembers the last ray, in a word of the node's own");
   schema.section("host_machine", "the computer that runs the simulation");
@@ -138,6 +159,7 @@ void give_memory(const sim::MemoryBudget& memory, accel::StructureOptions& optio
   options.octree.memory = memory;
   options.bsp.memory = memory;
   options.grid.memory = memory;
+  options.bvh.memory = memory;
 }
 
 sim::MemoryBudget read_memory(const sim::Config& config, std::uint64_t processes) {

@@ -52,7 +52,7 @@ double memory_cost(const Prices& prices, const MachineConfig& machine) {
     return 0.0;
   }
   const bool crossbar = machine.interconnect.kind == memory::InterconnectKind::crossbar;
-  const double banks = static_cast<double>(machine.banks.count);
+  const double banks = static_cast<double>(machine.banks.banks());
   return prices.interconnect_byte * static_cast<double>(machine.interconnect.width) *
              (crossbar ? banks : 1.0) +
          prices.bank * banks;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "accel/bvh_options.h"
 #include "processors/cost/cost_model.h"
 #include "processors/energy/energy.h"
 #include "sim/config_errors.h"
@@ -16,6 +17,7 @@
 #include "studies/keys/cache_detail_keys.h"
 #include "studies/keys/combination_keys.h"
 #include "studies/keys/context_keys.h"
+#include "studies/keys/dram_keys.h"
 #include "studies/keys/energy_keys.h"
 #include "studies/keys/flow_keys.h"
 #include "studies/keys/key_parts.h"
@@ -83,7 +85,7 @@ void declare_node(Schema& schema) {
 void declare_memory(Schema& schema) {
   schema.section("layout", "sizes of the database's records and where they lie");
   const std::array<std::pair<std::string_view, std::string_view>, records.size()> sizes_of_records = {{
-      {"8 B", "bytes of one node record"},
+      {"8 B", "bytes of one node record; not with structure.kind = \"bvh\", whose nodes have their own"},
       {"4 B", "bytes of one entry record"},
       {"48 B", "bytes of one primitive record that is a triangle"},
       {"40 B", "bytes of one sphere, cylinder or cone: two points, two radii, kind and material"},
@@ -97,8 +99,11 @@ void declare_memory(Schema& schema) {
   schema.size("layout.record_alignment", "4 B", {"1 B", "4 KiB"}, "alignment of records; a power of two");
   schema.size("layout.section_alignment", "4 KiB", {"1 B", "1 GiB"},
               "alignment of the sections (nodes, lists, primitives, ...); a power of two");
-  schema.choice("layout.node_order", "breadth_first", {"breadth_first", "depth_first"},
-                "order of the tree's nodes in memory");
+  schema.choice("layout.node_order", "breadth_first", names(memory::node_order_names),
+                "order of the tree's nodes in memory; treelets: subtrees of up to layout.treelet bytes, one "
+                "after the other");
+  schema.size("layout.treelet", "4 KiB", {"1 B", "1 GiB"},
+              "treelets: most bytes of one, but the children of a node are never divided");
   schema.section("cache", "the private cache of a node; it holds what is read of the database");
   schema.choice("cache.organisation", "unified", names(processors::cache_organisation_names),
                 "no cache, one for all records, or one each for nodes, lists, primitives and shading data");
@@ -156,6 +161,7 @@ void declare_interconnect(Schema& schema) {
   cycles(schema, "interconnect.latency_cycles", 10,
          "ideal: cycles of a whole read or write; crossbar: cycles one way");
   schema.section("memory", "the banks of a cluster's shared memory");
+  declare_memory_model(schema);
   schema.integer("memory.banks", 4, {1, 65536}, "", "number of banks");
   schema.size("memory.interleave", "0 B", {"0 B", "1 GiB"},
               "bytes in a row that share a bank, a power of two, and without a cache the most that one "
@@ -163,6 +169,7 @@ void declare_interconnect(Schema& schema) {
   clock(schema, "memory.clock", "clock of the banks");
   cycles(schema, "memory.access_cycles", 4, "cycles from the start of an access to its data");
   cycles(schema, "memory.busy_cycles", 6, "cycles from the start of an access to the next");
+  declare_dram_keys(schema);
 }
 
 void declare_host(Schema& schema) {
@@ -206,13 +213,27 @@ void read_costs(const sim::Config& config, processors::MachineConfig& machine) {
   }
 }
 
-void read_layout(const sim::Config& config, memory::LayoutConfig& layout) {
+void read_layout(sim::Config& config, memory::LayoutConfig& layout) {
+  const bool bvh = config.choice_name("structure.kind") == "bvh";
   for (const auto& [name, member] : records) {
-    layout.*member = static_cast<std::uint32_t>(config.size(name));
+    if (!bvh || member != &memory::LayoutConfig::node_bytes) {
+      layout.*member = static_cast<std::uint32_t>(config.size(name));
+    }
+  }
+  if (bvh) {
+    layout.node_bytes =
+        accel::bvh_record_bytes(config.choice_as<accel::BvhNodeKind>("structure.bvh_children"));
+    config.mark_unused_reason("layout.node", "structure.bvh_children says how large the nodes of a bvh are",
+                              "structure.kind");
   }
   layout.record_alignment = power_of_two(config, "layout.record_alignment");
   layout.section_alignment = power_of_two(config, "layout.section_alignment");
   layout.node_order = config.choice_as<memory::NodeOrder>("layout.node_order");
+  if (layout.node_order == memory::NodeOrder::treelets) {
+    layout.treelet_bytes = static_cast<std::uint32_t>(config.size("layout.treelet"));
+  }
+  config.mark_unused_reason("layout.treelet", "only layout.node_order = \"treelets\" makes treelets",
+                            "layout.node_order");
 }
 
 // Reads the size of one cache. A cache shape that cannot be built is reported under the size key.
@@ -306,6 +327,7 @@ void read_interconnect(sim::Config& config, processors::MachineConfig& machine) 
         "a distributed database is in the nodes' own memories ([local]) and reached over [network]";
     config.mark_unused_reason("interconnect", reason, "database.placement");
     config.mark_unused_reason("memory", reason, "database.placement");
+    config.mark_unused_reason("dram", reason, "database.placement");
     return;
   }
   interconnect.kind = config.choice_as<memory::InterconnectKind>("interconnect.kind");
@@ -322,17 +344,19 @@ void read_interconnect(sim::Config& config, processors::MachineConfig& machine) 
   if (!ideal) {
     interconnect.width = static_cast<std::uint32_t>(config.size("interconnect.width"));
     interconnect.cycles_per_beat = config.integer("interconnect.cycles_per_beat");
-    machine.banks.count = count(config, "memory.banks");
-    machine.banks.clock = clock(config, "memory.clock");
-    machine.banks.access_cycles = config.integer("memory.access_cycles");
-    machine.banks.busy_cycles = config.integer("memory.busy_cycles");
-    if (config.size("memory.interleave") != 0) {
+    read_memory(config, machine);
+    // Banks of DRAM are mapped by dram.mapping, so there it only says what one reference reads.
+    const bool cached = machine.cache.organisation != processors::CacheOrganisation::none;
+    if ((!machine.banks.dram || !cached) && config.size("memory.interleave") != 0) {
       machine.banks.interleave = power_of_two(config, "memory.interleave");
     }
   }
   const std::string kind = "with interconnect.kind = \"" + config.choice_name("interconnect.kind") + "\"";
   config.mark_unused_reason("interconnect", "it has no effect " + kind, "interconnect.kind");
-  config.mark_unused_reason("memory", "there are no banks " + kind, "interconnect.kind");
+  if (ideal) {
+    config.mark_unused_reason("memory", "there are no banks " + kind, "interconnect.kind");
+    config.mark_unused_reason("dram", "there are no banks " + kind, "interconnect.kind");
+  }
 }
 
 // Messages are sent where rays move from node to node, and for a distributed database.

@@ -36,9 +36,9 @@ void read_space(sim::Config& config, processors::MachineConfig& machine) {
     return;
   }
   const std::string& structure = config.choice_name("structure.kind");
-  if (structure != "octree" && structure != "bsp") {
+  if (structure != "octree" && structure != "bsp" && structure != "bvh") {
     config.fail("machine.scheme", "\"space\" cuts a tree into regions: with structure.kind = \"" + structure +
-                                      "\" there is none; use \"octree\" or \"bsp\"");
+                                      "\" there is none; use \"octree\", \"bsp\" or \"bvh\"");
   }
   processors::SpaceConfig& space = machine.space;
   space.policy = config.choice_as<RegionPolicy>("space.policy");
@@ -52,7 +52,7 @@ void read_space(sim::Config& config, processors::MachineConfig& machine) {
                             "space.policy");
   const std::string own =
       "with machine.scheme = \"space\" each node holds its part in its own memory (local)";
-  for (const std::string_view key : {"database", "interconnect", "memory"}) {
+  for (const std::string_view key : {"database", "interconnect", "memory", "dram"}) {
     config.mark_unused_reason(key, own, "machine.scheme");
   }
 }

@@ -24,7 +24,8 @@ double area(const MachineConfig& machine) {
 std::optional<FrameModel> FrameModel::of(const MachineConfig& machine, const PointFigures& figures) {
   const bool described = machine.scheme == processors::Scheme::image &&
                          machine.placement == processors::Placement::shared &&
-                         machine.build.sharing == processors::Sharing::given && machine.ports_of_node() == 1;
+                         machine.build.sharing == processors::Sharing::given &&
+                         machine.ports_of_node() == 1 && !machine.banks.dram;
   const double work = figures.computing + figures.cache_access + figures.delays;
   if (!described || figures.end <= 0.0 || figures.packets <= 0.0 || work <= 0.0 ||
       machine.nodes > most_customers) {

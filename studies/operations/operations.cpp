@@ -28,14 +28,22 @@ struct CountedWalk {
   const char* kind;
   accel::BspWalk walk = accel::BspWalk::recursive;
   accel::GridMatch match = accel::GridMatch::density;
+  accel::BvhNodeKind node = accel::BvhNodeKind::eight;
 };
-constexpr std::array<CountedWalk, 7> plans{{
+constexpr CountedWalk bvh_walk(const char* name, accel::BvhNodeKind node) {
+  return {name, "bvh", accel::BspWalk::recursive, accel::GridMatch::density, node};
+}
+constexpr std::array<CountedWalk, 11> plans{{
     {"octree", "octree"},
     {"bsp, recursive", "bsp"},
     {"bsp, push-point", "bsp", accel::BspWalk::push_point},
     {"grid, density", "grid"},
     {"grid, octree's nodes", "grid", accel::BspWalk::recursive, accel::GridMatch::octree_nodes},
     {"grid, octree's cells", "grid", accel::BspWalk::recursive, accel::GridMatch::octree_cells},
+    bvh_walk("bvh, 2 children", accel::BvhNodeKind::two),
+    bvh_walk("bvh, 4 children", accel::BvhNodeKind::four),
+    bvh_walk("bvh, 8 children", accel::BvhNodeKind::eight),
+    bvh_walk("bvh, 8 quantised", accel::BvhNodeKind::eight_quantised),
     {"none", "none"},
 }};
 
@@ -57,6 +65,8 @@ OperationsStudy count_operations(sim::Config& config) {
     accel::StructureOptions options = frame.structure_options;
     options.bsp.walk = plan.walk;
     options.grid_match = plan.match;
+    options.bvh.node = plan.node;
+    options.bvh.max_objects = std::min(options.bvh.max_objects, accel::bvh_largest_leaf(plan.node));
     const auto structure = accel::make_structure(plan.kind, triangles, options);
     double side = longest_side;
     if (structure->kind() == "none") {

@@ -106,6 +106,9 @@ PaperConfig read_paper(sim::Config& config) {
   if (paper.machine.placement != processors::Placement::shared) {
     config.fail("database.placement", "the study builds one tree that all nodes share");
   }
+  if (paper.machine.banks.dram) {
+    config.fail("memory.model", "the paper's machines have banks whose accesses all take the same time");
+  }
   if (processors::writes_done_later(paper.machine)) {
     config.fail("interconnect.arbitration",
                 "the study builds one tree that all nodes share: it must be fifo");

@@ -5,7 +5,10 @@
 #include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "accel/bsp.h"
+#include "accel/bvh.h"
 #include "accel/grid.h"
 #include "accel/grid_match.h"
 #include "accel/octree.h"
@@ -116,7 +119,9 @@ void PreparedFrame::prepare(const scenes::Scene& scene) {
   // The work log has a copy of the tree.
   config_.memory.take(accel::host_bytes(*structure_) + accel::bytes_of(structure_->topology()),
                       "the structure and its copy in the work log take",
-                      "lower structure.max_level or raise structure.max_objects");
+                      config_.structure == accel::Bvh::kind_name
+                          ? smaller_scene
+                          : "lower structure.max_level or raise structure.max_objects");
   if (facts_) {
     plan_structure(run_.plan, *facts_, *structure_);
     config_.render = planned_options(run_.plan, *facts_);
@@ -127,6 +132,11 @@ void PreparedFrame::prepare(const scenes::Scene& scene) {
     run_.levels = octree->concrete().levels();
   } else if (const auto* grid = dynamic_cast<const accel::StructureOf<accel::Grid>*>(structure_.get())) {
     run_.structure_notes.push_back(accel::describe_resolution(grid->concrete()));
+  } else if (const auto* bvh = dynamic_cast<const accel::StructureOf<accel::Bvh>*>(structure_.get())) {
+    run_.structure_notes.push_back(fmt::format(
+        "surface area heuristic: {:.2f} visits and tests of a ray that meets the root's box, if rays are "
+        "spread evenly and hit nothing",
+        bvh->concrete().sah_cost()));
   }
   note_cut_tree(config_, *structure_, run_.structure_notes);
   if (std::string need = accel::describe_need(accel::precision_need(*triangles_)); !need.empty()) {

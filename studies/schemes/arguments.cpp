@@ -115,11 +115,11 @@ Claim cells(std::span<const CellPoint> points) {
               Verdict::not_measured};
   if (points.size() >= fewest_points) {
     const auto fewest = std::min_element(points.begin(), points.end(), [](const auto& a, const auto& b) {
-      return a.references.all_misses() < b.references.all_misses();
+      return a.tree.references.all_misses() < b.tree.references.all_misses();
     });
     const auto times = [&](const CellPoint& point) {
-      return static_cast<double>(point.references.all_misses()) /
-             static_cast<double>(std::max<std::int64_t>(1, fewest->references.all_misses()));
+      return static_cast<double>(point.tree.references.all_misses()) /
+             static_cast<double>(std::max<std::int64_t>(1, fewest->tree.references.all_misses()));
     };
     claim.here = fmt::format("fewest misses with level {}; {:.1f} times as many with {}, {:.2f} with {}",
                              fewest->level, times(points.front()), points.front().level, times(points.back()),

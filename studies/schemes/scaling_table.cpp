@@ -45,7 +45,7 @@ std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const proce
                                          [](const auto& a, const auto& b) { return a.end < b.end; });
   std::vector<ScalingPoint> points;
   for (const std::filesystem::path& file : config.machines) {
-    const NamedMachine own = read_machine_file(file);
+    const NamedMachine own = read_machine_file(file, config.frame);
     processors::PipelineConfig shares = own.config.pipeline;
     if (quickest != stages.end()) {
       shares.search = quickest->nodes[0];
@@ -56,7 +56,7 @@ std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const proce
     const Counts one_node = counts_of(alone, processors::replay(log, alone));
     for (const std::uint32_t nodes : config.nodes) {
       if (nodes >= fewest_nodes(own.config)) {
-        const NamedMachine machine = read_machine_file(file, nodes, shares);
+        const NamedMachine machine = read_machine_file(file, config.frame, nodes, shares);
         points.push_back(point_of(machine, processors::replay(log, machine.config), one_node));
       }
     }

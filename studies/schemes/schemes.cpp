@@ -10,6 +10,7 @@
 #include "studies/schemes/scaling_table.h"
 #include "studies/schemes/schemes_keys.h"
 #include "studies/schemes/stage_table.h"
+#include "studies/schemes/structure_table.h"
 #include "studies/tables/claim.h"
 #include "studies/tables/provenance.h"
 #include "studies/tables/text_table.h"
@@ -33,6 +34,10 @@ StudyOutput run_schemes(sim::Config& config) {
                   "\n" + side_by_side(output.tables[0], "nodes", "machine", "efficiency", "Efficiency") +
                   "\n" + text_of(output.tables[1]) + "\n" + text_of(output.tables[2]) + "\n" +
                   text_of(claims);
+  if (!schemes.structures.empty()) {
+    output.tables.push_back(structure_table(time_structures(schemes)));
+    output.report += "\n" + text_of(output.tables.back());
+  }
   output.tables.push_back(provenance_table(config.effective_values()));
   return output;
 }

@@ -1,7 +1,9 @@
 #include "studies/schemes/schemes_keys.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "accel/structure.h"
 #include "processors/replay/host_bytes.h"
 #include "sim/config_errors.h"
 #include "sim/shown.h"
@@ -31,7 +33,13 @@ std::filesystem::path beside(const sim::Config& config, const std::string& name)
   return std::filesystem::path(config.name()).parent_path() / name;
 }
 
-NamedMachine read_with(const std::filesystem::path& file, const std::vector<std::string>& assignments) {
+NamedMachine read_with(const std::filesystem::path& file, const FrameConfig& frame,
+                       std::vector<std::string> assignments) {
+  if (frame.structure == accel::Bvh::kind_name) {
+    const auto node = static_cast<std::size_t>(frame.structure_options.bvh.node);
+    assignments.emplace_back("structure.kind=bvh");
+    assignments.push_back("structure.bvh_children=" + std::string(accel::bvh_node_names[node]));
+  }
   sim::Config config = sim::Config::from_file(run_schema(), file, assignments);
   (void)read_frame(config);
   std::string name = file.stem().string();
@@ -40,6 +48,23 @@ NamedMachine read_with(const std::filesystem::path& file, const std::vector<std:
   NamedMachine machine{std::move(name), read_machine(config)};
   config.refuse_unused();
   return machine;
+}
+
+// "bvh:" is followed by the kind of its nodes.
+NamedStructure named_structure(const sim::Config& config, const std::string& name) {
+  for (const char* const kind : {"octree", "bsp", "grid"}) {
+    if (name == kind) {
+      return {name, name};
+    }
+  }
+  for (std::size_t node = 0; node < accel::bvh_node_names.size(); ++node) {
+    if (name == "bvh:" + std::string(accel::bvh_node_names[node])) {
+      return {name, "bvh", static_cast<accel::BvhNodeKind>(node)};
+    }
+  }
+  config.fail("schemes.structures",
+              "there is no structure \"" + sim::shown(name) +
+                  "\"; there are octree, bsp, grid, bvh:2, bvh:4, bvh:8, bvh:8_quantised");
 }
 
 // Calls `work`, which reads a file that the key names; errors in that file are reported under the key.
@@ -51,12 +76,14 @@ decltype(auto) named_by(const sim::Config& config, std::string_view key, const W
 
 }  // namespace
 
-NamedMachine read_machine_file(const std::filesystem::path& file) { return read_with(file, {}); }
+NamedMachine read_machine_file(const std::filesystem::path& file, const FrameConfig& frame) {
+  return read_with(file, frame, {});
+}
 
-NamedMachine read_machine_file(const std::filesystem::path& file, std::uint32_t nodes,
-                               const processors::PipelineConfig& shares) {
+NamedMachine read_machine_file(const std::filesystem::path& file, const FrameConfig& frame,
+                               std::uint32_t nodes, const processors::PipelineConfig& shares) {
   std::vector<std::string> assignments = {"machine.nodes=" + std::to_string(nodes)};
-  if (read_machine_file(file).config.scheme == processors::Scheme::pipeline) {
+  if (read_machine_file(file, frame).config.scheme == processors::Scheme::pipeline) {
     const std::uint64_t all = std::uint64_t{shares.search} + shares.nearest + shares.shade;
     const auto part = [&](std::uint64_t share, std::uint64_t most) {
       return std::clamp<std::uint64_t>((share * nodes + all / 2) / all, 1, most);
@@ -67,7 +94,7 @@ NamedMachine read_machine_file(const std::filesystem::path& file, std::uint32_t 
     assignments.push_back("pipeline.nearest=" + std::to_string(nearest));
     assignments.push_back("pipeline.shade=" + std::to_string(shade));
   }
-  return read_with(file, assignments);
+  return read_with(file, frame, std::move(assignments));
 }
 
 void declare_schemes_keys(sim::Schema& schema) {
@@ -86,6 +113,9 @@ void declare_schemes_keys(sim::Schema& schema) {
                   "structure.max_level of the trees whose cells are compared");
   schema.integer("schemes.cell_objects", 1, {1, 1'000'000}, "",
                  "structure.max_objects of these trees: small, so that the level decides");
+  schema.texts("schemes.structures", {},
+               "structures compared on that machine: octree, bsp, grid, bvh:2, bvh:4, bvh:8, "
+               "bvh:8_quantised");
   schema.text("schemes.stage_machine", "pipeline.toml",
               "the pipeline whose nodes are shared out among its stages in several ways; empty: none");
   schema.integer("schemes.stage_nodes", 16, {processors::pipeline_stages, 1024}, "",
@@ -116,11 +146,11 @@ SchemesConfig read_schemes(sim::Config& config) {
   for (const std::string& name : config.texts("schemes.machines")) {
     const std::filesystem::path& file = schemes.machines.emplace_back(beside(config, name));
     const NamedMachine machine =
-        named_by(config, "schemes.machines", [&] { return read_machine_file(file); });
+        named_by(config, "schemes.machines", [&] { return read_machine_file(file, schemes.frame); });
     const std::uint32_t most = std::max(schemes.nodes.back(), fewest_nodes(machine.config));
     const std::string excess = schemes.frame.memory.excess(
         processors::host_bytes(named_by(config, "schemes.nodes", [&] {
-                                 return read_machine_file(file, most, machine.config.pipeline);
+                                 return read_machine_file(file, schemes.frame, most, machine.config.pipeline);
                                }).config));
     if (!excess.empty()) {
       config.fail("schemes.nodes", "simulating that many nodes of " + sim::shown(name) + " takes" + excess);
@@ -130,12 +160,22 @@ SchemesConfig read_schemes(sim::Config& config) {
     config.fail("schemes.machines", "must name a machine");
   }
   schemes.cell_machine = beside(config, config.text("schemes.cell_machine"));
-  (void)named_by(config, "schemes.cell_machine", [&] { return read_machine_file(schemes.cell_machine); });
+  (void)named_by(config, "schemes.cell_machine",
+                 [&] { return read_machine_file(schemes.cell_machine, schemes.frame); });
+  for (const std::string& name : config.texts("schemes.structures")) {
+    const NamedStructure& structure = schemes.structures.emplace_back(named_structure(config, name));
+    FrameConfig frame = schemes.frame;
+    frame.structure = structure.kind;
+    frame.structure_options.bvh.node = structure.node;
+    (void)named_by(config, "schemes.cell_machine",
+                   [&] { return read_machine_file(schemes.cell_machine, frame); });
+  }
   const std::string& stages = config.text("schemes.stage_machine");
   if (!stages.empty()) {
     schemes.stage_machine = beside(config, stages);
-    const NamedMachine machine =
-        named_by(config, "schemes.stage_machine", [&] { return read_machine_file(schemes.stage_machine); });
+    const NamedMachine machine = named_by(config, "schemes.stage_machine", [&] {
+      return read_machine_file(schemes.stage_machine, schemes.frame);
+    });
     if (machine.config.scheme != processors::Scheme::pipeline) {
       config.fail("schemes.stage_machine", "names a machine that is no pipeline");
     }

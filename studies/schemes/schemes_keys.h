@@ -19,11 +19,19 @@ struct NamedMachine {
   processors::MachineConfig config;
 };
 
+/// A structure by the name that the configuration gives it.
+struct NamedStructure {
+  std::string name;
+  std::string kind;  ///< accel::structure_kinds
+  accel::BvhNodeKind node = accel::BvhNodeKind::eight;
+};
+
 struct SchemesConfig {
   FrameConfig frame;
   std::vector<std::filesystem::path> machines;  ///< files of machines whose scaling is compared
   std::vector<std::uint32_t> nodes;             ///< ascending, each once
-  std::filesystem::path cell_machine;           ///< whose misses are counted over the size of cells
+  std::filesystem::path cell_machine;           ///< whose misses are counted over cells and structures
+  std::vector<NamedStructure> structures;       ///< compared on it; may be empty
   std::vector<std::uint32_t> cell_levels;       ///< ascending, each once; may be empty
   std::uint32_t cell_objects = 1;
   std::filesystem::path stage_machine;  ///< a pipeline, or empty
@@ -44,13 +52,13 @@ void declare_schemes_keys(sim::Schema& schema);
 /// that a wrong one is found before anything runs.
 [[nodiscard]] SchemesConfig read_schemes(sim::Config& config);
 
-/// The machine of a file. What the file says about scene, image and structure is read and left aside. Throws
-/// UserError.
-[[nodiscard]] NamedMachine read_machine_file(const std::filesystem::path& file);
+/// The machine of a file, for logs of the frame: what the file says about scene, image and structure is read
+/// and left aside, but node records are as large as those of the frame's structure. Throws UserError.
+[[nodiscard]] NamedMachine read_machine_file(const std::filesystem::path& file, const FrameConfig& frame);
 
-/// The machine of a file, with so many nodes in each cluster. A pipeline's are shared out among its stages in
+/// The same with so many nodes in each cluster. A pipeline's are shared out among its stages in
 /// the proportions of `shares`, each stage at least one; it needs as many nodes as stages.
-[[nodiscard]] NamedMachine read_machine_file(const std::filesystem::path& file, std::uint32_t nodes,
-                                             const processors::PipelineConfig& shares);
+[[nodiscard]] NamedMachine read_machine_file(const std::filesystem::path& file, const FrameConfig& frame,
+                                             std::uint32_t nodes, const processors::PipelineConfig& shares);
 
 }  // namespace marti::studies

@@ -18,7 +18,8 @@ StagePoint time_shares(const SchemesConfig& config, const processors::WorkLog& l
   shares.search = nodes[0];
   shares.nearest = nodes[1];
   shares.shade = nodes[2];
-  const NamedMachine machine = read_machine_file(config.stage_machine, config.stage_nodes, shares);
+  const NamedMachine machine =
+      read_machine_file(config.stage_machine, config.frame, config.stage_nodes, shares);
   const processors::MachineResult result = processors::replay(log, machine.config);
   StagePoint point;
   point.nodes = nodes;

@@ -146,6 +146,13 @@ Json clusters_json(const processors::MachineResult& result) {
       }
     }
     clusters.push_back({{"interconnect", interconnect}, {"banks", banks}});
+    if (!cluster.dram.empty() && cluster.dram.size() <= most_listed) {
+      Json channels = Json::array();
+      for (const memory::DramStatistics& channel : cluster.dram) {
+        channels.push_back(counters_json(channel));
+      }
+      clusters.back()["dram"] = channels;
+    }
     if (cluster.distributed) {
       Json network = counters_json(cluster.distributed->network);
       network["waits"] = wait_json(cluster.distributed->network.waits);

@@ -184,6 +184,17 @@ void distribution_lines(Lines out, const RunResult& r) {
   }
 }
 
+void dram_lines(Lines out, const RunResult& r) {
+  const auto share = [&](std::string_view figure) { return percent(r.figure(std::string(figure))); };
+  fmt::format_to(out, "  {:<12}{} of the bursts hit, {} conflict; {:.2f} accesses in a queue\n", "rows",
+                 share("dram_row_hit_ratio"), share("dram_row_conflict_ratio"),
+                 r.figure("dram_queue_length").value_or(0.0));
+  fmt::format_to(out, "  {:<12}{:.2f} GB/s of {:.1f}; refreshes hold accesses up for {} of the time\n",
+                 "data", r.figure("dram_bandwidth").value_or(0.0) / 1e9,
+                 r.machine.banks.dram->peak_bandwidth() * r.machine.clusters / 1e9,
+                 share("dram_refresh_share"));
+}
+
 void memory_lines(Lines out, const RunResult& r) {
   const TextColumns table = {14, {15, 16, 11}};
   fmt::format_to(out, "\n{}", table.row("references", {"lines", "misses", "hit ratio"}));
@@ -218,9 +229,16 @@ void memory_lines(Lines out, const RunResult& r) {
                    100.0 * r.figure("interconnect_utilisation").value_or(0.0),
                    waiting(r, "interconnect", r.totals.interconnect_waits), bytes(moved));
   }
-  fmt::format_to(out, "{:<14}{:.1f} % busy (the busiest {:.1f} %), {}\n", distributed ? "memories" : "banks",
+  const bool dram = r.machine.banks.dram.has_value() && !distributed;
+  fmt::format_to(out, "{:<14}{:.1f} % busy (the busiest {:.1f} %), {}\n",
+                 distributed ? "memories"
+                 : dram      ? "DRAM channels"
+                             : "banks",
                  100.0 * r.figure("mean_bank_utilisation").value_or(0.0),
                  100.0 * r.figure("bank_utilisation").value_or(0.0), waiting(r, "bank", r.totals.bank_waits));
+  if (dram) {
+    dram_lines(out, r);
+  }
 }
 
 }  // namespace

@@ -30,10 +30,16 @@ std::vector<std::unique_ptr<Structure>> build_structures(const std::shared_ptr<c
   all.push_back(accel::make_structure("octree", triangles, options));
   all.push_back(accel::make_structure("bsp", triangles, options));
   all.push_back(accel::make_structure("grid", triangles, options));
+  all.push_back(accel::make_structure("bvh", triangles, options));
   options.bsp.walk = accel::BspWalk::push_point;
   all.push_back(accel::make_structure("bsp", triangles, options));
   if (!deep) {
     return all;
+  }
+  for (const auto node :
+       {accel::BvhNodeKind::two, accel::BvhNodeKind::four, accel::BvhNodeKind::eight_quantised}) {
+    options.bvh = {.node = node, .max_objects = 1};
+    all.push_back(accel::make_structure("bvh", triangles, options));
   }
   options.octree.max_objects = 2;
   options.octree.max_level = 11;

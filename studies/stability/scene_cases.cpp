@@ -64,7 +64,7 @@ CaseOutcome coincident(const CaseSize& size) {
   std::vector<std::unique_ptr<accel::Structure>> structures;
   accel::StructureOptions options;
   options.grid.resolution = {8, 8, 8};
-  for (const std::string_view kind : {"octree", "bsp", "grid"}) {
+  for (const std::string_view kind : {"octree", "bsp", "grid", "bvh"}) {
     structures.push_back(accel::make_structure(kind, triangles, options));
   }
   structures.push_back(accel::make_lazy_octree(triangles));

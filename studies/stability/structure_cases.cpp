@@ -17,7 +17,7 @@ using accel::Hit;
 using accel::Ray;
 using accel::TriangleSet;
 
-constexpr const char* same_in_8_structures = "brute force: id, t and weights bit for bit, in 8 structures";
+constexpr const char* same_in_12_structures = "brute force: id, t and weights bit for bit, in 12 structures";
 
 /// One class of rays at the same hostile triangles.
 CaseOutcome rays_of(Aim aim, const CaseSize& size) {
@@ -88,7 +88,7 @@ void add_structure_cases(std::vector<StabilityCase>& cases) {
                 "denormal components overflow their reciprocals; lengths from 2^-900 to 2^700"},
            Rays{Aim::far, "rays-from-afar", "origins 1e2 to 1e9 scenes away round away the cells"},
        }) {
-    add(rays.id, rays.risk, same_in_8_structures,
+    add(rays.id, rays.risk, same_in_12_structures,
         [aim = rays.aim](const CaseSize& size) { return rays_of(aim, size); });
   }
   struct Place {
@@ -104,7 +104,7 @@ void add_structure_cases(std::vector<StabilityCase>& cases) {
         place.offset == 0.0
             ? fmt::format("hostile triangles times {:g}: products leave their range", place.scale)
             : fmt::format("hostile triangles at {:g}: cells are rounded away", place.offset),
-        same_in_8_structures,
+        same_in_12_structures,
         [place](const CaseSize& size) { return moved_and_scaled(place.offset, place.scale, size); });
   }
   add("mailboxes", "a primitive that is left out because it was tested is lost",

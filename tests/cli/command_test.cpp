@@ -21,7 +21,8 @@ TEST(Command, StudyOfOperationsWritesItsTables) {
   const Outcome outcome = marti("study operations -o " + quoted(directory.path() / "study") + small_teapot +
                                 " --set image.max_depth=2");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
-  for (const char* word : {"bsp, push-point", "grid, octree's cells", "per unit length", "HERO"}) {
+  for (const char* word :
+       {"bsp, push-point", "grid, octree's cells", "bvh, 8 quantised", "per unit length", "HERO"}) {
     EXPECT_NE(outcome.output.find(word), std::string::npos) << word;
   }
   const std::string operations = read(directory.path() / "study" / "operations.csv");
@@ -116,9 +117,9 @@ TEST(Command, WrongConfigurationsGetOneMessageWithFileLineAndKey) {
 
 TEST(Command, AnAssignmentMaySwitchOffWhatTheFileDescribes) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
-  for (const char* assignment :
-       {"cache.organisation=none", "cache.organisation=split", "structure.kind=none", "structure.kind=bsp",
-        "structure.kind=grid", "interconnect.kind=ideal", "interconnect.kind=crossbar"}) {
+  for (const char* assignment : {"cache.organisation=none", "cache.organisation=split", "structure.kind=none",
+                                 "structure.kind=bsp", "structure.kind=grid", "structure.kind=bvh",
+                                 "interconnect.kind=ideal", "interconnect.kind=crossbar"}) {
     const Outcome outcome = marti("run " + quoted(config) + small_teapot + " --set " + assignment);
     EXPECT_EQ(outcome.status, 0) << assignment << "\n" << outcome.output;
   }

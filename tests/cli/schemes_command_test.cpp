@@ -41,6 +41,23 @@ TEST(SchemesCommand, WritesTablesAndChartsAndTheSameBytesAgain) {
   }
 }
 
+TEST(SchemesCommand, StructuresAreShownSideBySide) {
+  const TemporaryDirectory directory;
+  const std::string only = " --set 'schemes.nodes=[4]' --set 'schemes.cell_levels=[]'";
+  const Outcome outcome =
+      marti("study schemes " + small_schemes + only + " -o " + quoted(directory.path() / "a") +
+            " --set 'schemes.structures=[\"octree\", \"grid\", \"bvh:2\", \"bvh:8_quantised\"]'");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("the same frame and machine with each"), std::string::npos);
+  const std::string table = read(directory.path() / "a" / "structures.csv");
+  EXPECT_EQ(table.find("structure,tree_nodes,tree_entries,database,visits,tests,references,misses,"), 0U);
+  EXPECT_NE(table.find("\nbvh:8_quantised,"), std::string::npos);
+  // All machines on a bvh.
+  const Outcome bvh = marti("study schemes " + small_schemes + only + " --set structure.kind=bvh -o " +
+                            quoted(directory.path() / "b"));
+  EXPECT_EQ(bvh.status, 0) << bvh.output;
+}
+
 TEST(SchemesCommand, WrongInputIsTwoAndSaysWhere) {
   const TemporaryDirectory directory;
   const std::string out = " -o " + quoted(directory.path() / "out");
@@ -55,6 +72,7 @@ TEST(SchemesCommand, WrongInputIsTwoAndSaysWhere) {
   refused(" --set 'schemes.nodes=[]'", "schemes.nodes");
   refused(" --set 'schemes.nodes=[0]'", "schemes.nodes");
   refused(" --set structure.kind=grid", "structure.kind");
+  refused(" --set 'schemes.structures=[\"kd\"]'", "schemes.structures");
   refused(" --set schemes.stage_machine=marti.toml", "schemes.stage_machine");
   refused(" --set schemes.stage_nodes=2", "schemes.stage_nodes");
   refused(" --set machine.nodes=4", "machine.nodes");

@@ -45,6 +45,7 @@ TEST_P(ClosedMesh, LeaksNoRay) {
   options.bsp.walk = accel::BspWalk::push_point;
   const auto push_point = accel::make_structure("bsp", triangles, options);
   const auto grid = accel::make_structure("grid", triangles);
+  const auto bvh = accel::make_structure("bvh", triangles);
   Random random(41);
   std::uint64_t leaks = 0;
   for (int k = 0; k < 210000; ++k) {
@@ -54,7 +55,8 @@ TEST_P(ClosedMesh, LeaksNoRay) {
     const glm::dvec3 a = vertices[face[random.below(3)]];
     const glm::dvec3 b = k % 3 == 0 ? a : vertices[face[random.below(3)]];
     ray.direction = a + random.unit() * (b - a) - ray.origin;
-    for (const accel::Structure* structure : {octree.get(), bsp.get(), push_point.get(), grid.get()}) {
+    for (const accel::Structure* structure :
+         {octree.get(), bsp.get(), push_point.get(), grid.get(), bvh.get()}) {
       leaks += structure->closest(ray).found() && structure->occluded(ray) ? 0U : 1U;
     }
   }

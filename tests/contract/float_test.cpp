@@ -37,6 +37,11 @@ std::vector<std::unique_ptr<accel::Structure>> all_kinds(
   accel::StructureOptions pushed;
   pushed.bsp.walk = accel::BspWalk::push_point;
   all.push_back(accel::make_structure("bsp", triangles, pushed));
+  for (std::size_t node = 0; node < accel::bvh_node_names.size(); ++node) {
+    accel::StructureOptions options;
+    options.bvh.node = static_cast<accel::BvhNodeKind>(node);
+    all.push_back(accel::make_structure("bvh", triangles, options));
+  }
   return all;
 }
 

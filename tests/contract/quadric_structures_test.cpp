@@ -38,8 +38,14 @@ std::vector<Built> build_all(const std::shared_ptr<const TriangleSet>& set) {
     all.push_back({std::string(kind) + " " + std::to_string(max_objects) + "/" + std::to_string(max_level),
                    accel::make_structure(kind, set, options)});
   };
+  for (std::size_t node = 0; node < accel::bvh_node_names.size(); ++node) {
+    accel::StructureOptions options;
+    options.bvh.node = static_cast<accel::BvhNodeKind>(node);
+    all.push_back({"bvh " + std::string(accel::bvh_node_names[node]),
+                   accel::make_structure(accel::Bvh::kind_name, set, options)});
+  }
   for (const std::string_view kind : accel::structure_kinds()) {
-    if (kind != accel::BruteForce::kind_name) {
+    if (kind != accel::BruteForce::kind_name && kind != accel::Bvh::kind_name) {
       add(kind, 8, 10, 4.0);
       add(kind, 3, 6, 64.0);
       add(kind, 8, 1, 0.01);
@@ -62,7 +68,7 @@ class MixedContract {
       : set_(std::move(set)), oracle_(set_), all_(build_all(set_)) {}
 
   [[nodiscard]] const TriangleSet& set() const { return *set_; }
-  [[nodiscard]] const scenes::Bounds& root() const { return all_[0].structure->bounds(); }
+  [[nodiscard]] const scenes::Bounds& root() const { return all_.back().structure->bounds(); }
   [[nodiscard]] std::uint64_t hits() const { return hits_; }
   [[nodiscard]] std::uint64_t quadrics_hit() const { return quadrics_hit_; }
 

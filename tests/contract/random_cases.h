@@ -23,6 +23,7 @@ struct TimedCase {
 inline TimedCase image_case(Random& random) {
   TimedCase made{any_log(random), random_machine(random), {}};
   add_random_second_level(random, made.machine);
+  add_random_dram(random, made.machine);
   return made;
 }
 
@@ -30,6 +31,7 @@ inline TimedCase image_case(Random& random) {
 inline TimedCase contexts_case(Random& random) {
   TimedCase made{any_log(random), random_machine(random, 8), {}};
   add_random_contexts(random, made.log.traversal < accel::Traversal::grid, made.machine);
+  add_random_dram(random, made.machine);
   made.options.with_contexts = true;
   return made;
 }
@@ -42,6 +44,7 @@ inline TimedCase building_case(Random& random) {
     made.options.starts =
         random_starts(random, made.log.topology, made.machine.build.sharing != processors::Sharing::none);
   }
+  add_random_dram(random, made.machine);
   return made;
 }
 
@@ -49,6 +52,8 @@ inline TimedCase building_case(Random& random) {
 inline TimedCase building_contexts_case(Random& random) {
   TimedCase made = building_case(random);
   add_random_contexts(random, made.log.traversal < accel::Traversal::grid, made.machine);
+  made.machine.banks.dram.reset();
+  add_random_dram(random, made.machine);
   made.options.with_contexts = true;
   return made;
 }
@@ -57,6 +62,7 @@ inline TimedCase pipeline_case(Random& random) {
   TimedCase made{any_log(random), random_machine(random), {}};
   make_random_pipeline(random, made.machine);
   add_random_second_level(random, made.machine);
+  add_random_dram(random, made.machine);
   return made;
 }
 

@@ -158,9 +158,15 @@ TEST_P(Schemes, ScalingEveryDurationScalesEveryTimeExactly) {
                               &c.machine.host.clock, &c.machine.local.clock, &c.machine.network.clock}) {
       *clock = sim::Clock::from_period(clock->period() * scale);
     }
+    const bool late = c.machine.banks.dram && c.machine.banks.dram->policy == memory::DramPolicy::frfcfs;
+    if (c.machine.banks.dram) {
+      c.machine.banks.dram->period *= scale;
+    }
     const MachineResult scaled = replay(c.log, c.machine, c.options);
     EXPECT_EQ(scaled.end, base.end * scale);
-    EXPECT_EQ(scaled.events, base.events);
+    if (!late) {  // its commands are decided a tick after what they may depend on, whatever a tick is
+      EXPECT_EQ(scaled.events, base.events);
+    }
     for (std::size_t n = 0; n < base.nodes.size(); ++n) {
       EXPECT_EQ(scaled.nodes[n].finish, base.nodes[n].finish * scale);
       for (std::size_t i = 0; i < activities; ++i) {
@@ -184,6 +190,7 @@ TEST_P(Schemes, WithoutAnyCostsTheFrameTakesNoTime) {
     machine.interconnect.latency_cycles = 0;
     machine.banks.access_cycles = 0;
     machine.banks.busy_cycles = 0;
+    machine.banks.dram.reset();
     machine.host.latency_cycles = 0;
     machine.host.occupancy_cycles = 0;
     machine.network.hop_cycles = 0;

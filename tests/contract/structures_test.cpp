@@ -76,6 +76,20 @@ std::vector<Built> build_all(const std::shared_ptr<const TriangleSet>& triangles
   add_grid(1.0, {1, 1, 1});
   add_grid(1.0, {0, 0, 0}, accel::GridMatch::octree_nodes);
   add_grid(1.0, {0, 0, 0}, accel::GridMatch::octree_cells);
+  const auto add_bvh = [&](accel::BvhNodeKind node, std::uint32_t max_objects, std::uint32_t bins = 32) {
+    accel::StructureOptions options;
+    options.bvh = {.node = node, .max_objects = max_objects, .bins = bins};
+    all.push_back({"bvh " + std::string(accel::bvh_node_names[static_cast<std::size_t>(node)]) + ", " +
+                       std::to_string(max_objects),
+                   accel::make_structure("bvh", triangles, options)});
+  };
+  add_bvh(accel::BvhNodeKind::two, 4);
+  add_bvh(accel::BvhNodeKind::two, 1, 2);
+  add_bvh(accel::BvhNodeKind::four, 4);
+  add_bvh(accel::BvhNodeKind::eight, 4);
+  add_bvh(accel::BvhNodeKind::eight, 64, 64);
+  add_bvh(accel::BvhNodeKind::eight_quantised, 3);
+  add_bvh(accel::BvhNodeKind::eight_quantised, 1, 16);
   add("none", 8, 12);
   return all;
 }
@@ -232,7 +246,7 @@ TEST(StructureContract, ScaleByPowersOfTwoIsExact) {
       }
     }
     const auto scaled_set = std::make_shared<const TriangleSet>(scaled);
-    for (const std::string_view kind : {"octree", "bsp", "grid"}) {
+    for (const std::string_view kind : {"octree", "bsp", "grid", "bvh"}) {
       const auto structure = accel::make_structure(kind, scaled_set);
       EXPECT_EQ(structure->topology().nodes.size(),
                 accel::make_structure(kind, unit_set)->topology().nodes.size());

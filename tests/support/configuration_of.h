@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "memory/dram_presets.h"
 #include "processors/machine/machine_config.h"
 #include "sim/config.h"
 #include "sim/units.h"
@@ -81,8 +82,10 @@ inline void assign_caches(const processors::MachineConfig& m, Assignments& to) {
   to.set("layout.pixel", m.layout.pixel_bytes);
   to.set("layout.record_alignment", m.layout.record_alignment);
   to.set("layout.section_alignment", static_cast<std::int64_t>(m.layout.section_alignment));
-  to.set("layout.node_order",
-         m.layout.node_order == memory::NodeOrder::depth_first ? "depth_first" : "breadth_first");
+  to.choose("layout.node_order", memory::node_order_names, m.layout.node_order);
+  if (m.layout.node_order == memory::NodeOrder::treelets) {
+    to.set("layout.treelet", m.layout.treelet_bytes);
+  }
   to.choose("cache.organisation", processors::cache_organisation_names, m.cache.organisation);
   to.set("cache.size", static_cast<std::int64_t>(m.cache.cache.size));
   to.set("cache.node_size", static_cast<std::int64_t>(m.cache.split_sizes[0]));
@@ -124,6 +127,26 @@ inline void assign_memory(const processors::MachineConfig& m, Assignments& to) {
   to.set("memory.busy_cycles", m.banks.busy_cycles);
 }
 
+/// Of a memory made of one of the presets by test::add_random_dram.
+inline void assign_dram(const memory::DramConfig& dram, Assignments& to) {
+  to.choose("memory.model", std::array<std::string_view, 2>{"fixed", "dram"}, 1);
+  to.choose("dram.preset", memory::dram_preset_names,
+            dram.two_command_buses   ? 2
+            : dram.column_cycles > 1 ? 1
+                                     : 0);
+  to.choose("dram.policy", memory::dram_policy_names, dram.policy);
+  to.choose("dram.page", memory::dram_page_names, dram.page);
+  to.set("dram.queue", dram.queue);
+  to.set("dram.reorder_cap", dram.reorder_cap);
+  to.set("dram.tck", dram.period);
+  to.set("dram.channels", dram.channels);
+  to.set("dram.ranks", dram.ranks);
+  to.set("dram.banks", dram.banks);
+  to.set("dram.row", dram.row_bytes);
+  to.set("dram.burst", dram.burst_bytes);
+  to.set("dram.trefi", dram.timing.refi);
+}
+
 inline void assign_flow(const processors::MachineConfig& m, Assignments& to) {
   to.choose("network.kind", memory::network_kind_names, m.network.kind);
   to.set("network.clock", m.network.clock);
@@ -163,6 +186,9 @@ inline std::vector<std::string> assignments_of(const processors::MachineConfig& 
   assign_caches(machine, assignments);
   assign_memory(machine, assignments);
   assign_flow(machine, assignments);
+  if (machine.banks.dram) {
+    assign_dram(*machine.banks.dram, assignments);
+  }
   return assignments.take();
 }
 

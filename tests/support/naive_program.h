@@ -87,22 +87,24 @@ class NaiveProgram {
       : log_(log),
         machine_(machine),
         layout_(machine.layout,
-                {log.topology.nodes.size(), log.topology.entries.size(), log.primitives, log.materials,
+                {count_records(log), log.topology.entries.size(), log.primitives, log.materials,
                  log.texture_begin.back(), std::uint64_t{log.width} * log.height},
                 log.quadrics.size()),
         ticks_(step_ticks(machine, log)),
         unit_(machine.cache.organisation != CacheOrganisation::none ? machine.cache.cache.line
                                                                     : machine.banks.interleave) {
-    if (machine.layout.node_order == memory::NodeOrder::depth_first) {
-      number_depth_first();
-    }
+    number_records();
   }
 
   [[nodiscard]] const memory::Layout& layout() const { return layout_; }
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
   [[nodiscard]] std::uint32_t unit() const { return unit_; }
   memory::Address node_address(std::uint32_t node) const {
-    return layout_.address(memory::RecordKind::node, rank_.empty() ? node : rank_[node]);
+    return layout_.address(memory::RecordKind::node, rank_[node]);
+  }
+  /// The leaves of a bounding volume hierarchy have no records.
+  static bool has_record(const WorkLog& log, std::uint32_t node) {
+    return !log.topology.nodes[node].leaf || !accel::walks_bvh(log.traversal);
   }
   /// The actions of one step of a ray, which is named by the operand of its `ray` step.
   std::vector<Action> actions_of(const std::uint32_t* word, std::uint32_t ray) const {
@@ -135,21 +137,73 @@ class NaiveProgram {
   }
 
  private:
-  void number_depth_first() {
-    rank_.resize(log_.topology.nodes.size());
-    std::uint32_t next = 1;
-    number_below(0, next);
+  static std::uint64_t count_records(const WorkLog& log) {
+    std::uint64_t count = 0;
+    for (std::uint32_t node = 0; node < log.topology.nodes.size(); ++node) {
+      count += has_record(log, node) ? 1 : 0;
+    }
+    return count;
   }
-  void number_below(std::uint32_t number, std::uint32_t& next) {
+  // Writes the nodes in their order first, then numbers those with records.
+  void number_records() {
+    std::vector<std::uint32_t> order = {0};
+    switch (machine_.layout.node_order) {
+      case memory::NodeOrder::breadth_first:
+        for (std::uint32_t node = 1; node < log_.topology.nodes.size(); ++node) {
+          order.push_back(node);
+        }
+        break;
+      case memory::NodeOrder::depth_first:
+        order_below(0, order);
+        break;
+      case memory::NodeOrder::treelets:
+        order_by_treelets(order);
+        break;
+    }
+    rank_.resize(log_.topology.nodes.size());
+    std::uint32_t next = 0;
+    for (const std::uint32_t node : order) {
+      rank_[node] = has_record(log_, node) ? next++ : 0;
+    }
+  }
+  void order_below(std::uint32_t number, std::vector<std::uint32_t>& order) {
     const accel::TopologyNode& node = log_.topology.nodes[number];
-    if (node.leaf) {
-      return;
+    for (std::uint32_t child = 0; !node.leaf && child < node.count; ++child) {
+      order.push_back(node.first + child);
     }
-    for (std::uint32_t child = 0; child < node.count; ++child) {
-      rank_[node.first + child] = next++;
+    for (std::uint32_t child = 0; !node.leaf && child < node.count; ++child) {
+      order_below(node.first + child, order);
     }
-    for (std::uint32_t child = 0; child < node.count; ++child) {
-      number_below(node.first + child, next);
+  }
+  void order_by_treelets(std::vector<std::uint32_t>& order) {
+    const std::size_t room =
+        std::max<std::size_t>(1, machine_.layout.treelet_bytes / machine_.layout.node_bytes);
+    std::vector<std::uint32_t> tops = {0};
+    std::size_t filled = 1;
+    while (!tops.empty()) {
+      std::vector<std::uint32_t> at_hand = {tops.front()};
+      tops.erase(tops.begin());
+      std::vector<std::uint32_t> left;
+      while (!at_hand.empty()) {
+        const std::uint32_t number = at_hand.front();
+        at_hand.erase(at_hand.begin());
+        const accel::TopologyNode& node = log_.topology.nodes[number];
+        std::size_t records = 0;
+        for (std::uint32_t child = 0; !node.leaf && child < node.count; ++child) {
+          records += has_record(log_, node.first + child) ? 1 : 0;
+        }
+        if (!node.leaf && (!left.empty() || (filled > 0 && filled + records > room))) {
+          left.push_back(number);
+          continue;
+        }
+        filled += records;
+        for (std::uint32_t child = 0; !node.leaf && child < node.count; ++child) {
+          order.push_back(node.first + child);
+          at_hand.push_back(node.first + child);
+        }
+      }
+      tops.insert(tops.begin(), left.begin(), left.end());
+      filled = 0;
     }
   }
 
@@ -165,7 +219,9 @@ class NaiveProgram {
     }
   }
   void read_node(std::vector<Action>& to, std::uint32_t node) const {
-    read(to, memory::RecordKind::node, node_address(node), machine_.layout.node_bytes);
+    if (has_record(log_, node)) {
+      read(to, memory::RecordKind::node, node_address(node), machine_.layout.node_bytes);
+    }
   }
   void read_material(std::vector<Action>& to, std::uint32_t material) const {
     read(to, memory::RecordKind::material, layout_.address(memory::RecordKind::material, material),

@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "memory/dram_presets.h"
 #include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
 #include "processors/walk/build_start.h"
@@ -199,7 +200,9 @@ inline processors::WorkLog random_tree_log(Random& random, std::uint32_t width, 
   using processors::make_word;
   using processors::Step;
   processors::WorkLog log;
-  log.traversal = static_cast<accel::Traversal>(pick(random, 0, accel::traversals - 1));
+  do {  // a bounding volume hierarchy is not built by machines
+    log.traversal = static_cast<accel::Traversal>(pick(random, 0, accel::traversals - 1));
+  } while (accel::walks_bvh(log.traversal));
   log.mailboxes = pick(random, 0, 1) == 1;
   log.width = width;
   log.height = height;
@@ -302,7 +305,8 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
   machine.layout.node_bytes = static_cast<std::uint32_t>(pick(random, 1, 40));
   machine.layout.primitive_bytes = static_cast<std::uint32_t>(pick(random, 1, 100));
   machine.layout.quadric_bytes = static_cast<std::uint32_t>(pick(random, 1, 100));
-  machine.layout.node_order = static_cast<memory::NodeOrder>(pick(random, 0, 1));
+  machine.layout.node_order = static_cast<memory::NodeOrder>(pick(random, 0, 2));
+  machine.layout.treelet_bytes = static_cast<std::uint32_t>(pick(random, 1, 400));
   machine.cache.organisation = static_cast<processors::CacheOrganisation>(pick(random, 0, 2));
   machine.cache.hit_cycles = pick(random, 0, 2);
   machine.cache.cache.line = 1U << pick(random, 2, 6);
@@ -357,6 +361,32 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
   machine.network.cycles_per_beat = pick(random, 0, 2);
   machine.network.hop_cycles = pick(random, 0, 4);
   return machine;
+}
+
+/// Now and then a memory of DRAM, of any kind that the machine can have. Call it last.
+inline void add_random_dram(Random& random, processors::MachineConfig& machine) {
+  if (machine.placement != processors::Placement::shared || machine.scheme == processors::Scheme::space ||
+      machine.interconnect.kind == memory::InterconnectKind::ideal || pick(random, 0, 2) > 0) {
+    return;
+  }
+  memory::DramConfig dram = memory::dram_preset(static_cast<std::size_t>(pick(random, 0, 2)));
+  dram.period = pick(random, 1, 40);
+  dram.channels = 1U << pick(random, 0, 2);
+  dram.ranks = 1U << pick(random, 0, 1);
+  dram.banks = 1U << pick(random, 0, 2);
+  dram.burst_bytes = 1U << pick(random, 3, 6);
+  dram.row_bytes = 1U << pick(random, 6, 9);
+  dram.page = static_cast<memory::DramPage>(pick(random, 0, 1));
+  dram.queue = static_cast<std::uint32_t>(pick(random, 1, 16));
+  dram.reorder_cap = static_cast<std::uint32_t>(pick(random, 0, 4));
+  dram.timing.refi = pick(random, 0, 1) == 0 ? 0 : dram.timing.refi;
+  const bool held = machine.interconnect.kind == memory::InterconnectKind::bus &&
+                    machine.interconnect.mode == memory::BusMode::held;
+  if (!held && machine.l2.sharing != processors::SecondLevel::shared &&
+      machine.build.sharing != processors::Sharing::shared) {
+    dram.policy = static_cast<memory::DramPolicy>(pick(random, 0, 1));
+  }
+  machine.banks.dram = dram;
 }
 
 /// Any contexts and prefetching that the machine can have; `tree`: the log's walk is that of a tree.

@@ -9,6 +9,7 @@
 #include "studies/run/functional_run.h"
 #include "studies/schemes/arguments.h"
 #include "studies/schemes/schemes_keys.h"
+#include "studies/schemes/structure_table.h"
 
 namespace marti::tests {
 namespace {
@@ -87,12 +88,33 @@ TEST(Arguments, APipelineIsLimitedByItsSlowestStage) {
 TEST(Arguments, TooSmallAndTooLargeCellsBothHurtTheCache) {
   const std::vector<CellPoint> cells = time_cells(shipped());
   ASSERT_EQ(cells.size(), 3U);
-  const auto misses = [&](std::size_t i) { return cells[i].references.all_misses(); };
+  const auto misses = [&](std::size_t i) { return cells[i].tree.references.all_misses(); };
   EXPECT_GT(misses(0), 2 * misses(1));
   EXPECT_GT(4 * misses(2), 5 * misses(1));
-  EXPECT_GT(cells[0].end, cells[1].end);
+  EXPECT_GT(cells[0].tree.end, cells[1].tree.end);
   const std::vector<Claim> claims = check_arguments({}, cells, {});
   EXPECT_EQ(claims.back().verdict, Verdict::agrees) << claims.back().here;
+}
+
+// Each with records of its own size; the hits, and so the points shaded, are the same.
+TEST(Arguments, StructuresAreComparedOnOneMachine) {
+  SchemesConfig config = shipped();
+  config.structures = {{"octree", "octree"},
+                       {"bvh:2", "bvh", accel::BvhNodeKind::two},
+                       {"bvh:8", "bvh", accel::BvhNodeKind::eight},
+                       {"bvh:8_quantised", "bvh", accel::BvhNodeKind::eight_quantised}};
+  const std::vector<StructurePoint> points = time_structures(config);
+  ASSERT_EQ(points.size(), 4U);
+  for (const StructurePoint& point : points) {
+    EXPECT_EQ(point.tree.steps.shades, points[0].tree.steps.shades) << point.name;
+  }
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    EXPECT_EQ(points[i].tree.tree_entries, points[1].tree.tree_entries) << "each primitive once";
+    EXPECT_LT(points[i].tree.tree_entries, points[0].tree.tree_entries);
+  }
+  EXPECT_LT(points[2].tree.steps.branches, points[1].tree.steps.branches) << "a record holds more boxes";
+  EXPECT_LT(points[3].tree.references.references(), points[2].tree.references.references())
+      << "a record has fewer bytes";
 }
 
 TEST(Arguments, EveryOtherStatementOfTheShippedStudyIsMeasuredAndAgrees) {

@@ -37,8 +37,9 @@ class StagedWalker : public LogWalker<Caches> {
       return;
     }
     cursor.kind = memory::RecordKind::node;
-    cursor.at = input_.layout.address(cursor.kind, rank_ == nullptr ? leaf : rank_[leaf]);
-    cursor.end = cursor.at + node_bytes_;
+    const std::uint32_t record = rank_ == nullptr ? leaf : rank_[leaf];
+    cursor.at = record == no_record ? 0 : input_.layout.address(cursor.kind, record);
+    cursor.end = cursor.at + (record == no_record ? 0 : node_bytes_);
   }
 
   /// Begins the second part of the visit, perhaps at another node: the leaf's list and tests. cursor.word

@@ -38,6 +38,21 @@ std::uint64_t stride_of(const memory::Layout& layout, std::uint64_t primitive) {
          layout.address(RecordKind::primitive, primitive);
 }
 
+// Bytes of the record of a tree node; the leaves of a bounding volume hierarchy have none.
+std::uint64_t record_bytes(const WorkLog& log, const memory::Layout& layout, std::size_t number) {
+  return log.topology.nodes[number].leaf && accel::walks_bvh(log.traversal) ? 0
+                                                                            : layout.stride(RecordKind::node);
+}
+
+// Bytes of the records that every node has.
+std::uint64_t top_bytes(const WorkLog& log, const memory::Layout& layout, const SpacePlan& plan) {
+  std::uint64_t bytes = 0;
+  for (std::size_t number = 0; number < plan.owner.size(); ++number) {
+    bytes += plan.owner[number] == RegionMap::top ? record_bytes(log, layout, number) : 0;
+  }
+  return bytes;
+}
+
 // Adds the records of each node's regions to its memory, and counts primitives that are held twice or more.
 void add_regions(const WorkLog& log, const memory::Layout& layout, SpacePlan& plan) {
   const accel::Topology& topology = log.topology;
@@ -46,7 +61,7 @@ void add_regions(const WorkLog& log, const memory::Layout& layout, SpacePlan& pl
       const accel::TopologyNode& node = topology.nodes[number];
       const std::uint64_t entries = node.leaf ? node.count : 0;
       plan.memory_bytes[plan.owner[number]] +=
-          layout.stride(RecordKind::node) + entries * layout.stride(RecordKind::list);
+          record_bytes(log, layout, number) + entries * layout.stride(RecordKind::list);
     }
   }
   std::vector<bool> is_held(log.primitives);  // by any node so far
@@ -78,9 +93,9 @@ SpacePlan plan_space(const WorkLog& log, const MachineConfig& config, const memo
                  [&](std::uint32_t region) {
                    return region == RegionMap::top ? RegionMap::top : plan.node_of_region[region];
                  });
-  plan.memory_bytes.assign(
-      config.nodes, std::uint64_t{plan.regions.top_nodes} * layout.stride(RecordKind::node) +
-                        layout.section_bytes(RecordKind::material) + layout.section_bytes(RecordKind::texel));
+  plan.memory_bytes.assign(config.nodes, top_bytes(log, layout, plan) +
+                                             layout.section_bytes(RecordKind::material) +
+                                             layout.section_bytes(RecordKind::texel));
   add_regions(log, layout, plan);
   return plan;
 }

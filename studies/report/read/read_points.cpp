@@ -214,7 +214,8 @@ class Settings {
     const bool bus = value("interconnect.kind") == "\"bus\"";
     const bool local = value("database.placement") != "\"shared\"";
     point.links_are_queues = !local && (bus || value("interconnect.kind") == "\"crossbar\"");
-    point.banks_are_queues = point.links_are_queues && !(bus && value("interconnect.mode") == "\"held\"");
+    point.banks_are_queues = point.links_are_queues && value("memory.model") != "\"dram\"" &&
+                             !(bus && value("interconnect.mode") == "\"held\"");
     if (!begun_) {
       shared_ = by_key;
       begun_ = true;

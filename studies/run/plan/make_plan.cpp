@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "accel/bsp.h"
+#include "accel/bvh.h"
 #include "accel/traversal.h"
 
 namespace marti::studies {
@@ -153,9 +154,10 @@ PlanEntry unreachable(const PlanFacts& facts) {
 }
 
 PlanEntry structures(const PlanFacts& facts) {
+  // Those that sort primitives into cells: a bounding volume hierarchy divides lists of them instead.
   const auto kinds = accel::structure_kinds();
   const auto others = std::count_if(kinds.begin(), kinds.end(), [&](std::string_view kind) {
-    return kind != facts.structure && kind != accel::BruteForce::kind_name;
+    return kind != facts.structure && kind != accel::BruteForce::kind_name && kind != accel::Bvh::kind_name;
   });
   return entry_of(PlanItem::structures, PlanClass::proved, facts.keep,
                   {true, false, "structure.kind is " + facts.structure + "; no other kind is built"},

@@ -42,6 +42,25 @@ StructureOptions options_of(std::uint64_t limit) {
   return options;
 }
 
+// A hierarchy is as large as the scene, so it takes more triangles.
+TEST(BuildMemoryOfABvh, NeverExceedsTheBudget) {
+  if (!test::memory_can_be_measured) {
+    GTEST_SKIP() << "a sanitizer takes memory of its own";
+  }
+  const auto triangles = scattered(120'000);
+  const auto build = [&](std::uint64_t limit) {
+    StructureOptions options;
+    options.bvh = {.max_objects = 1, .threads = 1, .memory = sim::MemoryBudget(limit)};
+    return test::user_error_of([&] { (void)make_structure("bvh", triangles, options); });
+  };
+  EXPECT_NE(build(mebibyte).find("more than 1 MiB"), std::string::npos);
+  // What the references, the binary tree, and the records need.
+  for (const std::uint64_t limit : {mebibyte, 12 * mebibyte, 22 * mebibyte, 26 * mebibyte, 30 * mebibyte}) {
+    EXPECT_LT(test::peak_bytes([&] { (void)build(limit); }), limit + 3 * mebibyte) << limit;
+  }
+  EXPECT_GT(test::peak_bytes([&] { (void)build(2048 * mebibyte); }), 20 * mebibyte);
+}
+
 class BuildMemory : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(BuildMemory, NeverExceedsTheBudget) {

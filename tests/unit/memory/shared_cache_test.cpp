@@ -27,11 +27,11 @@ BankConfig cached(std::uint64_t lines) {
 
 TEST(SharedCache, AHitTakesItsCyclesAndNoBank) {
   Banks banks(cached(4));
-  EXPECT_EQ(banks.read(0, 100).ready, 140) << "a miss is its bank's access";
-  const BankAccess hit = banks.read(31, 500);
+  EXPECT_EQ(banks.read(0, 1, 100).ready, 140) << "a miss is its bank's access";
+  const BankAccess hit = banks.read(31, 1, 500);
   EXPECT_EQ(hit.start, 500);
   EXPECT_EQ(hit.ready, 520);
-  EXPECT_EQ(banks.read(0, 500).ready, 520) << "hits do not wait for each other";
+  EXPECT_EQ(banks.read(0, 1, 500).ready, 520) << "hits do not wait for each other";
   EXPECT_EQ(banks.statistics()[0].accesses, 1);
   EXPECT_EQ(banks.cache_statistics()->lookups.hits, 2);
   EXPECT_EQ(banks.cache_statistics()->lookups.misses, 1);
@@ -39,20 +39,20 @@ TEST(SharedCache, AHitTakesItsCyclesAndNoBank) {
 
 TEST(SharedCache, ALineOnItsWayIsNotReadyBeforeItIsThere) {
   Banks banks(cached(4));
-  (void)banks.read(0, 100);  // there at 140
-  EXPECT_EQ(banks.read(0, 110).ready, 140);
-  EXPECT_EQ(banks.read(0, 120).ready, 140);
-  EXPECT_EQ(banks.read(0, 121).ready, 141);
+  (void)banks.read(0, 1, 100);  // there at 140
+  EXPECT_EQ(banks.read(0, 1, 110).ready, 140);
+  EXPECT_EQ(banks.read(0, 1, 120).ready, 140);
+  EXPECT_EQ(banks.read(0, 1, 121).ready, 141);
   EXPECT_EQ(banks.cache_statistics()->waits.sum, 10);
   EXPECT_EQ(banks.statistics()[0].accesses, 1);
 }
 
 TEST(SharedCache, WritesGoToTheirBankAndLeaveTheLines) {
   Banks banks(cached(1));
-  (void)banks.read(0, 0);
-  EXPECT_EQ(banks.write(0, 100).ready, 140);
-  EXPECT_EQ(banks.write(64, 200).ready, 240) << "a write brings nothing in";
-  EXPECT_EQ(banks.read(0, 300).ready, 320) << "and takes nothing out";
+  (void)banks.read(0, 1, 0);
+  EXPECT_EQ(banks.write(0, 1, 100).ready, 140);
+  EXPECT_EQ(banks.write(64, 1, 200).ready, 240) << "a write brings nothing in";
+  EXPECT_EQ(banks.read(0, 1, 300).ready, 320) << "and takes nothing out";
   EXPECT_EQ(banks.statistics()[0].accesses, 3);
 }
 
@@ -68,7 +68,7 @@ TEST(SharedCache, RandomReadsAgreeWithTheCacheAloneAndEveryArrivalOfALine) {
       now += static_cast<sim::Ticks>(random() % 25);
       const Address line = random() % 300;
       const bool hit = alone.read(line * 32, 1) == 0;
-      const BankAccess access = banks.read(line * 32 + random() % 32, now);
+      const BankAccess access = banks.read(line * 32 + random() % 32, 1, now);
       if (hit) {
         ASSERT_EQ(access.ready, std::max(now + 20, there.at(line)));
       } else {

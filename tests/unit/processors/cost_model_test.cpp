@@ -30,9 +30,14 @@ void expect_close(const char* step, const OperationMix& measured, const Operatio
 struct Walk {
   accel::Traversal traversal;
   const char* kind;
-  accel::BspWalk bsp;
+  accel::BspWalk bsp = accel::BspWalk::recursive;
+  accel::BvhNodeKind bvh = accel::BvhNodeKind::eight;
 };
-constexpr Walk octree_walk{accel::Traversal::octree, "octree", accel::BspWalk::recursive};
+constexpr Walk octree_walk{accel::Traversal::octree, "octree"};
+
+constexpr Walk bvh_walk(accel::Traversal traversal, accel::BvhNodeKind node) {
+  return {traversal, "bvh", accel::BspWalk::recursive, node};
+}
 
 MeasuredMixes measure(const scenes::Scene& scene, const Walk& walk = octree_walk, std::uint32_t side = 128,
                       Integrator integrator = Integrator::whitted) {
@@ -41,6 +46,7 @@ MeasuredMixes measure(const scenes::Scene& scene, const Walk& walk = octree_walk
   options.octree.max_objects = options.bsp.max_objects = 9;
   options.octree.max_level = options.bsp.max_level = 12;
   options.bsp.walk = walk.bsp;
+  options.bvh.node = walk.bvh;
   const auto structure = accel::make_structure(walk.kind, triangles, options);
   EXPECT_EQ(accel::traversal_of(*structure), walk.traversal);
   return measure_operation_mixes(scene, *triangles, *structure,
@@ -102,10 +108,13 @@ TEST_P(WalkMixes, TheTableIsWhatTheProgramDoes) {
 }
 INSTANTIATE_TEST_SUITE_P(
     OperationMixes, WalkMixes,
-    ::testing::Values(octree_walk, Walk{accel::Traversal::bsp_recursive, "bsp", accel::BspWalk::recursive},
+    ::testing::Values(octree_walk, Walk{accel::Traversal::bsp_recursive, "bsp"},
                       Walk{accel::Traversal::bsp_push_point, "bsp", accel::BspWalk::push_point},
-                      Walk{accel::Traversal::grid, "grid", accel::BspWalk::recursive},
-                      Walk{accel::Traversal::none, "none", accel::BspWalk::recursive}),
+                      Walk{accel::Traversal::grid, "grid"}, Walk{accel::Traversal::none, "none"},
+                      bvh_walk(accel::Traversal::bvh_two, accel::BvhNodeKind::two),
+                      bvh_walk(accel::Traversal::bvh_four, accel::BvhNodeKind::four),
+                      bvh_walk(accel::Traversal::bvh_eight, accel::BvhNodeKind::eight),
+                      bvh_walk(accel::Traversal::bvh_eight_quantised, accel::BvhNodeKind::eight_quantised)),
     [](const auto& tested) { return std::to_string(tested.index); });
 
 TEST(OperationMixes, CurvedPrimitivesHaveTestsOfTheirOwn) {

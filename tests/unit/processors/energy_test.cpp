@@ -348,16 +348,21 @@ Case random_case(test::Random& random) {
     default:
       test::add_random_second_level(random, one.machine);
   }
+  test::add_random_dram(random, one.machine);
   return one;
 }
 
-// The reads and writes of all memories, found another way than energy_counts() does: by the banks, or by what
-// an ideal interconnect and the nodes' own memories were asked for.
+// The reads and writes of all memories, or of DRAM the rows it has opened, found another way than
+// energy_counts() does: by the banks, or by what an ideal interconnect and the nodes' own memories were asked
+// for.
 std::int64_t accesses_of(const MachineConfig& machine, const MachineResult& result) {
   std::int64_t accesses = 0;
   for (const ClusterResult& cluster : result.clusters) {
     for (const memory::BankStatistics& bank : cluster.banks) {
-      accesses += bank.accesses;
+      accesses += cluster.dram.empty() ? bank.accesses : 0;
+    }
+    for (const memory::DramStatistics& channel : cluster.dram) {
+      accesses += channel.activations;
     }
     if (cluster.banks.empty()) {
       accesses += cluster.interconnect.reads + cluster.interconnect.writes;

@@ -538,7 +538,8 @@ class NaiveContexts final : public sim::EventHandler {
     const accel::TopologyNode& node = log_.topology.nodes[branch];
     std::set<std::uint64_t> lines;
     for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
-      for (std::uint32_t byte = 0; byte < machine_.layout.node_bytes; ++byte) {
+      const bool there = NaiveProgram::has_record(log_, child);
+      for (std::uint32_t byte = 0; there && byte < machine_.layout.node_bytes; ++byte) {
         lines.insert((program_.node_address(child) + byte) / unit_);
       }
     }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <vector>
 
@@ -99,21 +101,66 @@ TEST(Host, ABusyHostServesRequestsOneAfterTheOther) {
   EXPECT_EQ(host.statistics().busy, 90);
 }
 
-TEST(NodeOrder, DepthFirstIsAPermutationThatKeepsChildrenTogether) {
+// In every order each node with a record has one, siblings lie in a row, and children behind their parents.
+TEST(NodeOrder, EveryOrderIsAPermutationThatKeepsChildrenTogether) {
   test::Random random(2);
-  const accel::Topology topology = test::random_topology(random, 30, 10, 3);
-  const std::vector<std::uint32_t> rank = depth_first_rank(topology);
-  std::vector<int> seen(rank.size());
-  for (const std::uint32_t r : rank) {
-    ++seen.at(r);
-  }
-  EXPECT_EQ(seen, std::vector<int>(rank.size(), 1));
-  EXPECT_EQ(rank[0], 0U);
-  for (const accel::TopologyNode& node : topology.nodes) {
-    for (std::uint32_t i = 1; !node.leaf && i < node.count; ++i) {
-      EXPECT_EQ(rank[node.first + i], rank[node.first] + i);
+  for (int k = 0; k < 40; ++k) {
+    const accel::Topology topology = test::random_topology(random, 30, 10, 3);
+    for (const bool leaf_records : {true, false}) {
+      const auto most = static_cast<std::uint32_t>(test::pick(random, 1, 40));
+      for (const std::vector<std::uint32_t>& rank :
+           {breadth_first_rank(topology, leaf_records), depth_first_rank(topology, leaf_records),
+            treelet_rank(topology, leaf_records, most)}) {
+        std::vector<std::uint32_t> records;
+        for (std::uint32_t node = 0; node < rank.size(); ++node) {
+          ASSERT_EQ(rank[node] == no_record, !leaf_records && topology.nodes[node].leaf);
+          if (rank[node] != no_record) {
+            records.push_back(rank[node]);
+          }
+        }
+        std::sort(records.begin(), records.end());
+        for (std::uint32_t record = 0; record < records.size(); ++record) {
+          ASSERT_EQ(records[record], record);
+        }
+        for (std::uint32_t branch = 0; branch < rank.size(); ++branch) {
+          const accel::TopologyNode& node = topology.nodes[branch];
+          std::uint32_t next = no_record;
+          for (std::uint32_t i = 0; !node.leaf && i < node.count; ++i) {
+            if (rank[node.first + i] != no_record) {
+              ASSERT_TRUE(next == no_record || rank[node.first + i] == next);
+              ASSERT_GT(rank[node.first + i], rank[branch]);
+              next = rank[node.first + i] + 1;
+            }
+          }
+        }
+      }
     }
   }
+}
+
+TEST(NodeOrder, OneLargeTreeletIsBreadthFirstAndOneOfEachBlockDepthFirst) {
+  test::Random random(3);
+  for (int k = 0; k < 20; ++k) {
+    const accel::Topology topology = test::random_topology(random, 30, 10, 3);
+    EXPECT_EQ(treelet_rank(topology, false, 1U << 20U), breadth_first_rank(topology, false));
+    EXPECT_EQ(treelet_rank(topology, true, 1), depth_first_rank(topology, true));
+  }
+}
+
+// A full binary tree of 15 nodes, in treelets of three records. The root and its children are the first.
+// Where leaves have no records, the two children of each of these are one. Where they have, each pair of
+// siblings is.
+TEST(NodeOrder, TreeletsHoldWhatFits) {
+  accel::Topology topology;
+  for (std::uint32_t node = 0; node < 15; ++node) {
+    topology.nodes.push_back({node < 7 ? 2 * node + 1 : node - 7, node < 7 ? 2U : 1U,
+                              static_cast<std::uint8_t>(std::bit_width(node + 1)), node >= 7});
+  }
+  const std::vector<std::uint32_t> rank = treelet_rank(topology, false, 3);
+  EXPECT_EQ(std::vector<std::uint32_t>(rank.begin(), rank.begin() + 7),
+            (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6}));
+  const std::vector<std::uint32_t> counted = treelet_rank(topology, true, 3);
+  EXPECT_EQ(counted, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 9, 10, 5, 6, 7, 8, 11, 12, 13, 14}));
 }
 
 }  // namespace

@@ -210,7 +210,7 @@ TEST(Path, ImageAndHitsDependOnNeitherStructureNorThreads) {
   RenderOptions options = paths(20, 4, 6);
   const Frame plain = Built(scene, "none").render(options);
   options.record = true;
-  for (const char* kind : {"octree", "bsp", "grid"}) {
+  for (const char* kind : {"octree", "bsp", "grid", "bvh"}) {
     for (const unsigned threads : {1U, 3U}) {
       const Frame frame = Built(scene, kind).render(options, threads);
       EXPECT_TRUE(test::same_bytes(frame.image, plain.image)) << kind;

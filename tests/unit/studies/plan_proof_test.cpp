@@ -147,7 +147,8 @@ TEST_P(PlanOfRandomScenes, ChangesNothing) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Structures, PlanOfRandomScenes, ::testing::Values("octree", "bsp", "grid", "none"));
+INSTANTIATE_TEST_SUITE_P(Structures, PlanOfRandomScenes,
+                         ::testing::Values("octree", "bsp", "grid", "bvh", "none"));
 
 class PlanOfShippedScenes : public ::testing::TestWithParam<std::string> {};
 

@@ -60,7 +60,7 @@ const RenderingStudy& jacks() {
 
 TEST(RenderingError, WhatMustNotChangeTheImageDoesNot) {
   const auto exact = points_of(jacks(), Knob::exact);
-  EXPECT_EQ(exact.size(), 18U);
+  EXPECT_EQ(exact.size(), 22U);
   for (const RenderingPoint* point : exact) {
     EXPECT_EQ(point->errors.plain.rmse, 0.0) << point->setting.name;
     EXPECT_EQ(point->errors.plain.changed, 0U) << point->setting.name;
@@ -156,7 +156,7 @@ TEST(RenderingError, CurvedPrimitivesHaveNoVoxelCutAndSaySo) {
   EXPECT_TRUE(points_of(study, Knob::voxel_cut).empty());
   ASSERT_EQ(study.plan.notes.size(), 1U);
   EXPECT_NE(study.plan.notes[0].find("curved primitives"), std::string::npos);
-  EXPECT_EQ(points_of(study, Knob::exact).size(), 18U);
+  EXPECT_EQ(points_of(study, Knob::exact).size(), 22U);
 }
 
 TEST(RenderingError, ReferencesOfMoreSamplesThanOneRenderingHasAreMeans) {

@@ -1,6 +1,6 @@
 #include "tests/validation/systemc/database.h"
 
-#include <numeric>
+#include <algorithm>
 
 namespace marti::oracle {
 
@@ -14,15 +14,26 @@ std::uint64_t round_up(std::uint64_t value, std::uint64_t multiple) {
 
 Database::Database(const memory::LayoutConfig& config, const processors::WorkLog& log)
     : config_(config), log_(log), record_of_(log.topology.nodes.size()) {
-  std::iota(record_of_.begin(), record_of_.end(), 0U);
-  if (config.node_order == memory::NodeOrder::depth_first) {
-    std::uint32_t next = 1;
-    place_children(0, next);
+  std::uint64_t first = place(0);
+  switch (config.node_order) {
+    case memory::NodeOrder::breadth_first:
+      for (std::uint32_t number = 1; number < record_of_.size(); ++number) {
+        place(number);
+      }
+      break;
+    case memory::NodeOrder::depth_first:
+      place_below(0);
+      break;
+    case memory::NodeOrder::treelets:
+      // The first treelet has the root's record, too.
+      const std::uint64_t most = std::max(1U, config.treelet_bytes / config.node_bytes);
+      place_treelet(0, most, first);
+      break;
   }
   const std::uint64_t record = config.record_alignment;
   const std::uint64_t section = config.section_alignment;
   const std::uint64_t texels = log.texture_begin.empty() ? 0 : log.texture_begin.back();
-  lists_ = round_up(log.topology.nodes.size() * round_up(config.node_bytes, record), section);
+  lists_ = round_up(records_ * round_up(config.node_bytes, record), section);
   triangles_ = round_up(lists_ + log.topology.entries.size() * config.entry_bytes, section);
   quadrics_ = triangles_ + log.triangles() * round_up(config.primitive_bytes, record);
   materials_ = round_up(quadrics_ + log.quadrics.size() * round_up(config.quadric_bytes, record), section);
@@ -30,22 +41,70 @@ Database::Database(const memory::LayoutConfig& config, const processors::WorkLog
   pixels_ = round_up(texels_ + texels * config.texel_bytes, section);
 }
 
+bool Database::has_record(std::uint32_t number) const {
+  return !(accel::walks_bvh(log_.traversal) && log_.topology.nodes[number].leaf);
+}
+
+// Gives the node the next record if it has one; returns how many records that are.
+std::uint64_t Database::place(std::uint32_t number) {
+  if (!has_record(number)) {
+    return 0;
+  }
+  record_of_[number] = records_++;
+  return 1;
+}
+
+void Database::place_children(std::uint32_t branch) {
+  const accel::TopologyNode& node = log_.topology.nodes[branch];
+  for (std::uint32_t child = 0; child < node.count; ++child) {
+    place(node.first + child);
+  }
+}
+
 // Depth-first: a branch's children in a row, then what is below the first of them, and so on.
-void Database::place_children(std::uint32_t branch, std::uint32_t& next) {
+void Database::place_below(std::uint32_t branch) {
   const accel::TopologyNode& node = log_.topology.nodes[branch];
   if (node.leaf) {
     return;
   }
+  place_children(branch);
   for (std::uint32_t child = 0; child < node.count; ++child) {
-    record_of_[node.first + child] = next++;
+    place_below(node.first + child);
   }
-  for (std::uint32_t child = 0; child < node.count; ++child) {
-    place_children(node.first + child, next);
+}
+
+// What is below `top`, breadth-first, as far as it fits; then so from each branch whose children did not fit.
+void Database::place_treelet(std::uint32_t top, std::uint64_t most, std::uint64_t used) {
+  std::vector<std::uint32_t> treelet = {top};
+  std::size_t next = 0;
+  for (; next < treelet.size(); ++next) {
+    const accel::TopologyNode& node = log_.topology.nodes[treelet[next]];
+    if (node.leaf) {
+      continue;
+    }
+    std::uint64_t records = 0;
+    for (std::uint32_t child = 0; child < node.count; ++child) {
+      records += has_record(node.first + child) ? 1 : 0;
+    }
+    if (used > 0 && used + records > most) {
+      break;
+    }
+    used += records;
+    place_children(treelet[next]);
+    for (std::uint32_t child = 0; child < node.count; ++child) {
+      treelet.push_back(node.first + child);
+    }
+  }
+  for (; next < treelet.size(); ++next) {
+    if (!log_.topology.nodes[treelet[next]].leaf) {
+      place_treelet(treelet[next], most, 0);
+    }
   }
 }
 
 Extent Database::node(std::uint32_t number) const {
-  return {record_of_[number] * round_up(config_.node_bytes, config_.record_alignment), config_.node_bytes};
+  return {record_of_[number] * round_up(config_.node_bytes, config_.record_alignment),
+          has_record(number) ? config_.node_bytes : 0};
 }
 
 Extent Database::list(const accel::TopologyNode& leaf, std::uint32_t count) const {

@@ -21,6 +21,7 @@ class Database {
  public:
   Database(const memory::LayoutConfig& config, const processors::WorkLog& log);
 
+  /// Without bytes for a leaf that has no record.
   [[nodiscard]] Extent node(std::uint32_t number) const;
   /// The first `count` entries of a leaf's list.
   [[nodiscard]] Extent list(const accel::TopologyNode& leaf, std::uint32_t count) const;
@@ -30,11 +31,16 @@ class Database {
   [[nodiscard]] Extent pixel(std::uint32_t x, std::uint32_t y) const;
 
  private:
-  void place_children(std::uint32_t branch, std::uint32_t& next);
+  [[nodiscard]] bool has_record(std::uint32_t number) const;
+  std::uint64_t place(std::uint32_t number);
+  void place_children(std::uint32_t branch);
+  void place_below(std::uint32_t branch);
+  void place_treelet(std::uint32_t top, std::uint64_t most, std::uint64_t used);
 
   memory::LayoutConfig config_;
   const processors::WorkLog& log_;
   std::vector<std::uint32_t> record_of_;  // of each tree node
+  std::uint32_t records_ = 0;             // of tree nodes, placed so far
   std::uint64_t lists_ = 0;
   std::uint64_t triangles_ = 0;
   std::uint64_t quadrics_ = 0;

@@ -60,7 +60,7 @@ void Program::step(std::vector<Operation>& operations) {
     case Step::branch:
       ++steps_.branches;
       operations.push_back(compute(Activity::traversal, ticks_.branch));
-      operations.push_back(read(RecordKind::node, database_.node(operand)));
+      read_node(operand, operations);
       return;
     case Step::leaf:
       visit_leaf(operand, log_.topology.nodes[operand].count, nullptr, operations);
@@ -99,7 +99,7 @@ void Program::step(std::vector<Operation>& operations) {
     case Step::cut:
       ++steps_.cuts;
       operations.push_back(compute(Activity::traversal, ticks_.cut));
-      operations.push_back(read(RecordKind::node, database_.node(operand)));
+      read_node(operand, operations);
       return;
     case Step::pass:
       ++steps_.passes;
@@ -110,13 +110,19 @@ void Program::step(std::vector<Operation>& operations) {
   throw sim::InternalError("the SystemC model knows no such step");
 }
 
+void Program::read_node(std::uint32_t number, std::vector<Operation>& operations) {
+  if (const Extent record = database_.node(number); record.bytes > 0) {
+    operations.push_back(read(RecordKind::node, record));
+  }
+}
+
 // `tested` has a bit for each entry; without it all are tested.
 void Program::visit_leaf(std::uint32_t number, std::uint32_t entries, const std::uint32_t* tested,
                          std::vector<Operation>& operations) {
   const accel::TopologyNode& leaf = log_.topology.nodes[number];
   ++steps_.leaves;
   operations.push_back(compute(Activity::traversal, ticks_.leaf));
-  operations.push_back(read(RecordKind::node, database_.node(number)));
+  read_node(number, operations);
   if (entries == 0) {
     return;
   }

@@ -37,6 +37,7 @@ class Program {
  private:
   void step(std::vector<Operation>& operations);
   void end_pixel(std::vector<Operation>& operations);
+  void read_node(std::uint32_t number, std::vector<Operation>& operations);
   void visit_leaf(std::uint32_t number, std::uint32_t entries, const std::uint32_t* tested,
                   std::vector<Operation>& operations);
   void test(std::uint32_t primitive, std::vector<Operation>& operations);

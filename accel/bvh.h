@@ -1,0 +1,126 @@
+// The bounding volume hierarchy: every primitive is in exactly one leaf, and a branch has a box around each
+// of its children. Built as a binary tree by the surface area heuristic (bvh_build.h), whose nodes are then
+// merged into nodes with more children; bvh_walk.h says how it is walked, and why it misses no hit.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "accel/bvh_box.h"
+#include "accel/bvh_build.h"
+#include "accel/bvh_nodes.h"
+#include "accel/bvh_options.h"
+#include "accel/bvh_ray.h"
+#include "accel/bvh_walk.h"
+#include "accel/cache_aligned.h"
+#include "accel/mailbox.h"
+#include "accel/ray.h"
+#include "accel/topology.h"
+#include "accel/traversal.h"
+#include "accel/triangles.h"
+#include "sim/error.h"
+
+namespace marti::accel {
+
+class Bvh {
+ public:
+  static constexpr std::string_view kind_name = "bvh";
+
+  /// Builds the whole tree, on options.threads host threads. Throws UserError when an option is out of range.
+  /// Unless there are no primitives, the root is a branch.
+  [[nodiscard]] static Bvh build(std::shared_ptr<const TriangleSet> triangles,
+                                 const BvhOptions& options = {});
+
+  [[nodiscard]] const Topology& topology() const { return topology_; }
+  [[nodiscard]] const TriangleSet& triangles() const { return *triangles_; }
+  [[nodiscard]] const BvhOptions& options() const { return options_; }
+  [[nodiscard]] const scenes::Bounds& bounds() const { return frame_.box; }
+  [[nodiscard]] Traversal traversal() const;
+
+  /// The expected cost of a random ray that meets the root's box: the sum over the branches of the chance to
+  /// meet their boxes, plus that over the leaves times their numbers of primitives. A chance is the surface
+  /// area of a box, as it is kept, over that of the root. 0 without primitives or without area.
+  [[nodiscard]] double sah_cost() const;
+
+  /// Bytes of host memory for the walks' own records, without the topology.
+  [[nodiscard]] std::uint64_t walk_bytes() const;
+
+  /// The nearest hit. Real is the scalar of the arithmetic (double, Counted to count operations, or float for
+  /// comparison).
+  template <class Real = double, class Visitor>
+  [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
+    const RaySetup<Real> setup(ray);
+    Best<Real> best(setup);
+    query<false>(ray, setup, best, visitor);
+    return best.hit();
+  }
+
+  /// Whether anything is hit; ends at the first hit.
+  template <class Real = double, class Visitor>
+  [[nodiscard]] bool occluded(const Ray& ray, Visitor& visitor) const {
+    const RaySetup<Real> setup(ray);
+    Best<Real> best(setup);
+    return query<true>(ray, setup, best, visitor);
+  }
+
+ private:
+  Bvh() = default;
+
+  void number_nodes(const BvhBinaryTree& binary);
+  void order_records();
+  template <class Node>
+  void make_records(CacheAligned<Node>& records);
+
+  template <class Node>
+  [[nodiscard]] BvhView<Node> view(const CacheAligned<Node>& records) const {
+    return {.nodes = records.data(),
+            .first = first_.data(),
+            .primitives = primitives_.data(),
+            .triangles = triangles_.get(),
+            .frame = &frame_,
+            .space = space_,
+            .vectors = vectors_};
+  }
+  /// Calls `f` with the view of this tree's kind of records.
+  template <class F>
+  decltype(auto) with_view(F&& f) const {
+    switch (options_.node) {
+      case BvhNodeKind::two:
+        return f(view(two_));
+      case BvhNodeKind::four:
+        return f(view(four_));
+      case BvhNodeKind::eight:
+        return f(view(eight_));
+      case BvhNodeKind::eight_quantised:
+        break;
+    }
+    return f(view(quantised_));
+  }
+
+  template <bool Any, class Real, class Visitor>
+  bool query(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const {
+    begin_query(visitor);
+    return with_view([&](const auto& view) { return query_bvh<Any>(view, ray, setup, best, visitor); });
+  }
+
+  std::shared_ptr<const TriangleSet> triangles_;
+  BvhOptions options_;
+  RootFrame frame_;
+  BvhSpace space_;
+  Topology topology_;
+  std::vector<BvhBox> boxes_;         ///< by node number; only while the tree is built
+  std::vector<std::uint32_t> first_;  ///< see BvhView
+  std::vector<BvhPrimitive> primitives_;
+  std::uint32_t branches_ = 0;
+  bool vectors_ = false;  ///< walks on vectors can be used
+  /// By node number: a branch's record, a leaf's first BvhPrimitive; only while the tree is built.
+  std::vector<std::uint32_t> place_;
+  CacheAligned<BvhNode<2>> two_;
+  CacheAligned<BvhNode<4>> four_;
+  CacheAligned<BvhNode<8>> eight_;
+  CacheAligned<BvhQuantisedNode> quantised_;
+};
+
+}  // namespace marti::accel

@@ -1,0 +1,269 @@
+#include "accel/bvh_build.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <memory>
+
+#include "accel/build_memory.h"
+#include "accel/parallel.h"
+
+namespace marti::accel {
+
+namespace {
+
+// A primitive while the tree is built.
+struct Reference {
+  BvhBox box;
+  std::uint32_t id = 0;
+};
+
+// Levels of the tree at most: work logs and their readers count levels so far.
+constexpr std::uint32_t most_binary_levels = 61;
+// A node with more primitives is split by all threads together.
+constexpr std::uint32_t large_node = 1U << 16;
+constexpr std::size_t references_at_once = 1U << 14;
+constexpr std::size_t nodes_in_a_piece = 64;
+// A node whose centroids lie closer together than this along an axis is not split across it.
+constexpr float least_extent = 0x1p-100F;
+
+struct Bin {
+  BvhBox box;
+  std::uint32_t count = 0;
+};
+
+// Bins along the three axes, and how a centroid finds its bin.
+struct Bins {
+  std::array<std::array<Bin, bvh_most_bins>, 3> of_axis;
+
+  void clear(std::uint32_t bins) {
+    for (std::array<Bin, bvh_most_bins>& row : of_axis) {
+      std::fill(row.begin(), row.begin() + bins, Bin{});
+    }
+  }
+  void merge(const Bins& other, std::uint32_t bins) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::uint32_t bin = 0; bin < bins; ++bin) {
+        of_axis[axis][bin].box.include(other.of_axis[axis][bin].box);
+        of_axis[axis][bin].count += other.of_axis[axis][bin].count;
+      }
+    }
+  }
+};
+
+struct Binning {
+  std::array<float, 3> from{};
+  std::array<float, 3> scale{};  ///< 0 on an axis without extent
+  std::uint32_t bins = 2;
+
+  // A short list takes fewer bins: it has fewer places where it can be split.
+  Binning(const BvhBox& centroids, std::uint32_t most, std::uint32_t count)
+      : bins(std::min(most, 2 * count)) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const float extent = centroids.hi[a] - centroids.lo[a];
+      from[a] = centroids.lo[a];
+      scale[a] = extent > least_extent ? static_cast<float>(bins) * 0.99999F / extent : 0.0F;
+    }
+  }
+  [[nodiscard]] std::uint32_t bin(const std::array<float, 4>& centroid, std::size_t axis) const {
+    return std::min(static_cast<std::uint32_t>((centroid[axis] - from[axis]) * scale[axis]), bins - 1);
+  }
+};
+
+struct Split {
+  bool leaf = false;       ///< see BvhBinaryNode
+  std::uint32_t left = 0;  ///< number of primitives of the first child
+  std::array<BvhBox, 2> boxes{};
+};
+
+struct Plane {
+  float cost = BvhBox::inf;  ///< sum over the children of area times primitives
+  std::size_t axis = 0;
+  std::uint32_t bin = 0;  ///< the last one of the first child
+};
+
+Plane best_plane(const Bins& bins, const Binning& binning) {
+  Plane best;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (binning.scale[axis] == 0.0F) {
+      continue;
+    }
+    const std::array<Bin, bvh_most_bins>& row = bins.of_axis[axis];
+    std::array<float, bvh_most_bins> above{};
+    BvhBox box;
+    std::uint32_t count = 0;
+    for (std::uint32_t bin = binning.bins - 1; bin > 0; --bin) {
+      box.include(row[bin].box);
+      count += row[bin].count;
+      above[bin - 1] = box.half_area() * static_cast<float>(count);
+    }
+    box = {};
+    count = 0;
+    for (std::uint32_t bin = 0; bin + 1 < binning.bins; ++bin) {
+      box.include(row[bin].box);
+      count += row[bin].count;
+      const float cost = box.half_area() * static_cast<float>(count) + above[bin];
+      if (cost < best.cost) {
+        best = {cost, axis, bin};
+      }
+    }
+  }
+  return best;
+}
+
+class BinaryBuilder {
+ public:
+  BinaryBuilder(const TriangleSet& triangles, const BvhSpace& space, const BvhOptions& options,
+                BvhBinaryTree& tree)
+      : triangles_(triangles), space_(space), options_(options), tree_(tree) {}
+
+  void run() {
+    const std::uint32_t count = triangles_.size();
+    require_tree(options_.memory, std::uint64_t{count} * (sizeof(Reference) + 2 * sizeof(BvhBinaryNode)),
+                 "bvh", "take a smaller scene");
+    tree_.nodes.reserve(2 * std::size_t{count} - 1);
+    references_.resize(count);
+    parallel_pieces(count, references_at_once, options_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t id = begin; id < end; ++id) {
+        references_[id] = {bvh_box_of(space_, triangles_, static_cast<std::uint32_t>(id)),
+                           static_cast<std::uint32_t>(id)};
+      }
+    });
+    BvhBinaryNode root;
+    root.count = count;
+    for (const Reference& reference : references_) {
+      root.box.include(reference.box);
+    }
+    tree_.nodes.push_back(root);
+    std::size_t begin = 0;
+    for (std::uint32_t level = 1; begin < tree_.nodes.size(); ++level) {
+      begin = split_level(begin, level);
+    }
+    tree_.entries.resize(count);
+    std::transform(references_.begin(), references_.end(), tree_.entries.begin(),
+                   [](const Reference& reference) { return reference.id; });
+  }
+
+ private:
+  // Splits the nodes from `begin` on, which are those of `level`; returns where the next level begins.
+  std::size_t split_level(std::size_t begin, std::uint32_t level) {
+    const std::size_t end = tree_.nodes.size();
+    std::vector<Split> splits(end - begin);
+    for (std::size_t n = begin; n < end; ++n) {
+      if (tree_.nodes[n].count > large_node) {
+        splits[n - begin] = split(tree_.nodes[n], level, options_.threads, bins_);
+      }
+    }
+    parallel_pieces(end - begin, nodes_in_a_piece, options_.threads, [&](std::size_t from, std::size_t to) {
+      const auto bins = std::make_unique<Bins>();
+      for (std::size_t n = from; n < to; ++n) {
+        if (tree_.nodes[begin + n].count <= large_node) {
+          splits[n] = split(tree_.nodes[begin + n], level, 1, *bins);
+        }
+      }
+    });
+    for (std::size_t n = begin; n < end; ++n) {
+      const Split& split = splits[n - begin];
+      BvhBinaryNode& node = tree_.nodes[n];
+      const std::uint32_t from = node.begin;
+      const std::uint32_t count = node.count;
+      node.leaf = count <= 1 || split.leaf;
+      if (count > 1) {
+        node.first = static_cast<std::uint32_t>(tree_.nodes.size());
+        tree_.nodes.push_back({.box = split.boxes[0], .begin = from, .count = split.left});
+        tree_.nodes.push_back(
+            {.box = split.boxes[1], .begin = from + split.left, .count = count - split.left});
+      }
+    }
+    return end;
+  }
+
+  // Decides on a node, and sorts its part of the references by child.
+  Split split(const BvhBinaryNode& node, std::uint32_t level, unsigned threads, Bins& bins) {
+    Split split;
+    if (node.count <= 1) {
+      return split;
+    }
+    Reference* const first = references_.data() + node.begin;
+    const Binning binning(centroids_of(first, node.count, threads), options_.bins, node.count);
+    const bool deep =
+        level + static_cast<std::uint32_t>(std::bit_width(node.count - 1)) >= most_binary_levels;
+    Plane plane;
+    if (!deep) {
+      sort_into_bins(first, node.count, binning, bins, threads);
+      plane = best_plane(bins, binning);
+    }
+    if (node.count <= options_.max_objects) {
+      const float area = node.box.half_area();
+      split.leaf = !(plane.cost + area < area * static_cast<float>(node.count));
+    }
+    if (plane.cost < BvhBox::inf) {
+      Reference* const middle = std::partition(first, first + node.count, [&](const Reference& reference) {
+        return binning.bin(reference.box.centroid(), plane.axis) <= plane.bin;
+      });
+      split.left = static_cast<std::uint32_t>(middle - first);
+      for (std::uint32_t bin = 0; bin < binning.bins; ++bin) {
+        split.boxes[bin <= plane.bin ? 0 : 1].include(bins.of_axis[plane.axis][bin].box);
+      }
+      return split;
+    }
+    split.left = node.count / 2;
+    for (std::uint32_t k = 0; k < node.count; ++k) {
+      split.boxes[k < split.left ? 0 : 1].include(first[k].box);
+    }
+    return split;
+  }
+
+  [[nodiscard]] BvhBox centroids_of(const Reference* first, std::uint32_t count, unsigned threads) const {
+    std::vector<BvhBox> pieces((count + references_at_once - 1) / references_at_once);
+    parallel_pieces(count, references_at_once, threads, [&](std::size_t begin, std::size_t end) {
+      BvhBox& box = pieces[begin / references_at_once];
+      for (std::size_t k = begin; k < end; ++k) {
+        box.include(first[k].box.centroid());
+      }
+    });
+    for (const BvhBox& piece : pieces) {
+      pieces[0].include(piece);
+    }
+    return pieces[0];
+  }
+
+  static void sort_into_bins(const Reference* first, std::uint32_t count, const Binning& binning, Bins& bins,
+                             unsigned threads) {
+    bins.clear(binning.bins);
+    std::vector<Bins> pieces(threads == 1 ? 0 : (count + references_at_once - 1) / references_at_once);
+    parallel_pieces(count, references_at_once, threads, [&](std::size_t begin, std::size_t end) {
+      Bins& into = pieces.empty() ? bins : pieces[begin / references_at_once];
+      for (std::size_t k = begin; k < end; ++k) {
+        const std::array<float, 4> centroid = first[k].box.centroid();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          Bin& bin = into.of_axis[axis][binning.bin(centroid, axis)];
+          bin.box.include(first[k].box);
+          ++bin.count;
+        }
+      }
+    });
+    for (const Bins& piece : pieces) {
+      bins.merge(piece, binning.bins);
+    }
+  }
+
+  const TriangleSet& triangles_;
+  const BvhSpace& space_;
+  const BvhOptions& options_;
+  BvhBinaryTree& tree_;
+  std::vector<Reference> references_;
+  Bins bins_;  // of large nodes
+};
+
+}  // namespace
+
+BvhBinaryTree build_binary_bvh(const TriangleSet& triangles, const BvhSpace& space,
+                               const BvhOptions& options) {
+  BvhBinaryTree tree;
+  BinaryBuilder(triangles, space, options, tree).run();
+  return tree;
+}
+
+}  // namespace marti::accel

@@ -1,0 +1,49 @@
+// The options of a bounding volume hierarchy.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "sim/memory_budget.h"
+
+namespace marti::accel {
+
+/// How many children a branch has at most, and how their boxes are kept (bvh_nodes.h).
+enum class BvhNodeKind : std::uint8_t { two, four, eight, eight_quantised };
+inline constexpr std::array<std::string_view, 4> bvh_node_names = {"2", "4", "8", "8_quantised"};
+
+/// Bytes of a branch's record. A leaf has none: its parent's record says where its list is.
+[[nodiscard]] constexpr std::uint32_t bvh_record_bytes(BvhNodeKind kind) {
+  constexpr std::array<std::uint32_t, 4> bytes = {64, 128, 256, 80};
+  return bytes[static_cast<std::size_t>(kind)];
+}
+
+/// Most children of a branch.
+[[nodiscard]] constexpr std::uint32_t bvh_children(BvhNodeKind kind) {
+  constexpr std::array<std::uint32_t, 4> children = {2, 4, 8, 8};
+  return children[static_cast<std::size_t>(kind)];
+}
+
+/// Most primitives that a leaf can list: a quantised node counts its leaves' primitives in three bits each,
+/// in unary.
+[[nodiscard]] constexpr std::uint32_t bvh_largest_leaf(BvhNodeKind kind) {
+  return kind == BvhNodeKind::eight_quantised ? 3 : 64;
+}
+
+inline constexpr std::uint32_t bvh_most_bins = 64;
+
+struct BvhOptions {
+  BvhNodeKind node = BvhNodeKind::eight;
+  /// Most primitives of a leaf; a smaller leaf is made where that costs less. From 1 to bvh_largest_leaf.
+  std::uint32_t max_objects = 3;
+  /// Intervals into which a node's extent is divided along each axis to look for the best split. From 2 to
+  /// bvh_most_bins.
+  std::uint32_t bins = 32;
+  /// Host threads that build; 0: all. The tree is the same with any number.
+  unsigned threads = 0;
+  /// As OctreeOptions::memory.
+  sim::MemoryBudget memory{};
+};
+
+}  // namespace marti::accel

@@ -1,0 +1,67 @@
+// A memory of DRAM channels that serve first come, first served, in the simulator's time.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "memory/dram_in_order.h"
+#include "memory/dram_mapping.h"
+#include "sim/time.h"
+
+namespace marti::memory {
+
+/// Times of the DRAM's clock in ticks, and back.
+class DramClock {
+ public:
+  explicit DramClock(sim::Ticks period) : period_(period) {}
+  /// The first cycle that does not begin before `time`.
+  [[nodiscard]] DramCycle cycle_at(sim::Ticks time) const {
+    if (time > latest) {
+      sim::fail_time_overflow();
+    }
+    return (time + period_ - 1) / period_;
+  }
+  [[nodiscard]] sim::Ticks ticks(DramCycle cycle) const { return sim::multiply_ticks(period_, cycle); }
+
+ private:
+  // Leaves so much room that no sum of times of commands overflows.
+  static constexpr sim::Ticks latest = std::numeric_limits<sim::Ticks>::max() / 2;
+
+  sim::Ticks period_;
+};
+
+class Dram {
+ public:
+  explicit Dram(const DramConfig& config);
+
+  struct Times {
+    std::uint32_t channel = 0;
+    sim::Ticks start = 0;  ///< when the controller takes it up, a cycle before its first command
+    sim::Ticks ready = 0;  ///< when all its data have moved
+    sim::Ticks data = 0;   ///< for which it has the data bus
+  };
+  /// An access whose address arrives at `arrival`; arrivals must not decrease. It moves whole bursts, all of
+  /// the row of its first byte.
+  Times access(Address address, std::uint32_t bytes, bool write, sim::Ticks arrival);
+
+  [[nodiscard]] std::uint32_t channel_of(Address address) const { return mapping_.channel(address); }
+  [[nodiscard]] std::vector<DramStatistics> statistics() const;
+
+ private:
+  DramClock clock_;
+  DramMapping mapping_;
+  std::uint32_t burst_bytes_;
+  sim::Ticks burst_ticks_;
+  std::vector<DramInOrder> channels_;
+};
+
+/// The bursts that hold the bytes from `address` on.
+[[nodiscard]] inline std::int64_t bursts_of(Address address, std::uint32_t bytes, std::uint32_t burst) {
+  return static_cast<std::int64_t>((address % burst + bytes + burst - 1) / burst);
+}
+
+/// The time of a read of `bytes` that meets no other access, in a bank whose row is closed.
+[[nodiscard]] sim::Ticks unloaded_dram_read(const DramConfig& config, std::uint32_t bytes);
+
+}  // namespace marti::memory

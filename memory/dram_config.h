@@ -1,0 +1,102 @@
+// A memory of DRAM channels, as values: its timing, its geometry and how its controller works.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "sim/time.h"
+
+namespace marti::memory {
+
+/// In which order a channel's controller serves its requests. fcfs: reads and writes in the order in which
+/// they arrive. frfcfs: of the requests in its queue, the oldest one whose next command is allowed.
+enum class DramPolicy : std::uint8_t { fcfs, frfcfs };
+inline constexpr std::array<std::string_view, 2> dram_policy_names = {"fcfs", "frfcfs"};
+
+/// What happens to a row after an access. open: it stays open until another row of its bank is wanted.
+/// closed: the access closes it (auto-precharge).
+enum class DramPage : std::uint8_t { open, closed };
+inline constexpr std::array<std::string_view, 2> dram_page_names = {"open", "closed"};
+
+/// Least times between commands, in cycles of the DRAM's clock; names as in the JEDEC standards. `l` is for
+/// commands to the same bank group, `s` for commands to different ones.
+struct DramTiming {
+  std::int64_t bl = 4;          ///< data of one burst on the data bus
+  std::int64_t cl = 16;         ///< read command to its first data
+  std::int64_t cwl = 12;        ///< write command to its first data
+  std::int64_t rcd = 16;        ///< activation to a read of the row
+  std::int64_t rcd_write = 16;  ///< activation to a write of the row
+  std::int64_t rp = 16;         ///< precharge to activation
+  std::int64_t ras = 39;        ///< activation to precharge
+  std::int64_t rc = 55;         ///< activation to activation of the same bank
+  std::int64_t rrd_s = 4;       ///< activation to activation of another bank
+  std::int64_t rrd_l = 6;
+  std::int64_t faw = 26;   ///< in which a rank may have four activations
+  std::int64_t ccd_s = 4;  ///< read to read, write to write
+  std::int64_t ccd_l = 6;
+  std::int64_t ccd_l_write = 6;  ///< write to write of the same bank group
+  std::int64_t wr = 18;          ///< end of written data to precharge
+  std::int64_t wtr_s = 3;        ///< end of written data to a read
+  std::int64_t wtr_l = 9;
+  std::int64_t rtp = 9;       ///< read to precharge
+  std::int64_t rtw_gap = 2;   ///< free cycles of the data bus between data read and data written
+  std::int64_t rank_gap = 2;  ///< free cycles of the data bus between data of two ranks
+  std::int64_t refi = 9364;   ///< between two refreshes; 0: no refresh
+  std::int64_t rfc = 433;     ///< one refresh
+};
+
+/// The parts of an address that choose a place in the memory.
+enum class DramField : std::uint8_t { channel, rank, bank_group, bank, row, column };
+inline constexpr std::array<std::string_view, 6> dram_field_names = {"channel", "rank", "bank_group",
+                                                                     "bank",    "row",  "column"};
+
+/// A run of address bits; `bits` 0: all bits of the field that no other run has.
+struct DramFieldBits {
+  DramField field = DramField::column;
+  std::uint32_t bits = 0;
+};
+
+/// All counts are powers of two. A column is one burst.
+struct DramConfig {
+  sim::Ticks period = 833;  ///< of the DRAM's clock
+  DramTiming timing;
+  std::uint32_t channels = 1;
+  std::uint32_t ranks = 1;        ///< of a channel
+  std::uint32_t bank_groups = 4;  ///< of a rank
+  std::uint32_t banks = 4;        ///< of a bank group
+  std::uint32_t rows = 65536;     ///< of a bank
+  std::uint32_t row_bytes = 8192;
+  std::uint32_t burst_bytes = 64;
+  /// Whether commands that open and close rows have a command bus of their own, as in HBM.
+  bool two_command_buses = false;
+  /// Whether each rank has a data bus of its own, as the pseudo channels of HBM, which share command buses.
+  bool pseudo_channels = false;
+  std::int64_t activate_cycles = 1;  ///< that an activation has the command bus
+  std::int64_t column_cycles = 1;    ///< that a read or write has it
+  DramPolicy policy = DramPolicy::fcfs;
+  DramPage page = DramPage::open;
+  std::uint32_t queue = 32;        ///< frfcfs: reads, and as many writes, that a channel chooses from
+  std::uint32_t reorder_cap = 16;  ///< frfcfs: younger accesses that may go before one; 0: any number
+  /// From the least significant bit above a burst upwards.
+  std::vector<DramFieldBits> mapping = {{DramField::column, 0}, {DramField::channel, 0},
+                                        {DramField::rank, 0},   {DramField::bank_group, 0},
+                                        {DramField::bank, 0},   {DramField::row, 0}};
+
+  /// The times from the first cycle of one command to the first cycle of the next. The standards count them
+  /// from the last cycle of a command that takes several.
+  [[nodiscard]] DramTiming timing_of_commands() const;
+  /// For which a burst has the data bus of a channel; of pseudo channels a part of all their buses.
+  [[nodiscard]] sim::Ticks burst_time() const { return period * timing.bl / (pseudo_channels ? ranks : 1); }
+  [[nodiscard]] std::uint32_t columns() const { return row_bytes / burst_bytes; }
+  [[nodiscard]] std::uint32_t banks_of_rank() const { return bank_groups * banks; }
+  /// Bytes a second over all channels, if data are moved without a pause.
+  [[nodiscard]] double peak_bandwidth() const;
+};
+
+/// Throws KeyError with the reason when there can be no such memory. `line` is the most that one access
+/// reads or writes; it must lie in one channel.
+void check(const DramConfig& config, std::uint32_t line);
+
+}  // namespace marti::memory

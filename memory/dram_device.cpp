@@ -1,0 +1,146 @@
+#include "memory/dram_device.h"
+
+#include <limits>
+
+namespace marti::memory {
+
+namespace {
+
+// Long before any cycle, yet far from an overflow.
+constexpr DramCycle long_ago = std::numeric_limits<DramCycle>::min() / 4;
+
+}  // namespace
+
+DramDevice::DramDevice(const DramConfig& config)
+    : timing_(config.timing_of_commands()),
+      settling_(std::max({timing_.rc, timing_.ras + timing_.rp, timing_.rtp + timing_.rp, timing_.rfc,
+                          timing_.cwl + timing_.bl + timing_.wr + timing_.rp})),
+      one_data_bus_(!config.pseudo_channels),
+      banks_of_rank_(config.banks_of_rank()),
+      banks_(std::size_t{config.ranks} * config.banks_of_rank()),
+      groups_(std::size_t{config.ranks} * config.bank_groups),
+      ranks_(config.ranks) {
+  for (Rank& rank : ranks_) {
+    rank.activations.fill(long_ago);
+  }
+}
+
+void DramDevice::issue(DramCommand command, const DramPlace& place, DramCycle cycle, bool close) {
+  Bank& bank = banks_[place.bank];
+  switch (command) {
+    case DramCommand::activate:
+      issue_activate(place, cycle);
+      bank.row = place.row;
+      return;
+    case DramCommand::precharge:
+      raise(of(bank.next, DramCommand::activate), cycle + timing_.rp);
+      bank.row = no_row;
+      return;
+    case DramCommand::read:
+    case DramCommand::write:
+      issue_column(command, place, cycle);
+      if (close) {
+        // The device closes the row as soon as a precharge would be allowed after this access.
+        const DramCycle free = command == DramCommand::read
+                                   ? cycle + timing_.rtp
+                                   : end_of_data(DramCommand::write, cycle) + timing_.wr;
+        raise(of(bank.next, DramCommand::activate), free + timing_.rp);
+        bank.row = no_row;
+      }
+      return;
+  }
+}
+
+void DramDevice::issue_activate(const DramPlace& place, DramCycle cycle) {
+  Times& bank = banks_[place.bank].next;
+  raise(of(bank, DramCommand::read), cycle + timing_.rcd);
+  raise(of(bank, DramCommand::write), cycle + timing_.rcd_write);
+  raise(of(bank, DramCommand::precharge), cycle + timing_.ras);
+  raise(of(bank, DramCommand::activate), cycle + timing_.rc);
+  raise(of(groups_[place.group], DramCommand::activate), cycle + timing_.rrd_l);
+  Rank& rank = ranks_[place.rank];
+  raise(of(rank.next, DramCommand::activate), cycle + timing_.rrd_s);
+  // The fifth activation from here must wait for the end of the window that begins with this one.
+  rank.activations[rank.oldest] = cycle + timing_.faw;
+  rank.oldest = (rank.oldest + 1) % 4;
+}
+
+void DramDevice::issue_column(DramCommand command, const DramPlace& place, DramCycle cycle) {
+  Times& bank = banks_[place.bank].next;
+  Times& group = groups_[place.group];
+  const bool write = command == DramCommand::write;
+  const DramCommand other = write ? DramCommand::read : DramCommand::write;
+  raise(of(group, command), cycle + (write ? timing_.ccd_l_write : timing_.ccd_l));
+  const DramCycle end = end_of_data(command, cycle);
+  // Data written must not come before data read have left the bus.
+  const DramCycle turn_read_to_write = timing_.cl + timing_.bl + timing_.rtw_gap - timing_.cwl;
+  if (write) {
+    raise(of(bank, DramCommand::precharge), end + timing_.wr);
+    raise(of(group, other), end + timing_.wtr_l);
+  } else {
+    raise(of(bank, DramCommand::precharge), cycle + timing_.rtp);
+  }
+  for (std::size_t i = 0; i < ranks_.size(); ++i) {
+    Times& rank = ranks_[i].next;
+    if (i == place.rank) {
+      raise(of(rank, command), cycle + timing_.ccd_s);
+      raise(of(rank, other), write ? end + timing_.wtr_s : cycle + turn_read_to_write);
+      continue;
+    }
+    if (one_data_bus_) {
+      // Another rank's data must not come before the bus is free again.
+      const DramCycle free = end + timing_.rank_gap;
+      raise(of(rank, DramCommand::read), free - timing_.cl);
+      raise(of(rank, DramCommand::write), free - timing_.cwl);
+    }
+  }
+}
+
+bool DramDevice::has_open_row(std::uint32_t rank) const {
+  const auto first = banks_.begin() + std::ptrdiff_t{rank} * banks_of_rank_;
+  return std::any_of(first, first + banks_of_rank_, [](const Bank& bank) { return bank.row != no_row; });
+}
+
+DramCycle DramDevice::earliest_precharge_all(std::uint32_t rank) const {
+  DramCycle cycle = long_ago;
+  for (std::uint32_t i = rank * banks_of_rank_; i < (rank + 1) * banks_of_rank_; ++i) {
+    if (banks_[i].row != no_row) {
+      raise(cycle, of(banks_[i].next, DramCommand::precharge));
+    }
+  }
+  return cycle;
+}
+
+void DramDevice::precharge_all(std::uint32_t rank, DramCycle cycle) {
+  for (std::uint32_t i = rank * banks_of_rank_; i < (rank + 1) * banks_of_rank_; ++i) {
+    if (banks_[i].row != no_row) {
+      raise(of(banks_[i].next, DramCommand::activate), cycle + timing_.rp);
+      banks_[i].row = no_row;
+    }
+  }
+}
+
+DramCycle DramDevice::earliest_refresh(std::uint32_t rank) const {
+  DramCycle cycle = long_ago;
+  for (std::uint32_t i = rank * banks_of_rank_; i < (rank + 1) * banks_of_rank_; ++i) {
+    raise(cycle, of(banks_[i].next, DramCommand::activate));
+  }
+  return cycle;
+}
+
+DramCycle DramDevice::refresh_idle(std::uint32_t rank, DramCycle cycle, bool closed) {
+  const DramCycle start = closed || !has_open_row(rank) ? cycle : cycle + timing_.rp;
+  for (std::uint32_t i = rank * banks_of_rank_; i < (rank + 1) * banks_of_rank_; ++i) {
+    banks_[i].row = no_row;
+    of(banks_[i].next, DramCommand::activate) = start + timing_.rfc;
+  }
+  return start;
+}
+
+void DramDevice::refresh(std::uint32_t rank, DramCycle cycle) {
+  for (std::uint32_t i = rank * banks_of_rank_; i < (rank + 1) * banks_of_rank_; ++i) {
+    raise(of(banks_[i].next, DramCommand::activate), cycle + timing_.rfc);
+  }
+}
+
+}  // namespace marti::memory

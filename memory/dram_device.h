@@ -1,0 +1,104 @@
+// The banks of one DRAM channel: which rows are open, and from when each command is allowed.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "memory/dram_config.h"
+#include "memory/dram_mapping.h"
+
+namespace marti::memory {
+
+/// A time in cycles of the DRAM's clock.
+using DramCycle = std::int64_t;
+
+enum class DramCommand : std::uint8_t { activate, precharge, read, write };
+
+/// Knows times and states, but no requests: a controller decides which command comes next. Times are those of
+/// JEDEC's standards, in the form of the tables of Ramulator 2.1 (Luo et al., IEEE CAL 23(1), 2024).
+class DramDevice {
+ public:
+  static constexpr std::int64_t no_row = -1;
+
+  explicit DramDevice(const DramConfig& config);
+
+  /// The open row of a bank, or no_row.
+  [[nodiscard]] std::int64_t open_row(std::uint32_t bank) const { return banks_[bank].row; }
+  /// The command that an access to this place needs next.
+  [[nodiscard]] DramCommand next_command(const DramPlace& place, bool write) const {
+    const std::int64_t row = banks_[place.bank].row;
+    if (row == place.row) {
+      return write ? DramCommand::write : DramCommand::read;
+    }
+    return row == no_row ? DramCommand::activate : DramCommand::precharge;
+  }
+  /// The first cycle in which the command is allowed, as far as the commands issued so far tell.
+  [[nodiscard]] DramCycle earliest(DramCommand command, const DramPlace& place) const;
+  /// Issues a command that is allowed at `cycle`. Commands may be issued out of the order of their times if
+  /// none of them would have moved the other. A read or write with `close` closes its row by itself.
+  void issue(DramCommand command, const DramPlace& place, DramCycle cycle, bool close = false);
+
+  [[nodiscard]] bool has_open_row(std::uint32_t rank) const;
+  /// When all open rows of a rank may be closed.
+  [[nodiscard]] DramCycle earliest_precharge_all(std::uint32_t rank) const;
+  void precharge_all(std::uint32_t rank, DramCycle cycle);
+  /// When a rank without open rows may be refreshed.
+  [[nodiscard]] DramCycle earliest_refresh(std::uint32_t rank) const;
+  void refresh(std::uint32_t rank, DramCycle cycle);
+  /// Closes the rows of a rank, all of whose commands are allowed at `cycle`, and refreshes it: at once if no
+  /// row was open or `closed`. Returns the cycle of the refresh.
+  DramCycle refresh_idle(std::uint32_t rank, DramCycle cycle, bool closed);
+  /// After so many cycles without another command each bank may be precharged, activated and refreshed.
+  [[nodiscard]] DramCycle settling() const { return settling_; }
+
+  /// The cycle after the last data of a column command that is issued at `cycle`.
+  [[nodiscard]] DramCycle end_of_data(DramCommand command, DramCycle cycle) const {
+    return cycle + (command == DramCommand::write ? timing_.cwl : timing_.cl) + timing_.bl;
+  }
+
+ private:
+  // The first cycles in which commands are allowed, by the kind of command.
+  using Times = std::array<DramCycle, 4>;
+  struct Bank {
+    Times next{};
+    std::int64_t row = no_row;
+  };
+  struct Rank {
+    Times next{};
+    std::array<DramCycle, 4> activations{};  // the last four, oldest at `oldest`
+    std::uint32_t oldest = 0;
+  };
+
+  static void raise(DramCycle& time, DramCycle to) { time = std::max(time, to); }
+  static DramCycle& of(Times& times, DramCommand command) { return times[static_cast<std::size_t>(command)]; }
+  static DramCycle of(const Times& times, DramCommand command) {
+    return times[static_cast<std::size_t>(command)];
+  }
+  void issue_activate(const DramPlace& place, DramCycle cycle);
+  void issue_column(DramCommand command, const DramPlace& place, DramCycle cycle);
+
+  DramTiming timing_;
+  DramCycle settling_;
+  bool one_data_bus_;
+  std::uint32_t banks_of_rank_;
+  std::vector<Bank> banks_;
+  std::vector<Times> groups_;
+  std::vector<Rank> ranks_;
+};
+
+inline DramCycle DramDevice::earliest(DramCommand command, const DramPlace& place) const {
+  const DramCycle bank = of(banks_[place.bank].next, command);
+  if (command == DramCommand::precharge) {
+    return bank;
+  }
+  const Rank& rank = ranks_[place.rank];
+  DramCycle cycle = std::max({bank, of(groups_[place.group], command), of(rank.next, command)});
+  if (command == DramCommand::activate) {
+    cycle = std::max(cycle, rank.activations[rank.oldest]);
+  }
+  return cycle;
+}
+
+}  // namespace marti::memory

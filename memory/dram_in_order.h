@@ -1,0 +1,74 @@
+// A DRAM channel that serves its accesses first come, first served.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+
+#include "memory/dram_device.h"
+#include "memory/dram_statistics.h"
+
+namespace marti::memory {
+
+/// One access to a channel: bursts in consecutive columns of one row.
+struct DramRequest {
+  DramPlace place;
+  std::int64_t bursts = 1;
+  bool write = false;
+  DramCycle arrival = 0;
+};
+
+/// When an access's first command is issued, and when its last data have moved.
+struct DramService {
+  DramCycle first = 0;
+  DramCycle end = 0;
+};
+
+/// Reads and writes move their data in the order in which they arrive. One access at a time opens its row:
+/// the oldest whose row is not open yet; those before it may still wait for their data. An access that
+/// arrives in a cycle has its first command in the next one at the earliest. When a refresh is due, accesses
+/// whose rows were opened before end first, then all rows are closed and all ranks are refreshed. One command
+/// is issued in a cycle, and none keeps the bus from a read or write of an older access.
+///
+/// No access moves the commands of one that arrived before it, so the whole course of an access is known when
+/// it arrives.
+class DramInOrder {
+ public:
+  explicit DramInOrder(const DramConfig& config);
+
+  /// Serves the next access; arrivals must not decrease.
+  DramService serve(const DramRequest& request);
+
+  [[nodiscard]] const DramStatistics& statistics() const { return statistics_; }
+
+ private:
+  // Opens the row of an access and issues the command of its first or next burst; returns the cycles of the
+  // first of its commands and of the last.
+  struct Issued {
+    DramCycle first = 0;
+    DramCycle column = 0;
+  };
+  Issued burst(const DramRequest& request, bool last);
+  // The first cycle from `cycle` on in which a command of `length` keeps the bus from no older access.
+  [[nodiscard]] DramCycle free_slot(DramCycle cycle, DramCycle length) const;
+  // Does the refreshes that are due up to `cycle`.
+  void refresh(DramCycle cycle);
+
+  DramTiming timing_;
+  sim::Ticks period_;
+  sim::Ticks burst_time_;
+  std::uint32_t ranks_;
+  std::uint32_t burst_bytes_;
+  DramCycle column_cycles_;    // that a read or write has its command bus
+  DramCycle activate_cycles_;  // that an activation has its bus
+  bool two_command_buses_;
+  bool close_;
+  DramDevice device_;
+  DramStatistics statistics_;
+  DramCycle prepared_ = 0;      // from when on the next access may close and open rows
+  DramCycle last_column_ = -1;  // cycle of the last read or write
+  DramCycle refresh_due_;
+  DramCycle last_refresh_ = 0;
+  std::deque<DramCycle> columns_;  // cycles of reads and writes from `prepared_` on
+};
+
+}  // namespace marti::memory

@@ -1,0 +1,143 @@
+#include "memory/dram_presets.h"
+
+#include "sim/error.h"
+
+namespace marti::memory {
+
+namespace {
+
+// Times in cycles. All figures are those that Ramulator 2.1 (github.com/CMU-SAFARI/ramulator2, commit
+// c5b1c3a) has under the names given here, so that results can be compared with its results; it takes them
+// from the standards, and where it differs from them the comment says so.
+
+// DDR4_2400R, DDR4_8Gb_x8, after JEDEC JESD79-4C, tables 169 and 170 for tRRD and tFAW: eight devices of 8
+// bits make 64, with pages of 1 KiB each. In ns: tRAS 32, tFAW 21, tWR 15, tRTP 7.5, tWTR 2.5 and 7.5, tCCD_L
+// 5, tREFI 7800; tRFC 360, where the standard has 350 for 8 Gb.
+DramConfig ddr4_2400() {
+  DramConfig config;
+  config.period = 833;
+  config.timing = {.bl = 4,
+                   .cl = 16,
+                   .cwl = 12,
+                   .rcd = 16,
+                   .rcd_write = 16,
+                   .rp = 16,
+                   .ras = 39,
+                   .rc = 55,
+                   .rrd_s = 4,
+                   .rrd_l = 6,
+                   .faw = 26,
+                   .ccd_s = 4,
+                   .ccd_l = 6,
+                   .ccd_l_write = 6,
+                   .wr = 18,
+                   .wtr_s = 3,
+                   .wtr_l = 9,
+                   .rtp = 9,
+                   .rtw_gap = 2,
+                   .rank_gap = 2,
+                   .refi = 9364,
+                   .rfc = 433};
+  config.bank_groups = 4;
+  config.banks = 4;
+  config.rows = 65536;
+  config.row_bytes = 8192;
+  config.burst_bytes = 64;
+  return config;
+}
+
+// DDR5_4800BN, DDR5_16Gb_x8, after JEDEC JESD79-5: a channel is half a module, 32 bits wide, with bursts
+// of 16. In ns: tRAS 32, tFAW 20 (the standard allows 32 cycles), tWR 30, tRTP 7.5, tWTR_L 10, tCCD_L 5,
+// between writes of a bank group 20, tREFI 3900, tRFC 295. Activations, reads and writes have the bus for two
+// cycles.
+DramConfig ddr5_4800() {
+  DramConfig config;
+  config.period = 416;
+  config.timing = {.bl = 8,
+                   .cl = 36,
+                   .cwl = 34,
+                   .rcd = 36,
+                   .rcd_write = 36,
+                   .rp = 36,
+                   .ras = 77,
+                   .rc = 113,
+                   .rrd_s = 8,
+                   .rrd_l = 12,
+                   .faw = 48,
+                   .ccd_s = 8,
+                   .ccd_l = 12,
+                   .ccd_l_write = 48,
+                   .wr = 72,
+                   .wtr_s = 6,
+                   .wtr_l = 24,
+                   .rtp = 18,
+                   .rtw_gap = 4,
+                   .rank_gap = 2,
+                   .refi = 9375,
+                   .rfc = 710};
+  config.bank_groups = 8;
+  config.banks = 4;
+  config.rows = 65536;
+  config.row_bytes = 4096;
+  config.activate_cycles = 2;
+  config.column_cycles = 2;
+  config.burst_bytes = 64;
+  return config;
+}
+
+// HBM2_2000, 8 Gb: JEDEC JESD235D. The ranks are the two pseudo channels of a channel, 64 bits wide with
+// bursts of
+// 4. Rows are opened and closed over a command bus of their own, on which an activation takes two cycles.
+DramConfig hbm2_2000() {
+  DramConfig config;
+  config.period = 1000;
+  config.timing = {.bl = 2,
+                   .cl = 14,
+                   .cwl = 5,
+                   .rcd = 14,
+                   .rcd_write = 12,
+                   .rp = 14,
+                   .ras = 34,
+                   .rc = 48,
+                   .rrd_s = 4,
+                   .rrd_l = 4,
+                   .faw = 15,
+                   .ccd_s = 2,
+                   .ccd_l = 4,
+                   .ccd_l_write = 4,
+                   .wr = 16,
+                   .wtr_s = 6,
+                   .wtr_l = 8,
+                   .rtp = 5,
+                   .rtw_gap = 2,
+                   .rank_gap = 2,
+                   .refi = 3900,
+                   .rfc = 350};
+  config.ranks = 2;
+  config.pseudo_channels = true;
+  config.bank_groups = 4;
+  config.banks = 4;
+  config.rows = 65536;
+  config.row_bytes = 1024;
+  config.burst_bytes = 32;
+  config.two_command_buses = true;
+  config.activate_cycles = 2;
+  return config;
+}
+
+}  // namespace
+
+DramConfig dram_preset(std::size_t index) {
+  switch (index) {
+    case 0:
+      return ddr4_2400();
+    case 1:
+      return ddr5_4800();
+    case 2:
+      return hbm2_2000();
+    default:
+      throw sim::InternalError("no such DRAM preset");
+  }
+}
+
+}  // namespace marti::memory

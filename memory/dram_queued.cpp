@@ -1,0 +1,295 @@
+#include "memory/dram_queued.h"
+
+#include <algorithm>
+
+#include "sim/error.h"
+
+namespace marti::memory {
+
+DramQueued::DramQueued(const DramConfig& config)
+    : timing_(config.timing),
+      period_(config.period),
+      burst_time_(config.burst_time()),
+      ranks_(config.ranks),
+      burst_bytes_(config.burst_bytes),
+      queue_(config.queue),
+      cap_(config.reorder_cap),
+      two_command_buses_(config.two_command_buses),
+      activate_cycles_(config.activate_cycles),
+      column_cycles_(config.column_cycles),
+      close_(config.page == DramPage::closed),
+      device_(config),
+      refresh_due_(config.timing.refi > 0 ? config.timing.refi : never) {}
+
+std::optional<DramDone> DramQueued::enter(const DramRequest& request, Address address, std::uint64_t tag) {
+  sim::ensure(request.arrival >= now_, "an access reaches a DRAM channel after a later command");
+  if (idle()) {
+    catch_up(request.arrival);
+  }
+  if (!request.write && waits_to_be_written(request, address)) {
+    ++statistics_.forwarded;
+    return DramDone{tag, {request.arrival + 1, request.arrival + 1}};
+  }
+  settle(request.arrival);
+  std::uint32_t place = 0;
+  if (unused_.empty()) {
+    place = static_cast<std::uint32_t>(accesses_.size());
+    accesses_.emplace_back();
+  } else {
+    place = unused_.back();
+    unused_.pop_back();
+  }
+  accesses_[place] = {tag, request.arrival, {}, request.bursts};
+  for (std::int64_t i = 0; i < request.bursts; ++i) {
+    Burst burst;
+    burst.place = request.place;
+    burst.address = address + static_cast<Address>(i) * burst_bytes_;
+    burst.order = entered_++;
+    burst.access = place;
+    burst.write = request.write;
+    if (burst.write) {
+      unwritten_.insert(burst.address);
+    }
+    burst.last = i + 1 == request.bursts;
+    before_.push_back(burst);
+  }
+  // What arrives in a cycle can have a command in the next one at the earliest.
+  next_column_ = std::max(next_column_, request.arrival + 1);
+  next_row_ = std::max(next_row_, request.arrival + 1);
+  fill();
+  next_.reset();
+  return std::nullopt;
+}
+
+bool DramQueued::waits_to_be_written(const DramRequest& request, Address address) const {
+  for (std::int64_t i = 0; i < request.bursts && !unwritten_.empty(); ++i) {
+    if (!unwritten_.contains(address + static_cast<Address>(i) * burst_bytes_)) {
+      return false;
+    }
+  }
+  return !unwritten_.empty();
+}
+
+void DramQueued::fill() {
+  while (!before_.empty()) {
+    std::vector<Burst>& queue = before_.front().write ? writes_ : reads_;
+    if (queue.size() >= queue_) {
+      return;
+    }
+    queue.push_back(before_.front());
+    before_.pop_front();
+  }
+}
+
+void DramQueued::settle(DramCycle cycle) {
+  if (now_ < cycle) {
+    fill();
+    writing_ = write_mode();
+    now_ = cycle;
+  }
+}
+
+bool DramQueued::write_mode() const {
+  const std::size_t fifths = 5 * writes_.size();
+  return writing_ ? fifths >= queue_ || reads_.empty() : fifths > 4 * queue_ || reads_.empty();
+}
+
+void DramQueued::pick_among(const std::vector<Burst>& bursts, Kind kind, DramCycle from, Pick& best) const {
+  for (std::size_t i = 0; i < bursts.size(); ++i) {
+    const Burst& burst = bursts[i];
+    const DramCommand command = device_.next_command(burst.place, burst.write);
+    const bool blocked = kind == Kind::queue && command == DramCommand::precharge &&
+                         std::any_of(active_.begin(), active_.end(), [&](const Burst& other) {
+                           return other.place.bank == burst.place.bank;
+                         });
+    if (!blocked) {
+      const DramCycle cycle = std::max({from, slot(command), device_.earliest(command, burst.place)});
+      if (cycle < best.cycle) {
+        best = {cycle, kind, command, i};
+      }
+    }
+    if (kind == Kind::queue && cap_ > 0 && burst.passed >= cap_) {
+      return;
+    }
+  }
+}
+
+void DramQueued::pick_refresh(Pick& best) const {
+  const bool in_use = std::any_of(active_.begin(), active_.end(),
+                                  [&](const Burst& burst) { return burst.place.rank == refresh_rank_; });
+  if (in_use) {
+    return;
+  }
+  const bool open = device_.has_open_row(refresh_rank_);
+  const DramCycle allowed =
+      open ? device_.earliest_precharge_all(refresh_rank_) : device_.earliest_refresh(refresh_rank_);
+  const DramCycle cycle = std::max({allowed, next_row_, refresh_due_});
+  if (cycle < best.cycle) {
+    best = {cycle, open ? Kind::precharge_all : Kind::refresh, DramCommand::precharge, 0};
+  }
+}
+
+DramQueued::Pick DramQueued::pick() const {
+  Pick best;
+  pick_among(active_, Kind::active, now_, best);
+  if (refresh_due_ != never) {
+    pick_refresh(best);
+  }
+  Pick queued;
+  pick_among(writing_ ? writes_ : reads_, Kind::queue, now_, queued);
+  if (queued.cycle > now_ && write_mode() != writing_) {
+    queued = {};
+    pick_among(writing_ ? reads_ : writes_, Kind::queue, now_ + 1, queued);
+  }
+  return queued.cycle < best.cycle && queued.cycle < refresh_due_ ? queued : best;
+}
+
+DramCycle DramQueued::next() {
+  if (idle()) {
+    return never;
+  }
+  if (!next_) {
+    next_ = pick();
+    if (next_->cycle > now_ && !before_.empty()) {
+      fill();
+      next_column_ = std::max(next_column_, now_ + 1);
+      next_row_ = std::max(next_row_, now_ + 1);
+      next_ = pick();
+    }
+  }
+  return next_->cycle;
+}
+
+std::optional<DramDone> DramQueued::step() {
+  const DramCycle cycle = next();
+  sim::ensure(cycle != never, "a DRAM channel without an access has no next command");
+  const Pick pick = *next_;
+  next_.reset();
+  settle(cycle);
+  std::optional<DramDone> done;
+  if (pick.kind == Kind::active) {
+    done = issue(active_, pick);
+  } else if (pick.kind == Kind::queue) {
+    done = issue(writing_ ? writes_ : reads_, pick);
+  } else {
+    issue_refresh(pick);
+  }
+  if (!two_command_buses_) {
+    fill();
+  }
+  return done;
+}
+
+void DramQueued::use_slot(const Pick& pick) {
+  const bool column = is_column(pick.command);
+  const DramCycle free = pick.cycle + (column                                  ? column_cycles_
+                                       : pick.command == DramCommand::activate ? activate_cycles_
+                                                                               : 1);
+  if (!two_command_buses_) {
+    next_column_ = next_row_ = free;
+  } else {
+    (column ? next_column_ : next_row_) = free;
+  }
+}
+
+void DramQueued::count_start(const Burst& burst, const Pick& pick) {
+  Access& access = accesses_[burst.access];
+  if (access.service.first == 0) {
+    access.service.first = pick.cycle;
+  }
+  ++(is_column(pick.command)                 ? statistics_.row_hits
+     : pick.command == DramCommand::activate ? statistics_.row_misses
+                                             : statistics_.row_conflicts);
+  if (stall_begin_ != never) {
+    const DramCycle begin = std::max(stall_begin_, access.arrival);
+    statistics_.refresh_stall += period_ * std::max<DramCycle>(0, std::min(stall_end_, pick.cycle) - begin);
+    stall_begin_ = never;
+  }
+}
+
+std::optional<DramDone> DramQueued::issue(std::vector<Burst>& from, const Pick& pick) {
+  use_slot(pick);
+  Burst& burst = from[pick.index];
+  if (!burst.begun) {
+    burst.begun = true;
+    count_start(burst, pick);
+  }
+  const bool column = is_column(pick.command);
+  device_.issue(pick.command, burst.place, pick.cycle, column && close_ && burst.last);
+  statistics_.activations += pick.command == DramCommand::activate ? 1 : 0;
+  if (pick.command == DramCommand::precharge || (pick.kind == Kind::active && !column)) {
+    return std::nullopt;
+  }
+  const Burst leaving = burst;
+  from.erase(from.begin() + static_cast<std::ptrdiff_t>(pick.index));
+  if (pick.kind == Kind::queue) {
+    for (std::size_t i = 0; i < pick.index; ++i) {
+      ++from[i].passed;
+    }
+  }
+  if (!column) {
+    const auto older = [](const Burst& a, const Burst& b) { return a.order < b.order; };
+    active_.insert(std::upper_bound(active_.begin(), active_.end(), leaving, older), leaving);
+    return std::nullopt;
+  }
+  if (leaving.write) {
+    unwritten_.erase(unwritten_.find(leaving.address));
+  }
+  ++(leaving.write ? statistics_.write_bursts : statistics_.read_bursts);
+  statistics_.bytes += burst_bytes_;
+  statistics_.data_busy = sim::add_ticks(statistics_.data_busy, burst_time_);
+  Access& access = accesses_[leaving.access];
+  access.service.end = std::max(access.service.end, device_.end_of_data(pick.command, pick.cycle));
+  if (--access.left > 0) {
+    return std::nullopt;
+  }
+  statistics_.queued = sim::add_ticks(statistics_.queued, period_ * (pick.cycle - access.arrival));
+  unused_.push_back(leaving.access);
+  return DramDone{access.tag, access.service};
+}
+
+void DramQueued::issue_refresh(const Pick& pick) {
+  use_slot(pick);
+  if (pick.kind == Kind::precharge_all) {
+    device_.precharge_all(refresh_rank_, pick.cycle);
+    return;
+  }
+  device_.refresh(refresh_rank_, pick.cycle);
+  last_refresh_ = pick.cycle;
+  ++statistics_.refreshes;
+  if (++refresh_rank_ == ranks_) {
+    stall_begin_ = refresh_due_;
+    stall_end_ = pick.cycle + timing_.rfc;
+    refresh_rank_ = 0;
+    refresh_due_ += timing_.refi;
+  }
+}
+
+void DramQueued::catch_up(DramCycle cycle) {
+  while (refresh_due_ <= cycle) {
+    // While nothing is asked for, each refresh begins when it is due: only the last one matters.
+    const std::int64_t more = (cycle - refresh_due_) / timing_.refi;
+    const DramCycle last = refresh_due_ + more * timing_.refi;
+    const DramCycle before = std::max({now_, next_row_, last_refresh_});
+    if (more > 0 && refresh_rank_ == 0 && last >= before + device_.settling()) {
+      for (std::uint32_t rank = 0; rank < ranks_; ++rank) {
+        last_refresh_ = device_.refresh_idle(rank, last + rank, true);
+      }
+      next_row_ = last_refresh_ + 1;
+      next_column_ = two_command_buses_ ? next_column_ : next_row_;
+      statistics_.refreshes += (more + 1) * ranks_;
+      stall_begin_ = last;
+      stall_end_ = last_refresh_ + timing_.rfc;
+      refresh_due_ = last + timing_.refi;
+      return;
+    }
+    Pick refresh;
+    pick_refresh(refresh);
+    if (refresh.cycle > cycle) {
+      return;
+    }
+    issue_refresh(refresh);
+  }
+}
+
+}  // namespace marti::memory

@@ -1,0 +1,136 @@
+// A DRAM channel that chooses among the accesses in its queue: first ready, first come, first served.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <unordered_set>
+#include <vector>
+
+#include "memory/dram_device.h"
+#include "memory/dram_in_order.h"
+#include "memory/dram_statistics.h"
+
+namespace marti::memory {
+
+/// An access whose last burst has got its command.
+struct DramDone {
+  std::uint64_t tag = 0;  ///< given by the one who asked
+  DramService service;
+};
+
+/// The controller of Ramulator 2.1 with its scheduler FRFCFS (Luo et al., IEEE CAL 23(1), 2024; Rixner et
+/// al., Memory access scheduling, ISCA 2000). Reads and writes wait in a queue each; what finds its queue
+/// full waits before it, in order of arrival. Of the bursts in a queue, the oldest one whose next command is
+/// allowed gets it. A burst that has opened its row leaves the queue and goes before all others until it has
+/// moved its data; its row is not closed before. With a cap, a burst that so many younger ones of its queue
+/// have overtaken goes before all younger ones. Writes are served when no read waits, or from the moment at
+/// which four fifths of their queue are full until less than one fifth is. A read of bytes that wait to be
+/// written gets them a cycle after its arrival. When a refresh is due, bursts whose rows they have opened
+/// end first, then all rows are closed and each rank is refreshed.
+///
+/// The caller advances it command by command: step() while next() is not later than the next arrival.
+class DramQueued {
+ public:
+  static constexpr DramCycle never = std::numeric_limits<DramCycle>::max();
+
+  explicit DramQueued(const DramConfig& config);
+
+  /// An access that arrives at request.arrival, not before any command issued so far. Nothing if it must
+  /// wait; a read of bytes that wait to be written is done at once.
+  std::optional<DramDone> enter(const DramRequest& request, Address address, std::uint64_t tag);
+  /// The cycle of the next command, if nothing arrives before; never without an access that waits.
+  [[nodiscard]] DramCycle next();
+  /// Issues the command of that cycle. Returns the access that is done by it, if there is one.
+  std::optional<DramDone> step();
+
+  [[nodiscard]] bool idle() const {
+    return reads_.empty() && writes_.empty() && active_.empty() && before_.empty();
+  }
+  [[nodiscard]] const DramStatistics& statistics() const { return statistics_; }
+
+ private:
+  struct Burst {
+    DramPlace place;
+    Address address = 0;
+    std::uint64_t order = 0;
+    std::uint32_t access = 0;  // place in accesses_
+    std::int64_t passed = 0;   // younger bursts that have left the queue before it
+    bool write = false;
+    bool last = false;   // of its access
+    bool begun = false;  // has had a command
+  };
+  struct Access {
+    std::uint64_t tag = 0;
+    DramCycle arrival = 0;
+    DramService service;
+    std::int64_t left = 0;  // bursts
+  };
+  enum class Kind : std::uint8_t { active, queue, precharge_all, refresh };
+  struct Pick {
+    DramCycle cycle = never;
+    Kind kind = Kind::queue;
+    DramCommand command = DramCommand::read;
+    std::size_t index = 0;  // of the burst
+  };
+
+  static bool is_column(DramCommand command) {
+    return command == DramCommand::read || command == DramCommand::write;
+  }
+  [[nodiscard]] DramCycle slot(DramCommand command) const {
+    return is_column(command) ? next_column_ : next_row_;
+  }
+  // Finds the burst whose command can come first, from cycle `from` on, if that is before `best`.
+  void pick_among(const std::vector<Burst>& bursts, Kind kind, DramCycle from, Pick& best) const;
+  void pick_refresh(Pick& best) const;
+  [[nodiscard]] Pick pick() const;
+  // Whether all bytes of a read are those of writes that wait.
+  [[nodiscard]] bool waits_to_be_written(const DramRequest& request, Address address) const;
+  // Makes `cycle` the present; what is served was decided anew in each cycle up to it.
+  void settle(DramCycle cycle);
+  // Whether writes are to be served, given what waits.
+  [[nodiscard]] bool write_mode() const;
+  std::optional<DramDone> issue(std::vector<Burst>& from, const Pick& pick);
+  void count_start(const Burst& burst, const Pick& pick);
+  void use_slot(const Pick& pick);
+  void issue_refresh(const Pick& pick);
+  // Moves what waits before the queues into them.
+  void fill();
+  // Issues the refreshes that were due up to `cycle` while nothing waited.
+  void catch_up(DramCycle cycle);
+
+  DramTiming timing_;
+  sim::Ticks period_;
+  sim::Ticks burst_time_;
+  std::uint32_t ranks_;
+  std::uint32_t burst_bytes_;
+  std::size_t queue_;
+  std::int64_t cap_;
+  bool two_command_buses_;
+  DramCycle activate_cycles_;
+  DramCycle column_cycles_;
+  bool close_;
+  DramDevice device_;
+  DramStatistics statistics_;
+  std::vector<Burst> reads_;
+  std::vector<Burst> writes_;
+  std::vector<Burst> active_;
+  std::deque<Burst> before_;
+  std::unordered_multiset<Address> unwritten_;  // of bursts that wait to be written
+  std::vector<Access> accesses_;
+  std::vector<std::uint32_t> unused_;  // places in accesses_
+  std::optional<Pick> next_;           // the next command, if it is known
+  DramCycle now_ = -1;                 // cycle of the last command or arrival
+  DramCycle next_column_ = 0;          // first cycles in which the command buses are free
+  DramCycle next_row_ = 0;
+  std::uint64_t entered_ = 0;
+  bool writing_ = false;
+  DramCycle refresh_due_;
+  DramCycle last_refresh_ = 0;
+  std::uint32_t refresh_rank_ = 0;  // the rank that is refreshed next
+  DramCycle stall_begin_ = never;   // of a refresh that no access has begun after
+  DramCycle stall_end_ = 0;
+};
+
+}  // namespace marti::memory

@@ -1,0 +1,25 @@
+#include "studies/schemes/structure_table.h"
+
+namespace marti::studies {
+
+std::vector<StructurePoint> time_structures(const SchemesConfig& config) {
+  std::vector<StructurePoint> points;
+  for (const NamedStructure& structure : config.structures) {
+    FrameConfig frame = config.frame;
+    frame.structure = structure.kind;
+    frame.structure_options.bvh.node = structure.node;
+    points.push_back({structure.name, time_tree(frame, config.cell_machine)});
+  }
+  return points;
+}
+
+Table structure_table(std::span<const StructurePoint> points) {
+  Table table("structures", "Structures: the same frame and machine with each",
+              tree_columns({"structure", ColumnType::text, "", "the structure"}));
+  for (const StructurePoint& point : points) {
+    table.add_row(tree_cells(point.name, point.tree));
+  }
+  return table;
+}
+
+}  // namespace marti::studies

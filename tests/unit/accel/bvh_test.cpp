@@ -1,0 +1,261 @@
+#include "accel/bvh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scenes/procedural.h"
+#include "sim/error.h"
+#include "tests/contract/hostile.h"
+#include "tests/contract/hostile_quadrics.h"
+#include "tests/unit/accel/walk_check.h"
+
+namespace marti::tests {
+namespace {
+
+using accel::Bvh;
+using accel::BvhNodeKind;
+using accel::BvhOptions;
+using accel::TopologyNode;
+
+class BvhOfEachNode : public ::testing::TestWithParam<BvhNodeKind> {
+ protected:
+  [[nodiscard]] static Bvh build(std::shared_ptr<const accel::TriangleSet> triangles,
+                                 std::uint32_t max_objects = 3, unsigned threads = 1) {
+    return Bvh::build(std::move(triangles),
+                      {.node = GetParam(), .max_objects = max_objects, .threads = threads});
+  }
+};
+
+std::string name_of(const ::testing::TestParamInfo<BvhNodeKind>& tested) {
+  return "children_" + std::string(accel::bvh_node_names[static_cast<std::size_t>(tested.param)]);
+}
+INSTANTIATE_TEST_SUITE_P(Bvh, BvhOfEachNode,
+                         ::testing::Values(BvhNodeKind::two, BvhNodeKind::four, BvhNodeKind::eight,
+                                           BvhNodeKind::eight_quantised),
+                         name_of);
+
+std::shared_ptr<const accel::TriangleSet> mixed_set() {
+  return std::make_shared<const accel::TriangleSet>(hostile_soup(0.0, 1), hostile_quadrics(0.0, 1));
+}
+
+/// Numbering, sizes of nodes and leaves, and each primitive in exactly one leaf.
+void check_tree(const Bvh& bvh) {
+  const accel::Topology& topology = bvh.topology();
+  const std::uint32_t most = accel::bvh_children(bvh.options().node);
+  std::uint32_t next_child = 1;
+  std::uint32_t next_entry = 0;
+  ASSERT_FALSE(topology.nodes[0].leaf);
+  for (const TopologyNode& node : topology.nodes) {
+    ASSERT_LE(node.level, 61);
+    if (!node.leaf) {
+      ASSERT_EQ(node.first, next_child);
+      ASSERT_GE(node.count, bvh.triangles().size() == 1 ? 1U : 2U);
+      ASSERT_LE(node.count, most);
+      for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
+        ASSERT_EQ(topology.nodes.at(child).level, node.level + 1);
+      }
+      next_child += node.count;
+      continue;
+    }
+    ASSERT_EQ(node.first, next_entry);
+    ASSERT_GE(node.count, 1U);
+    ASSERT_LE(node.count, bvh.options().max_objects);
+    next_entry += node.count;
+    ASSERT_TRUE(std::is_sorted(topology.entries.begin() + node.first, topology.entries.begin() + next_entry));
+  }
+  ASSERT_EQ(next_child, topology.nodes.size());
+  std::vector<std::uint32_t> all = topology.entries;
+  std::sort(all.begin(), all.end());
+  ASSERT_EQ(all.size(), bvh.triangles().size());
+  for (std::uint32_t id = 0; id < all.size(); ++id) {
+    ASSERT_EQ(all[id], id);
+  }
+}
+
+TEST_P(BvhOfEachNode, EachPrimitiveIsInOneLeafAndNodesAreBreadthFirst) {
+  check_tree(build(mixed_set()));
+  check_tree(build(mixed_set(), 1));
+  check_tree(build(set_of(hostile_soup(1e6, 4, true))));
+  check_tree(build(set_of({corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0})})));
+}
+
+// Triangles each half as large and half as far as the one before: every split cuts off one of them, unless
+// the depth is bounded.
+TEST_P(BvhOfEachNode, AHostileSceneIsNoDeeperThanLogsCanSay) {
+  std::vector<accel::TriangleCorners> all;
+  for (int k = 0; k < 120; ++k) {
+    const double s = std::ldexp(1.0, -k);
+    all.push_back(corners({s, 0, 0}, {1.1 * s, 0, 0}, {s, 0.1 * s, 0.1 * s}));
+  }
+  check_tree(build(set_of(all), 1));
+  all.assign(500, corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
+  check_tree(build(set_of(all), 1));
+}
+
+// With more than 65,536 primitives the largest nodes are split by all threads together.
+TEST_P(BvhOfEachNode, TheTreeIsTheSameWithAnyNumberOfThreads) {
+  const auto triangles = std::make_shared<const accel::TriangleSet>(scenes::make_procedural("teapot:34"));
+  ASSERT_GT(triangles->size(), 70000U);
+  const Bvh one = build(triangles, 3, 1);
+  for (const unsigned threads : {2U, 5U}) {
+    const Bvh other = build(triangles, 3, threads);
+    EXPECT_EQ(one.topology(), other.topology());
+    EXPECT_EQ(one.sah_cost(), other.sah_cost());
+  }
+}
+
+// The counting walk is written without vectors, so this compares the two.
+TEST_P(BvhOfEachNode, CountingChangesNothing) {
+  check_counting(build(mixed_set()));
+  check_counting(build(set_of(hostile_soup(1e3, 8, true)), 1));
+}
+
+/// The tight box of what a node lists, from the primitives alone.
+std::vector<scenes::Bounds> tight_boxes(const Bvh& bvh) {
+  const accel::Topology& topology = bvh.topology();
+  std::vector<scenes::Bounds> boxes(topology.nodes.size());
+  for (std::size_t n = topology.nodes.size(); n-- > 0;) {
+    const TopologyNode& node = topology.nodes[n];
+    for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
+      if (node.leaf) {
+        for (unsigned corner = 0; corner < 3; ++corner) {
+          boxes[n].include(bvh.triangles().corner(topology.entries[k], corner));
+        }
+      } else {
+        boxes[n].include(boxes[k].lo);
+        boxes[n].include(boxes[k].hi);
+      }
+    }
+  }
+  return boxes;
+}
+
+double area(const scenes::Bounds& box) {
+  const glm::dvec3 e = box.hi - box.lo;
+  return e.x * e.y + e.y * e.z + e.z * e.x;
+}
+
+// Against tight boxes made from the topology. Floats widen them by some 2^-23 of the scene; bytes by up to a
+// 255th of a node on each side.
+TEST_P(BvhOfEachNode, TheCostIsThatOfTheBoxes) {
+  const Bvh bvh = build(std::make_shared<const accel::TriangleSet>(scenes::make_procedural("teapot:8:pot")));
+  const std::vector<scenes::Bounds> boxes = tight_boxes(bvh);
+  double cost = 0.0;
+  for (std::size_t n = 0; n < boxes.size(); ++n) {
+    const TopologyNode& node = bvh.topology().nodes[n];
+    cost += area(boxes[n]) / area(boxes[0]) * (node.leaf ? node.count : 1);
+  }
+  EXPECT_GE(bvh.sah_cost(), cost * (1.0 - 1e-9));
+  EXPECT_LE(bvh.sah_cost(), cost * (GetParam() == BvhNodeKind::eight_quantised ? 1.06 : 1.0 + 1e-5));
+}
+
+// A node is left out only if the ray misses its box, or the hit is nearer: what is visited is exactly what a
+// naive walk over tight boxes would visit, up to boxes that are missed or entered behind the hit by a hair.
+TEST_P(BvhOfEachNode, VisitsWhatTheRayMeetsInOrderOfEntry) {
+  const Bvh bvh = build(std::make_shared<const accel::TriangleSet>(scenes::make_procedural("teapot:4:pot")));
+  const std::vector<scenes::Bounds> boxes = tight_boxes(bvh);
+  const double size = glm::length(boxes[0].hi - boxes[0].lo);
+  // A quantised box may reach a 255th of its parent farther.
+  const double wide = GetParam() == BvhNodeKind::eight_quantised ? 1.0 : 1e-4;
+  std::vector<std::uint32_t> parent(boxes.size(), 0);
+  for (std::uint32_t n = 0; n < boxes.size(); ++n) {
+    const TopologyNode& node = bvh.topology().nodes[n];
+    for (std::uint32_t child = 0; !node.leaf && child < node.count; ++child) {
+      parent[node.first + child] = n;
+    }
+  }
+  RayMaker maker(bvh.triangles(), bvh.bounds(), 6);
+  std::uint64_t leaves = 0;
+  for (int k = 0; k < 3000; ++k) {
+    accel::Ray ray = maker.make(all_aims[static_cast<std::size_t>(k) % 6]);
+    ray.direction /= glm::length(ray.direction);
+    Recorder recorder;
+    const accel::Hit hit = bvh.closest(ray, recorder);
+    std::map<std::uint32_t, bool> visited;
+    for (const Recorder::Visit& visit : recorder.visits) {
+      ASSERT_TRUE(visited.emplace(visit.node, true).second) << "visited twice";
+      ASSERT_TRUE(visit.node == 0 || visited.contains(parent[visit.node]));
+      ASSERT_EQ(visit.leaf, bvh.topology().nodes[visit.node].leaf);
+      const glm::dvec3 extent = boxes[parent[visit.node]].hi - boxes[parent[visit.node]].lo;
+      const double margin =
+          1e-4 * size + (wide < 1.0 ? 0.0 : std::max({extent.x, extent.y, extent.z}) / 127.0);
+      const Inside on = inside(ray, boxes[visit.node], margin);
+      ASSERT_LE(on.in, on.out) << "a node the ray does not meet";
+      leaves += visit.leaf ? 1 : 0;
+    }
+    for (std::uint32_t n = 1; n < boxes.size(); ++n) {
+      const Inside on = inside(ray, boxes[n], 0.0);
+      if (on.in < on.out && (!hit.found() || on.in < hit.t - 1e-4 * size)) {
+        ASSERT_TRUE(visited.contains(n)) << "a node on the ray was left out";
+      }
+    }
+  }
+  EXPECT_GT(leaves, 2000U);
+}
+
+// The records' layout is documented, so a machine's addresses rest on these sizes.
+TEST(BvhNodes, RecordsHaveTheDocumentedSizes) {
+  EXPECT_EQ(sizeof(accel::BvhNode<2>), accel::bvh_record_bytes(BvhNodeKind::two));
+  EXPECT_EQ(sizeof(accel::BvhNode<4>), accel::bvh_record_bytes(BvhNodeKind::four));
+  EXPECT_EQ(sizeof(accel::BvhNode<8>), accel::bvh_record_bytes(BvhNodeKind::eight));
+  EXPECT_EQ(sizeof(accel::BvhQuantisedNode), accel::bvh_record_bytes(BvhNodeKind::eight_quantised));
+}
+
+// Boxes of all sizes and places: each quantised box holds the box itself, and is wider by at most a step.
+TEST(BvhNodes, QuantisedBoxesHoldTheirBoxes) {
+  Random random(3);
+  for (int k = 0; k < 4000; ++k) {
+    const double spread = std::pow(2.0, random.between(-20.0, 0.0));
+    std::vector<accel::BvhBox> boxes(1 + random.below(8));
+    std::vector<accel::BvhChild> children(boxes.size());
+    std::uint32_t branches = 7;
+    std::uint32_t primitives = 100;
+    const glm::dvec3 at = random.in_box(glm::dvec3(-0.9), glm::dvec3(0.9));
+    for (std::size_t c = 0; c < boxes.size(); ++c) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        const auto axis = static_cast<glm::length_t>(a);
+        const auto lo = static_cast<float>(at[axis] + spread * random.between(-0.1, 0.1));
+        boxes[c].lo[a] = lo;
+        boxes[c].hi[a] = random.below(4) == 0 ? lo : lo + static_cast<float>(spread * random.unit() * 0.1);
+      }
+      const std::uint32_t entries = random.below(4);
+      children[c] = {entries == 0 ? branches++ : primitives, entries};
+      primitives += entries;
+    }
+    const accel::BvhQuantisedNode node = accel::BvhQuantisedNode::make(0, boxes, children);
+    ASSERT_EQ(node.children(), boxes.size());
+    for (std::size_t c = 0; c < boxes.size(); ++c) {
+      ASSERT_EQ(node.child(c).record, children[c].record);
+      ASSERT_EQ(node.child(c).entries, children[c].entries);
+      const scenes::Bounds box = node.box(c);
+      for (std::size_t a = 0; a < 3; ++a) {
+        const auto axis = static_cast<glm::length_t>(a);
+        const double step = node.step(a);
+        ASSERT_LE(box.lo[axis], boxes[c].lo[a]);
+        ASSERT_GE(box.hi[axis], boxes[c].hi[a]);
+        ASSERT_GE(box.lo[axis], boxes[c].lo[a] - 1.001 * step);
+        ASSERT_LE(box.hi[axis], boxes[c].hi[a] + 1.001 * step);
+      }
+    }
+  }
+}
+
+TEST(Bvh, RefusesOptionsOutOfRange) {
+  const auto set = set_of(hostile_soup(0.0, 1));
+  for (const BvhOptions& options :
+       {BvhOptions{.max_objects = 0}, BvhOptions{.max_objects = 65}, BvhOptions{.bins = 1},
+        BvhOptions{.bins = 65}, BvhOptions{.node = BvhNodeKind::eight_quantised, .max_objects = 4}}) {
+    EXPECT_THROW((void)Bvh::build(set, options), sim::UserError);
+  }
+  EXPECT_THROW((void)Bvh::build(set, {.memory = sim::MemoryBudget(1000)}), sim::UserError);
+}
+
+}  // namespace
+}  // namespace marti::tests
