@@ -3,6 +3,7 @@
 
 explore.answer = (() => {
   const { element, plain } = explore.controls;
+  const most_steps = 6;
   const svg = "http://www.w3.org/2000/svg";
   const at = (id) => document.getElementById(id);
 
@@ -62,7 +63,7 @@ explore.answer = (() => {
 
   function show_helps(helps) {
     at("helps").textContent = helps?.sentence ?? "";
-    const worth = (helps?.resources ?? []).filter(({ step }) => step?.saved > 0);
+    const worth = (helps?.resources ?? []).filter(({ step }) => step?.saved > 0).slice(0, most_steps);
     at("steps").replaceChildren(
       ...worth.map(({ step }) => {
         const keys = Object.entries(step.keys);

@@ -30,6 +30,7 @@
     const begun = performance.now();
     const seconds = () => ((performance.now() - begun) / 1000).toFixed(1);
     const progress = setInterval(() => answer.waiting(`simulating for ${seconds()} s; a move takes its place`), 250);
+    const before = server.known(now.settings) !== undefined;
     let found = null;
     try {
       while (found === null && mine === asked) found = await server.time(now.settings);
@@ -39,7 +40,7 @@
     clearInterval(progress);
     if (!found || mine !== asked) return;
     const took = performance.now() - begun;
-    answer.waiting(`exact; answered in ${Math.round(took)} ms`);
+    answer.waiting(before ? "exact; simulated before" : `exact; answered in ${Math.round(took)} ms`);
     answer.show(found, server.known({})?.figures);
     answer.show_helps(null);
     controls.judge(found);
