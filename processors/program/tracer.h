@@ -265,7 +265,8 @@ class Tracer {
       recorder_.light(static_cast<std::uint32_t>(i));
       add(pending.weight, lit(material, surface, sample, pending.direction));
     }
-    // On a material on which no light shows, lights are only asked to keep all shadow rays: this one too then.
+    // On a material on which no light shows, lights are only asked to keep all shadow rays: this one too
+    // then.
     if (!emitters_.empty() && (scatters(material) || !shows_light(material))) {
       ask_emitter(pending, material, surface);
     }

@@ -3,7 +3,7 @@
 #include <memory>
 #include <thread>
 
-#include "studies/explore/desk.h"
+#include "studies/explore/explore_service.h"
 #include "studies/explore/http_server.h"
 #include "studies/explore/open_page.h"
 #include "studies/explore/session.h"
@@ -34,13 +34,13 @@ class Serving {
 void explore_command(const ExploreArguments& arguments, void (*print)(const std::string&)) {
   const std::unique_ptr<HttpServer> server = make_http_server();
   const Session session(arguments.config, arguments.assignments);
-  Desk desk(session, random_token(), server->bind(arguments.port));
-  const Serving serving(*server, desk);
-  print(desk.address() + "\n");
+  ExploreService service(session, random_token(), server->bind(arguments.port));
+  const Serving serving(*server, service);
+  print(service.address() + "\n");
   if (!arguments.no_browser && has_screen()) {
-    open_page(desk.address());
+    open_page(service.address());
   }
-  desk.wait_for_end(arguments.seconds);
+  service.wait_for_end(arguments.seconds);
 }
 
 }  // namespace marti::studies

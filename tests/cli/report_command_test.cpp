@@ -76,10 +76,6 @@ class ReportCommand : public testing::Test {
     return made("study", "study schemes " + quoted(fs::path(MARTI_SOURCE) / "configs" / "schemes.toml") +
                              " --set image.width=8 --set image.height=8");
   }
-
-  TemporaryDirectory directory_;
-
- private:
   /// A copy of what the command writes; it runs once for all tests.
   [[nodiscard]] fs::path made(const std::string& name, const std::string& command) const {
     static const TemporaryDirectory originals;
@@ -95,6 +91,8 @@ class ReportCommand : public testing::Test {
     fs::copy(known[what], place(name), fs::copy_options::recursive);
     return place(name);
   }
+
+  TemporaryDirectory directory_;
 };
 
 TEST_F(ReportCommand, ReportsARun) {

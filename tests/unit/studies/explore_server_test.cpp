@@ -11,7 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "studies/explore/desk.h"
+#include "studies/explore/explore_service.h"
 #include "studies/explore/http_server.h"
 #include "studies/explore/session.h"
 #include "tests/support/temporary_directory.h"
@@ -34,8 +34,8 @@ class Served : public testing::Test {
   Served()
       : server_(make_http_server()),
         port_(server_->bind(0)),
-        desk_(session(), token_, port_),
-        thread_([this] { server_->serve(desk_, most_body_bytes); }),
+        service_(session(), token_, port_),
+        thread_([this] { server_->serve(service_, most_body_bytes); }),
         client_("127.0.0.1", port_) {}
   ~Served() override {
     server_->stop();
@@ -85,7 +85,7 @@ class Served : public testing::Test {
   const std::string token_ = random_token();
   std::unique_ptr<HttpServer> server_;
   int port_;
-  Desk desk_;
+  ExploreService service_;
   std::thread thread_;
   httplib::Client client_;
 };
@@ -221,12 +221,12 @@ TEST_F(Served, OneRequestAConnection) {
 }
 
 TEST_F(Served, ThePageMayEndIt) {
-  auto ended = std::thread([this] { desk_.wait_for_end(0); });
+  auto ended = std::thread([this] { service_.wait_for_end(0); });
   EXPECT_EQ(post("end", "{}"), 204);
   ended.join();
 }
 
-TEST_F(Served, EndsByItselfAfterItsTime) { desk_.wait_for_end(0.01); }
+TEST_F(Served, EndsByItselfAfterItsTime) { service_.wait_for_end(0.01); }
 
 TEST_F(Served, APortIsTakenOnce) {
   const std::unique_ptr<HttpServer> second = make_http_server();

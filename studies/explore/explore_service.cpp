@@ -1,4 +1,4 @@
-#include "studies/explore/desk.h"
+#include "studies/explore/explore_service.h"
 
 #include <fmt/format.h>
 
@@ -77,19 +77,19 @@ std::string random_token() {
   return token;
 }
 
-Desk::Desk(const Session& session, std::string token, int port)
+ExploreService::ExploreService(const Session& session, std::string token, int port)
     : session_(session), token_(std::move(token)), port_(port) {}
 
-std::string Desk::address() const { return fmt::format("http://127.0.0.1:{}/{}/", port_, token_); }
+std::string ExploreService::address() const { return fmt::format("http://127.0.0.1:{}/{}/", port_, token_); }
 
-bool Desk::is_own(const HttpHead& head) const {
+bool ExploreService::is_own(const HttpHead& head) const {
   const std::array<std::string, 2> hosts = {fmt::format("127.0.0.1:{}", port_),
                                             fmt::format("localhost:{}", port_)};
   return head.hosts.size() == 1 && std::find(hosts.begin(), hosts.end(), head.hosts[0]) != hosts.end() &&
          (head.origins.empty() || (head.origins.size() == 1 && head.origins[0] == "http://" + head.hosts[0]));
 }
 
-std::optional<std::string> Desk::below_token(const std::string& path) const {
+std::optional<std::string> ExploreService::below_token(const std::string& path) const {
   const std::size_t end = path.find('/', 1);
   if (!path.starts_with('/') || end == std::string::npos ||
       !equal_texts(std::string_view(path).substr(1, end - 1), token_)) {
@@ -98,7 +98,7 @@ std::optional<std::string> Desk::below_token(const std::string& path) const {
   return path.substr(end + 1);
 }
 
-std::optional<HttpResponse> Desk::file(const std::string& name) const {
+std::optional<HttpResponse> ExploreService::file(const std::string& name) const {
   const auto made = [](const char* type, std::string_view text) {
     return HttpResponse{.content_type = type, .body = std::string(text)};
   };
@@ -122,7 +122,7 @@ std::optional<HttpResponse> Desk::file(const std::string& name) const {
   return std::nullopt;
 }
 
-std::optional<HttpResponse> Desk::answer_head(const HttpHead& head) {
+std::optional<HttpResponse> ExploreService::answer_head(const HttpHead& head) {
   if (!is_own(head)) {
     return nothing(403);
   }
@@ -142,7 +142,7 @@ std::optional<HttpResponse> Desk::answer_head(const HttpHead& head) {
   return std::nullopt;
 }
 
-HttpResponse Desk::answer(const HttpHead& head, const std::string& body) {
+HttpResponse ExploreService::answer(const HttpHead& head, const std::string& body) {
   const std::string name = below_token(head.path).value_or("");
   try {
     if (name == "time") {
@@ -164,7 +164,7 @@ HttpResponse Desk::answer(const HttpHead& head, const std::string& body) {
   return nothing(204);
 }
 
-HttpResponse Desk::simulate(const std::string& body, Measuring what_helps) {
+HttpResponse ExploreService::simulate(const std::string& body, Measuring what_helps) {
   const std::optional<Request> request = parse(body);
   if (!request) {
     return nothing(400);
@@ -176,7 +176,7 @@ HttpResponse Desk::simulate(const std::string& body, Measuring what_helps) {
   return {200, json_type, session_.answer(request->settings, what_helps, &turn->stop())};
 }
 
-void Desk::wait_for_end(double seconds) {
+void ExploreService::wait_for_end(double seconds) {
   std::unique_lock lock(mutex_);
   if (seconds > 0) {
     end_asked_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return end_; });

@@ -20,10 +20,10 @@ inline constexpr std::size_t most_body_bytes = 64 * 1024;
 
 /// Paths are below /TOKEN/; of every other one nothing is said but 404. A request must name this computer as
 /// its host, so that no other name that leads here serves, and must come from this page or from no page.
-class Desk : public HttpService {
+class ExploreService : public HttpService {
  public:
   /// `session` must outlive the object.
-  Desk(const Session& session, std::string token, int port);
+  ExploreService(const Session& session, std::string token, int port);
 
   [[nodiscard]] std::optional<HttpResponse> answer_head(const HttpHead& head) override;
   [[nodiscard]] HttpResponse answer(const HttpHead& head, const std::string& body) override;
