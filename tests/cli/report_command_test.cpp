@@ -176,7 +176,7 @@ TEST_F(ReportCommand, ReportsAStudy) {
 
 TEST_F(ReportCommand, AStudysPageBeginsWithItsVerdict) {
   const fs::path cases = made("cases",
-                              "study stability --set stability.rays=50 --set stability.nodes=8 --set "
+                              "study stability --set stability.rays=100 --set stability.nodes=64 --set "
                               "'stability.only=[\"leaks-at-1e6\",\"zero-latencies\"]'");
   ASSERT_EQ(marti("report " + quoted(cases)).status, 0);
   EXPECT_EQ(data_of(cases / "report.html")["answer"][0], "2 of 2 cases pass.");

@@ -54,9 +54,11 @@ void refuse(const memory::LayoutConfig& layout, const memory::BankConfig& banks,
   using memory::NodeOrder;
   [[maybe_unused]] const auto& [node, entry, primitive, quadric, material, texel, pixel, record_alignment,
                                 section_alignment, order, treelet] = layout;
-  [[maybe_unused]] const auto& [count, interleave, clock, access_cycles, busy_cycles, shared_cache] = banks;
+  [[maybe_unused]] const auto& [count, interleave, clock, access_cycles, busy_cycles, shared_cache, dram] =
+      banks;
   [[maybe_unused]] const auto& [local_clock, width, local_access_cycles, cycles_per_beat] = local;
   sim::ensure(!shared_cache, "the SystemC model has no cache before the banks");
+  sim::ensure(!dram, "the SystemC model has banks of fixed times only");
   ensure_one_of(order, {NodeOrder::breadth_first, NodeOrder::depth_first, NodeOrder::treelets},
                 "the SystemC model has no such order of nodes");
 }
