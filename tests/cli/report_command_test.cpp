@@ -179,15 +179,17 @@ TEST_F(ReportCommand, AStudysPageBeginsWithItsVerdict) {
                               "study stability --set stability.rays=100 --set stability.nodes=64 --set "
                               "'stability.only=[\"leaks-at-1e6\",\"zero-latencies\"]'");
   ASSERT_EQ(marti("report " + quoted(cases)).status, 0);
-  EXPECT_EQ(data_of(cases / "report.html")["answer"][0], "2 of 2 cases pass.");
+  const auto says = [&](const std::string& sentence) {
+    return read(cases / "report.html").find(sentence) != std::string::npos;
+  };
+  EXPECT_TRUE(says("2 of 2 cases pass."));
   const std::string change =
       "import sqlite3, sys; c = sqlite3.connect(sys.argv[1]); c.execute('UPDATE stability "
       "SET verdict = ?, figure = ? WHERE rowid = 1', ('FAIL', '3 leaks')); c.commit()";
   ASSERT_EQ(shell("python3 -c \"" + change + "\" " + quoted(cases / "results.sqlite")).status, 0);
   ASSERT_EQ(marti("report " + quoted(cases)).status, 0);
-  const json answer = data_of(cases / "report.html")["answer"];
-  EXPECT_EQ(answer[0], "1 of 2 cases pass; the others:");
-  EXPECT_EQ(answer[1], "leaks-at-1e6: 3 leaks (FAIL).");
+  EXPECT_TRUE(says("1 of 2 cases pass; the others:"));
+  EXPECT_TRUE(says("leaks-at-1e6: 3 leaks (FAIL)."));
 }
 
 TEST_F(ReportCommand, GivesTheSameBytesTwice) {
