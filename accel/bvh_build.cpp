@@ -120,7 +120,9 @@ class BinaryBuilder {
 
   void run() {
     const std::uint32_t count = triangles_.size();
-    require_tree(options_.memory, std::uint64_t{count} * (sizeof(Reference) + 2 * sizeof(BvhBinaryNode)),
+    require_tree(options_.memory,
+                 std::uint64_t{count} *
+                     (sizeof(Reference) + 2 * sizeof(BvhBinaryNode) + sizeof(Split) + sizeof(std::uint32_t)),
                  "bvh", "take a smaller scene");
     tree_.nodes.reserve(2 * std::size_t{count} - 1);
     references_.resize(count);

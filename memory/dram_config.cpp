@@ -44,10 +44,13 @@ void check_timing(const DramConfig& config) {
   if (timing.bl == 0) {
     refuse("dram.tbl", "must not be 0");
   }
-  // Each rank may have rows to close, and then an access must be possible.
+  // Each rank may have rows to close, and then an access must be possible: from an activation to the next one
+  // of the bank.
   const std::int64_t refresh = timing.rfc + std::int64_t{config.ranks} * (timing.rp + 2);
-  if (timing.refi > 0 &&
-      timing.refi <= refresh + timing.rc + timing.cl + timing.cwl + timing.bl + timing.wr) {
+  const std::int64_t column = std::max(timing.rtp, std::max(timing.cl, timing.cwl) + timing.bl + timing.wr);
+  const std::int64_t access = std::max({timing.rc, timing.ras + timing.rp, timing.faw,
+                                        std::max(timing.rcd, timing.rcd_write) + column + timing.rp});
+  if (timing.refi > 0 && timing.refi <= refresh + access) {
     refuse("dram.trefi", "must leave time for an access between two refreshes of " +
                              std::to_string(timing.rfc) + " cycles (dram.trfc)");
   }

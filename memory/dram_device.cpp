@@ -40,11 +40,9 @@ void DramDevice::issue(DramCommand command, const DramPlace& place, DramCycle cy
     case DramCommand::write:
       issue_column(command, place, cycle);
       if (close) {
-        // The device closes the row as soon as a precharge would be allowed after this access.
-        const DramCycle free = command == DramCommand::read
-                                   ? cycle + timing_.rtp
-                                   : end_of_data(DramCommand::write, cycle) + timing_.wr;
-        raise(of(bank.next, DramCommand::activate), free + timing_.rp);
+        // The device closes the row as soon as a precharge is allowed: after this access, the writes before
+        // it and the activation.
+        raise(of(bank.next, DramCommand::activate), of(bank.next, DramCommand::precharge) + timing_.rp);
         bank.row = no_row;
       }
       return;

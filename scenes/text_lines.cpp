@@ -56,13 +56,18 @@ bool TextLines::next() {
   while (words_.empty() && next_ < text_.size()) {
     std::string_view line = take_line();
     line_ = lines_read_;
-    if (style_ == Style::wavefront && line.ends_with('\\')) {
+    const std::size_t first = line.find_first_not_of(blanks);
+    const bool comment = first != std::string_view::npos && line[first] == '#';
+    if (style_ == Style::wavefront && line.ends_with('\\') && !comment) {
       joined_.clear();
       bool more = true;
       while (more) {
         more = line.ends_with('\\') && next_ < text_.size();
         joined_ += line.ends_with('\\') ? line.substr(0, line.size() - 1) : line;
         joined_ += ' ';
+        if (joined_.size() > longest_line) {
+          fail("the line is longer than 1 MiB");
+        }
         line = more ? take_line() : line;
       }
       line = without_end(joined_);

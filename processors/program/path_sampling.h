@@ -5,6 +5,7 @@
 // shifts no number of another (Salmon et al., "Parallel Random Numbers: As Easy as 1, 2, 3", SC 2011).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -51,13 +52,17 @@ class PathNumbers {
 
 /// The number as a scalar of the templates. A counting scalar counts the operations on integers that made it:
 /// its place in the stream (a product and two sums), SplitMix64 (a sum, two products, three shifts, three
-/// exclusive ors), the shift before the conversion, and `further`.
+/// exclusive ors), and the shift before the conversion. Rounded to a float it stays below 1.
 template <typename Real>
-Real drawn(double number, std::uint32_t further = 0) {
+Real drawn(double number) {
   if constexpr (std::is_same_v<Real, accel::Counted>) {
-    accel::operation_counts().integer += std::uint64_t{13} + further;
+    accel::operation_counts().integer += 13;
   }
-  return static_cast<Real>(number);
+  if constexpr (std::is_same_v<Real, float>) {
+    return std::min(static_cast<float>(number), 0x1.fffffep-1F);
+  } else {
+    return static_cast<Real>(number);
+  }
 }
 
 /// A direction about the unit normal with a density proportional to its cosine: the normal and a point of the
@@ -139,8 +144,17 @@ EmitterSample<Real> emitter_at(const scenes::Scene& scene, const Emitters& emitt
                                std::uint32_t bounce) {
   using std::sqrt;
   constexpr double one_over_pi = 0.31830988618379067154;
-  const Emitters::Choice choice = emitters.choose(
-      static_cast<double>(drawn<Real>(numbers.at(bounce, Draw::emitter), emitters.comparisons())));
+  const Emitters::Choice choice =
+      emitters.choose(static_cast<double>(drawn<Real>(numbers.at(bounce, Draw::emitter))));
+  if constexpr (std::is_same_v<Real, accel::Counted>) {
+    // The choice is made in doubles, which do not count: the number times the sum of weights, a comparison a
+    // step of the search, and the difference, quotient and product that make area over chance.
+    accel::OperationCounts& counts = accel::operation_counts();
+    counts.compare += emitters.comparisons();
+    counts.multiply += 2;
+    counts.add += 1;
+    counts.divide += 1;
+  }
   const std::array<Real, 3> b = point_of_triangle(drawn<Real>(numbers.at(bounce, Draw::on_emitter_a)),
                                                   drawn<Real>(numbers.at(bounce, Draw::on_emitter_b)));
   const scenes::Triangle& triangle = scene.triangles[choice.triangle];

@@ -229,7 +229,8 @@ class Tracer {
   }
 
   /// Adds the light that leaves the surface towards the ray's origin, and sends the rays that bring more.
-  /// `asked`: where light is scattered, the surface has been asked for what it emits.
+  /// `asked`: points of this primitive are drawn wherever light is scattered (ask_emitter), so that a diffuse
+  /// ray that ends here must not add its emission once more.
   void light_up(const Pending& pending, const scenes::Material& material, const Surface<Real>& surface,
                 bool asked) {
     const bool path = options_.integrator == Integrator::path;
@@ -265,8 +266,8 @@ class Tracer {
       recorder_.light(static_cast<std::uint32_t>(i));
       add(pending.weight, lit(material, surface, sample, pending.direction));
     }
-    // On a material on which no light shows, lights are only asked to keep all shadow rays: this one too
-    // then.
+    // On a material on which no light shows, lights are asked only with RenderOptions::unlit_shadows, which
+    // keeps all shadow rays: also that to an emitter.
     if (!emitters_.empty() && (scatters(material) || !shows_light(material))) {
       ask_emitter(pending, material, surface);
     }

@@ -64,15 +64,18 @@ constexpr int done = 0;
 constexpr int our_fault = 1;
 constexpr int wrong_input = 2;
 
-// The reader of standard output, such as `head`, has seen enough and is gone: no error.
-struct NoReader {};
-
 void print(const std::string& text) {
+  // The reader of standard output, such as `head`, has seen enough and is gone: no error. The command does
+  // the rest of its work.
+  static bool no_reader = false;
+  if (no_reader) {
+    return;
+  }
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    if (errno == EPIPE) {
-      throw NoReader();
+    no_reader = errno == EPIPE;
+    if (!no_reader) {
+      throw sim::UserError("standard output cannot be written");
     }
-    throw sim::UserError("standard output cannot be written");
   }
 }
 
@@ -556,8 +559,6 @@ int main(int argc, char** argv) {
     marti::studies::end_cleanly_on_signals();
     marti::studies::limit_threads_to_available();
     return parse_and_run(argc, argv);
-  } catch (const NoReader&) {
-    return end(done);
   } catch (const marti::sim::UserError& error) {
     // A message may quote control characters, which must not reach the terminal.
     std::fprintf(stderr, "marti: %s\n", marti::sim::shown(error.what(), marti::sim::all_shown).c_str());

@@ -33,8 +33,9 @@ class Serving {
 
 void explore_command(const ExploreArguments& arguments, void (*print)(const std::string&)) {
   const std::unique_ptr<HttpServer> server = make_http_server();
+  const int port = server->bind(arguments.port);  // before the frame is traced, which may take long
   const Session session(arguments.config, arguments.assignments);
-  ExploreService service(session, random_token(), server->bind(arguments.port));
+  ExploreService service(session, random_token(), port);
   const Serving serving(*server, service);
   print(service.address() + "\n");
   if (!arguments.no_browser && has_screen()) {

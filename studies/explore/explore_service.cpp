@@ -83,8 +83,9 @@ ExploreService::ExploreService(const Session& session, std::string token, int po
 std::string ExploreService::address() const { return fmt::format("http://127.0.0.1:{}/{}/", port_, token_); }
 
 bool ExploreService::is_own(const HttpHead& head) const {
-  const std::array<std::string, 2> hosts = {fmt::format("127.0.0.1:{}", port_),
-                                            fmt::format("localhost:{}", port_)};
+  // At port 80 clients leave the port out.
+  const std::string port = port_ == 80 ? "" : fmt::format(":{}", port_);
+  const std::array<std::string, 2> hosts = {"127.0.0.1" + port, "localhost" + port};
   return head.hosts.size() == 1 && std::find(hosts.begin(), hosts.end(), head.hosts[0]) != hosts.end() &&
          (head.origins.empty() || (head.origins.size() == 1 && head.origins[0] == "http://" + head.hosts[0]));
 }
@@ -157,7 +158,6 @@ HttpResponse ExploreService::answer(const HttpHead& head, const std::string& bod
     const Json json = {{"error", "internal error: " + std::string(error.what())}, {"key", nullptr}};
     return {500, json_type, json.dump(-1, ' ', false, Json::error_handler_t::replace)};
   }
-  turns_.stop();
   const std::lock_guard lock(mutex_);
   end_ = true;
   end_asked_.notify_all();
@@ -183,6 +183,7 @@ void ExploreService::wait_for_end(double seconds) {
   } else {
     end_asked_.wait(lock, [this] { return end_; });
   }
+  turns_.stop();
 }
 
 }  // namespace marti::studies

@@ -11,6 +11,7 @@
 #include "sim/config.h"
 #include "sim/error.h"
 #include "sim/files.h"
+#include "sim/nearest.h"
 #include "studies/keys/config_file.h"
 #include "studies/keys/price_keys.h"
 
@@ -118,8 +119,13 @@ std::string Session::timed(const Settings& settings, Measuring what_helps,
   std::vector<std::string> assignments = assignments_;
   for (const auto& [key, value] : settings) {
     const std::optional<std::size_t> index = schema_.find(key);
-    // A name that is no key is refused below, with the nearest one.
-    if (index && !is_control(schema_.keys()[*index])) {
+    // Below, an assignment is cut at its first '=' and trimmed, so a name that is no key might become one
+    // there.
+    if (!index) {
+      throw sim::UserError("--set " + key + "=" + value + ": unknown key" +
+                           sim::did_you_mean(key, schema_.names()));
+    }
+    if (!is_control(schema_.keys()[*index])) {
       throw sim::UserError("--set " + key + "=" + value +
                            ": is not a setting of the machine; the frame is rendered once, before the page");
     }

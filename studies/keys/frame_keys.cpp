@@ -179,7 +179,8 @@ sim::MemoryBudget read_memory(const sim::Config& config, std::uint64_t processes
 FrameConfig read_frame(sim::Config& config) {
   FrameConfig frame;
   frame.scene = config.text("scene.source");
-  if (!config.where("scene.source").starts_with("--set")) {
+  const std::string where = config.where("scene.source");
+  if (!where.starts_with("--set") && !where.starts_with("--axis")) {
     frame.open.base_directory = std::filesystem::path(config.name()).parent_path();
   }
   if (scenes::names_a_file(frame.scene)) {
@@ -188,7 +189,7 @@ FrameConfig read_frame(sim::Config& config) {
       config.fail("scene.source",
                   "there is no file " + sim::shown(file.string()) +
                       "; one that a configuration names is looked for beside it, one given with "
-                      "--set in the current directory");
+                      "--set or --axis in the current directory");
     }
   }
   frame.open.file.scene = config.text("scene.scene");

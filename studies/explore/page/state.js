@@ -11,7 +11,7 @@ explore.state = (() => {
     for (const [name, value] of new URLSearchParams(hash.replace(/^#/, ""))) {
       if (name.includes(".")) state.settings[name] = value;
       else if (name === "pin") state.pins.push(Object.fromEntries(new URLSearchParams(value)));
-      else if (name in state) state[name] = value;
+      else if (["axis", "values", "figure"].includes(name)) state[name] = value;
     }
     return state;
   }

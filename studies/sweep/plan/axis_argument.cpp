@@ -104,11 +104,13 @@ class ArgumentReader {
     }
     const std::string_view from = trimmed(part.substr(0, dots));
     std::string_view to = part.substr(dots + 2);
-    const std::size_t sign = to.find_last_of("*+");
+    std::size_t sign = to.find_last_of("*+");
     // The sign of an exponent, as in 1e+6, belongs to the number.
-    const bool exponent = sign != std::string_view::npos && sign > 0 && to[sign] == '+' &&
-                          (to[sign - 1] == 'e' || to[sign - 1] == 'E');
-    const bool stepped = sign != std::string_view::npos && !exponent;
+    while (sign != std::string_view::npos && sign > 0 && to[sign] == '+' &&
+           (to[sign - 1] == 'e' || to[sign - 1] == 'E')) {
+      sign = to.find_last_of("*+", sign - 1);
+    }
+    const bool stepped = sign != std::string_view::npos;
     const char how = stepped ? to[sign] : ' ';
     const std::string_view step = stepped ? trimmed(to.substr(sign + 1)) : std::string_view();
     to = trimmed(to.substr(0, stepped ? sign : to.size()));

@@ -259,7 +259,8 @@ class TableReader {
       points *= axis.steps.size();  // at most a million times a million
       if (points > most_sweep_points) {
         fail(axis.line, "sweep",
-             "the axes up to this line make " + std::to_string(points) + " points; a sweep has at most " +
+             (axis.line > 0 ? "the axes up to this line make " : "the axes given by --axis make ") +
+                 std::to_string(points) + " points; a sweep has at most " +
                  std::to_string(most_sweep_points));
       }
     }

@@ -195,8 +195,12 @@ TEST(Dram, RandomRowsOfOneBankTakeTheRowCycle) {
   for (std::size_t preset = 0; preset < dram_preset_names.size(); ++preset) {
     DramConfig config = dram_preset(preset);
     config.timing.refi = 0;
-    for (const DramPage page : {DramPage::open, DramPage::closed}) {
+    // With closed pages too a row stays open for tRAS, here also where that is the longest time of all.
+    const std::int64_t usual = config.timing.ras;
+    for (const auto& [page, ras] : {std::pair(DramPage::open, usual), std::pair(DramPage::closed, usual),
+                                    std::pair(DramPage::closed, std::int64_t{200})}) {
       config.page = page;
+      config.timing.ras = ras;
       std::vector<test::StreamAccess> accesses(1000);
       for (std::size_t i = 0; i < accesses.size(); ++i) {
         accesses[i].place.row = static_cast<std::uint32_t>(i);
@@ -309,6 +313,8 @@ TEST(Dram, MappingsAreReadAndRefused) {
   refused("dram.channels", [](DramConfig& c) { c.channels = 3; });
   refused("dram.row", [](DramConfig& c) { c.row_bytes = 32; });
   refused("dram.trefi", [](DramConfig& c) { c.timing.refi = 433; });
+  refused("dram.trefi", [](DramConfig& c) { c.timing.ras = 10'000; });
+  refused("dram.trefi", [](DramConfig& c) { c.timing.rcd = 10'000; });
   refused("dram.tccd_l", [](DramConfig& c) { c.timing.ccd_l = 3; });
   refused("dram.tccd_s", [](DramConfig& c) { c.timing.ccd_s = 3; });
   refused("dram.queue", [](DramConfig& c) { c.queue = 0; });

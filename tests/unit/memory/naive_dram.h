@@ -78,8 +78,11 @@ class NaiveDram {
     at_least(same_bank && a.kind == pre && b == act, t_.rp);
     at_least(same_bank && a.kind == rd && b == pre, t_.rtp);
     at_least(same_bank && a.kind == wr && b == pre, written + t_.wr);
-    at_least(same_bank && a.kind == rd && a.close && b == act, t_.rtp + t_.rp);
-    at_least(same_bank && a.kind == wr && a.close && b == act, written + t_.wr + t_.rp);
+    // A row is closed before the next activation of its bank: by a precharge, or by the device as soon as one
+    // would be allowed.
+    at_least(same_bank && a.kind == act && b == act, t_.ras + t_.rp);
+    at_least(same_bank && a.kind == rd && b == act, t_.rtp + t_.rp);
+    at_least(same_bank && a.kind == wr && b == act, written + t_.wr + t_.rp);
     // One rank.
     at_least(same_rank && a.kind == act && b == act, same_group ? t_.rrd_l : t_.rrd_s);
     at_least(same_rank && a.kind == rd && b == rd, same_group ? t_.ccd_l : t_.ccd_s);
@@ -89,10 +92,10 @@ class NaiveDram {
     at_least(same_rank && a.kind == ref && b == act, t_.rfc);
     at_least(same_rank && a.kind == pre_all && (b == act || b == ref), t_.rp);
     if (same_rank && b == ref) {
-      at_least(a.kind == act, t_.rc);
+      at_least(a.kind == act, std::max(t_.rc, t_.ras + t_.rp));
       at_least(a.kind == pre, t_.rp);
-      at_least(a.kind == rd && a.close, t_.rtp + t_.rp);
-      at_least(a.kind == wr && a.close, written + t_.wr + t_.rp);
+      at_least(a.kind == rd, t_.rtp + t_.rp);
+      at_least(a.kind == wr, written + t_.wr + t_.rp);
     }
     if (same_rank && b == pre_all && open_[a.place.bank] >= 0) {
       at_least(a.kind == act, t_.ras);

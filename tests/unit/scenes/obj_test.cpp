@@ -52,6 +52,12 @@ TEST(Obj, FacesCountFromTheBeginningOrTheEnd) {
   EXPECT_EQ(a.lights.size(), 1U);
 }
 
+TEST(Obj, ACommentHasNoNextLine) {
+  const SceneFolder folder;
+  const Scene scene = folder.open("a.obj", "# C:\\models\\\nv 5 5 5\n" + square + "f 2 3 4\n");
+  EXPECT_EQ(corner(scene, 0, 0), glm::dvec3(0.0, 0.0, 0.0));
+}
+
 TEST(Obj, NumbersAreTheDecimalOnes) {
   const SceneFolder folder;
   const Scene scene =

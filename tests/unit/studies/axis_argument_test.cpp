@@ -52,6 +52,7 @@ TEST(AxisArgument, RangesHoldEveryStepUpToTheirEnd) {
   // No rounding leaves out the end: 0.1 five times added to itself is not 0.5.
   EXPECT_EQ(values_of("structure.grid_density=0.1..0.5+0.1").size(), 5U);
   EXPECT_EQ(values_of("structure.grid_density=0.1..0.5+0.1").back(), "0.5");
+  EXPECT_EQ(values_of("structure.grid_density=1..3+1e+0"), (Values{"1.0", "2.0", "3.0"}));
   EXPECT_EQ(values_of("structure.grid_density=1..1e+2*10"), (Values{"1.0", "10.0", "100.0"}));
   EXPECT_EQ(values_of("machine.nodes=2..7*1.5"), (Values{"2", "3", "5", "7"}));
 }

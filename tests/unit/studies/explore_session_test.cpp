@@ -146,6 +146,15 @@ TEST_F(Explored, ARefusalNamesTheKeyAndTheNextAnswerIsRightAgain) {
   EXPECT_EQ(session.answer({}, Measuring::none), run_with({}));
 }
 
+TEST_F(Explored, WhatIsNoKeyDoesNotBecomeOne) {
+  const Session session(file_, {});
+  for (const Settings& settings : std::vector<Settings>{
+           {{" image.width", "64"}}, {{"scene.source=a", "b"}}, {{"machine.nodes ", "8"}}, {{"", "1"}}}) {
+    const std::string answer = session.answer(settings, Measuring::none);
+    EXPECT_NE(answer.find("unknown key"), std::string::npos) << answer;
+  }
+}
+
 TEST_F(Explored, KeysOfTheFrameAreNoSettings) {
   const Session session(file_, {});
   for (const Settings& settings : std::vector<Settings>{{{"image.width", "8"}},
