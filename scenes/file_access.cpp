@@ -57,9 +57,6 @@ bool FileAccess::may_read(const std::string& name) {
   const std::string_view uri = std::string_view(name).substr(directory_.size());
   std::error_code error;
   const std::filesystem::path file = std::filesystem::weakly_canonical(name, error);
-  if (error == std::errc::filename_too_long) {
-    return false;  // there is no such file; several names that stand on one line may be meant
-  }
   if (uri.starts_with('/') || has_scheme(uri) || error || !lies_in(file, root_)) {
     refusal_ = "the " + std::string(kind_) + " " + double_quoted(uri) +
                " leads out of the scene's folder; only files in it can be read";

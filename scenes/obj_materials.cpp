@@ -53,7 +53,10 @@ void ObjMaterials::add_libraries(const TextLines& statement) {
   if (whole.empty()) {
     statement.fail("mtllib needs the name of a file");
   }
-  if (statement.words().size() == 2 || access_.may_read(access_.directory() + whole)) {
+  // One name with blanks, or several names: a text longer than any file's name can only be the latter.
+  constexpr std::size_t longest_name = 255;
+  if (statement.words().size() == 2 ||
+      (whole.size() <= longest_name && access_.may_read(access_.directory() + whole))) {
     add_library(whole, statement);
     return;
   }

@@ -58,6 +58,18 @@ TEST(Obj, ACommentHasNoNextLine) {
   EXPECT_EQ(corner(scene, 0, 0), glm::dvec3(0.0, 0.0, 0.0));
 }
 
+TEST(Obj, ALineMayNameManyLibraries) {
+  const SceneFolder folder;
+  std::string names;
+  for (int i = 0; i < 8; ++i) {
+    const std::string name = "library_" + std::to_string(i) + std::string(30, 'x') + ".mtl";
+    folder.write(name, "newmtl m" + std::to_string(i) + "\nKd 0.5 0.5 0.5\n");
+    names += " " + name;
+  }
+  const Scene scene = folder.open("a.obj", "mtllib" + names + "\n" + square + "usemtl m7\nf 2 3 4\n");
+  EXPECT_EQ(scene.materials.at(scene.triangles[0].material).name, "m7");
+}
+
 TEST(Obj, NumbersAreTheDecimalOnes) {
   const SceneFolder folder;
   const Scene scene =
