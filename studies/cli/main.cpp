@@ -352,6 +352,10 @@ void add_report_command(CLI::App& app, studies::ReportArguments& arguments) {
       ->type_name("DIR")
       ->check(no_empty_directory);
   report->add_flag("--pdf", arguments.pdf, "the plots also as PDF");
+  report
+      ->add_option("--budget", arguments.budget,
+                   "of a sweep: the price that a machine may have; the best within it is named")
+      ->type_name("COST");
   report->callback([&] { studies::report_command(arguments, print); });
 }
 

@@ -1,15 +1,17 @@
 // `marti report DIR` and `marti report DIR:N`.
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace marti::studies {
 
 struct ReportArguments {
-  std::string directory;  ///< of a run, a sweep or a study; "DIR:N" for point N of a sweep
-  std::string output;     ///< the page; empty: report.html, or point-N.html, in the directory
-  std::string plots;      ///< directory for the charts as files; empty: none
-  bool pdf = false;       ///< plots also as PDF
+  std::string directory;           ///< of a run, a sweep or a study; "DIR:N" for point N of a sweep
+  std::string output;              ///< the page; empty: report.html, or point-N.html, in the directory
+  std::string plots;               ///< directory for the charts as files; empty: none
+  bool pdf = false;                ///< plots also as PDF
+  std::optional<double> budget{};  ///< of a sweep: the price that a machine may have
 };
 
 /// Writes the page, and with `plots` the charts, and prints which files. Throws UserError for a directory

@@ -55,20 +55,21 @@ export async function resize(page, size) {
   });
 }
 
-/** The file in a page of its own, with all charts drawn. `options` are those of a Playwright context. */
-export async function openFile(browser, file, options = {}) {
+/** The file in a page of its own, with all charts drawn. `options` are those of a Playwright context, `fragment` is the
+ *  end of the address: "#name=value". */
+export async function openFile(browser, file, options = {}, fragment = "") {
   const url = pathToFileURL(file).href;
   const context = await browser.newContext({ viewport: screen, ...options });
   const page = await context.newPage();
   const faults = [];
   await page.route("**/*", (route) => {
     const asked = route.request().url();
-    if (asked === url) return route.continue();
+    if (asked.split("#")[0] === url) return route.continue();
     faults.push(`request of ${asked}`);
     return route.abort();
   });
   page.on("request", (request) => {
-    if (!/^(data|blob):/.test(request.url()) && request.url() !== url) faults.push(`request of ${request.url()}`);
+    if (!/^(data|blob):/.test(request.url()) && request.url().split("#")[0] !== url) faults.push(`request of ${request.url()}`);
   });
   page.on("websocket", (socket) => faults.push(`connection to ${socket.url()}`));
   page.on("pageerror", (error) => faults.push(`error: ${error.stack}`));
@@ -76,7 +77,7 @@ export async function openFile(browser, file, options = {}) {
     if (["error", "warning", "assert"].includes(message.type())) faults.push(`console: ${message.text()}`);
   });
   await page.addInitScript(watch);
-  await page.goto(url);
+  await page.goto(url + fragment);
   await page.waitForFunction(allDrawn, null, { timeout: 60000 });
   return {
     page,

@@ -1,6 +1,6 @@
 // Results to look at, made by the program itself: a run, a sweep and a study, each small, and their reports.
 import { execFile } from "node:child_process";
-import { readFileSync, rmSync, mkdirSync } from "node:fs";
+import { readFileSync, rmSync, mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { promisify } from "node:util";
 
@@ -35,6 +35,19 @@ export async function makeReports() {
     return [kind, { directory, page: join(directory, "report.html"), plots }];
   });
   return Object.fromEntries(await Promise.all(made));
+}
+
+/** A sweep of a configuration's text, and its page, made with these further arguments. */
+export async function makeSweep(name, config, ...args) {
+  const directory = join(process.env.MARTI_WORK, name);
+  rmSync(directory, { recursive: true, force: true });
+  mkdirSync(directory, { recursive: true });
+  const file = join(directory, "sweep.toml");
+  writeFileSync(file, config);
+  const results = join(directory, "results");
+  await marti("sweep", file, "-o", results, "--quiet");
+  await marti("report", results, ...args);
+  return { directory: results, page: join(results, "report.html") };
 }
 
 /** A CSV text (RFC 4180) as objects by column; numbers are numbers, nothing and an empty text are null. */

@@ -131,8 +131,8 @@ TEST_F(ReportCommand, ReportsASweepWithItsModel) {
   ASSERT_EQ(made.status, 0) << made.output;
   EXPECT_NE(made.output.find("The fastest of 24 machines"), std::string::npos) << made.output;
   const json data = data_of(place("page.html"));
-  for (const char* name : {"frame_time", "speed_up", "efficiency", "cycles", "utilisation", "waits",
-                           "hit_ratio_cache_size", "price", "energy"}) {
+  for (const char* name : {"frame_time", "speed_up", "efficiency", "cycles", "utilisation",
+                           "interconnect_waits", "bank_waits", "hit_ratio_cache_size", "price", "energy"}) {
     EXPECT_TRUE(has_chart(data, name)) << name;
   }
   const json& explorer = data["explorer"];
@@ -156,6 +156,27 @@ TEST_F(ReportCommand, ReportsASweepWithItsModel) {
       }
     }
   }
+}
+
+TEST_F(ReportCommand, NamesTheBestMachineWithinABudget) {
+  const std::string sweep = quoted(made_sweep());
+  const std::string page = " -o " + quoted(place("page.html"));
+  const Outcome all = marti("report " + sweep + page + " --budget 1000");
+  ASSERT_EQ(all.status, 0) << all.output;
+  EXPECT_NE(all.output.find("The fastest within a budget of 1000: "), std::string::npos) << all.output;
+  EXPECT_EQ(data_of(place("page.html"))["explorer"]["budget"], 1000);
+  const Outcome none = marti("report " + sweep + page + " --budget 0");
+  EXPECT_NE(none.output.find("No machine is within a budget of 0; the cheapest is "), std::string::npos)
+      << none.output;
+  const std::string before = read(place("page.html"));
+  for (const char* bad : {"-1", "nan", "inf"}) {
+    EXPECT_EQ(marti("report " + sweep + page + " --budget=" + bad).status, 2) << bad;
+  }
+  const Outcome run = marti("report " + sweep + ":1" + page + " --budget 9");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.output.find("--budget: chooses among the machines of a sweep"), std::string::npos)
+      << run.output;
+  EXPECT_EQ(read(place("page.html")), before);
 }
 
 TEST_F(ReportCommand, ReportsAStudy) {

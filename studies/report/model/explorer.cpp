@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "memory/record_kind.h"
+#include "studies/figures/derived_figures.h"
+#include "studies/report/model/answer_text.h"
 #include "studies/report/model/cycle_groups.h"
 #include "studies/report/model/rounded.h"
 
@@ -17,7 +19,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double ms_a_ps = 1e-9;
-constexpr double us_a_ps = 1e-6;
+constexpr double ps_a_ms = 1e9;
+constexpr double ps_a_us = 1e6;
 
 Json error_json(const ModelError* errors) {
   Json json = Json::object();
@@ -67,28 +70,31 @@ Json model_json(const AxisModel& model) {
 struct ExplorerField {
   std::string name;        // as in ReportPoint::figures
   std::string unit = "1";  // as shown
-  double scale = 1.0;      // shown is the figure times this
+  double divisor = 1.0;    // shown is the figure by this: a whole number, so that all digits are the figure's own
   bool exact = false;      // all its digits are shown
+  bool main = false;       // has a column in the table of points
+  std::string title{};     // for people; empty: the name in words
 };
 
 // The fields that at least one point has.
 std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
-  std::vector<ExplorerField> fields = {{"end", "ms", ms_a_ps, true},
-                                       {"speed_up", "1", 1.0, true},
-                                       {"efficiency", "1", 1.0, true},
+  std::vector<ExplorerField> fields = {{"end", "ms", ps_a_ms, true, true, "frame time"},
+                                       {"speed_up", "1", 1.0, true, true, "speed-up"},
+                                       {"price", "1", 1.0, false, true, sweep.priced ? "price" : "nodes"},
+                                       {"efficiency", "1", 1.0, true, true},
                                        {"times_faster"},
-                                       {"price"},
-                                       {"energy", "mJ", 1.0, true},
-                                       {"hit_ratio"}};
+                                       {"energy", "mJ", 1.0, true, true},
+                                       {"hit_ratio", "1", 1.0, false, true}};
   for (const std::string_view kind : memory::record_kind_names) {
     fields.push_back({"hit_ratio_" + std::string(kind)});
   }
   for (const char* const part : {"interconnect", "bank", "network"}) {
-    fields.push_back({part + std::string("_utilisation")});
+    fields.push_back(
+        {part + std::string("_utilisation"), "1", 1.0, false, true, part + std::string(" busy")});
   }
   for (const std::string wait : {"interconnect_wait", "bank_wait"}) {
     for (const std::string& name : {"mean_" + wait, wait + "_p50", wait + "_p95", wait + "_p99"}) {
-      fields.push_back({name, "us", us_a_ps});
+      fields.push_back({name, "us", ps_a_us});
     }
   }
   for (const std::string_view group : cycle_group_names) {
@@ -101,15 +107,60 @@ std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
   return fields;
 }
 
+// Figures that are parts of a whole, which people read in percent.
+bool is_share(const std::string& name) {
+  return name == "efficiency" || name.starts_with("hit_ratio") || name.starts_with("part_") ||
+         name.ends_with("_utilisation");
+}
+
+// What the catalogue of figures says of it; of what the report itself works out, how it does.
+std::string meaning_of(const ExplorerField& field, const ReportPoints& sweep) {
+  if (field.name == "price") {
+    return sweep.priced ? "cost by [prices]" : "number of nodes, as all costs are equal";
+  }
+  if (field.name.starts_with("part_")) {
+    return "share of all nodes' time from 0 to the end of the frame";
+  }
+  if (field.name.find("_wait_p") != std::string::npos) {
+    return "percentile: the upper end of its bucket of the histogram, at most an eighth too long";
+  }
+  return figure_named(field.name).description;
+}
+
+Json field_json(const ExplorerField& field, const ReportPoints& sweep) {
+  Json json = {{"name", field.name},
+               {"unit", field.unit},
+               {"title", field.title.empty() ? words(field.name) : field.title},
+               {"meaning", meaning_of(field, sweep)}};
+  if (is_share(field.name)) {
+    json["percent"] = true;
+  }
+  if (field.main) {
+    json["main"] = true;
+  }
+  return json;
+}
+
 // The figure as it is shown, for each point; null where the point lacks it.
 Json column_of(const ExplorerField& field, const ReportPoints& sweep) {
   Json column = Json::array();
   for (const ReportPoint& point : sweep.points) {
-    const double value = point.figure(field.name) * field.scale;
+    const double value = point.figure(field.name) / field.divisor;
     column.push_back(!point.has(field.name) ? Json()
                                             : Json(field.exact ? value : rounded(value, figure_digits)));
   }
   return column;
+}
+
+// The axis that colours show at first: names that are told apart in one chart of lines.
+std::optional<std::size_t> colour_axis(const ReportPoints& sweep, std::optional<std::size_t> axis) {
+  constexpr std::size_t most_lines = 4;
+  for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
+    if (i != axis && !sweep.axes[i].numeric && sweep.axes[i].values.size() <= most_lines) {
+      return i;
+    }
+  }
+  return std::nullopt;
 }
 
 Json numbers_of(const ReportAxis& axis) {
@@ -120,14 +171,15 @@ Json numbers_of(const ReportAxis& axis) {
   return numbers;
 }
 
-}  // namespace
+// Sizes, frequencies and durations have their unit beside each value: "16 KiB".
+bool has_units(const ReportAxis& axis) {
+  return axis.unit == "byte" || axis.unit == "Hz" || axis.unit == "ps";
+}
 
+// The x channel of Vega-Lite for an axis of numbers: title, scale, and the values as labels.
 Json channel_of(const ReportAxis& axis) {
-  Json channel = {
-      {"title", axis.unit.empty() || axis.unit == "1" ? axis.name : axis.name + ", " + axis.unit}};
-  for (const std::string& follower : axis.followers) {
-    channel["title"] = channel["title"].get<std::string>() + ", with " + follower;
-  }
+  const bool bare = axis.unit.empty() || axis.unit == "1" || has_units(axis);
+  Json channel = {{"title", bare ? axis.name : axis.name + ", " + axis.unit}};
   channel["scale"] = axis.logarithmic ? Json{{"type", "log"}, {"nice", false}}
                                       : Json{{"type", "linear"}, {"zero", false}, {"nice", false}};
   const Json values = numbers_of(axis);
@@ -141,12 +193,19 @@ Json channel_of(const ReportAxis& axis) {
   return channel;
 }
 
+}  // namespace
+
 Json explorer_json(const ReportPoints& sweep, std::span<const AxisModel> models, const Chosen& chosen,
                    std::optional<std::size_t> axis) {
   Json json = {{"axis", axis ? Json(*axis) : Json()},
                {"start", chosen.knee},
                {"fastest", chosen.fastest},
-               {"no_model", error_note(nullptr)}};
+               {"no_model", error_note(nullptr)},
+               {"no_curve", no_curve},
+               {"price", sweep.priced ? "price" : "nodes"},
+               {"budget", chosen.budget ? Json(*chosen.budget) : Json()}};
+  const std::optional<std::size_t> colour = colour_axis(sweep, axis);
+  json["colour"] = colour ? Json(*colour) : Json();
   json["axes"] = Json::array();
   json["place"] = Json::array();
   for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
@@ -177,7 +236,7 @@ Json explorer_json(const ReportPoints& sweep, std::span<const AxisModel> models,
   json["fields"] = Json::array();
   json["columns"] = Json::object();
   for (const ExplorerField& field : explorer_fields(sweep)) {
-    json["fields"].push_back({{"name", field.name}, {"unit", field.unit}});
+    json["fields"].push_back(field_json(field, sweep));
     json["columns"][field.name] = column_of(field, sweep);
   }
   json["models"] = Json::object();

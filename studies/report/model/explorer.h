@@ -12,11 +12,12 @@
 
 namespace marti::studies {
 
-/// How an axis stands in a chart: the members of Vega-Lite's channel definition.
-[[nodiscard]] nlohmann::ordered_json channel_of(const ReportAxis& axis);
+/// What a chart over an axis of names says of itself.
+inline constexpr const char* no_curve =
+    "Bars are machines of the sweep, simulated exactly. Names have no order, so there is no curve.";
 
-/// See docs/report.md. `axis`: the one that the curve runs along at first; std::nullopt for a sweep without
-/// an axis of numbers.
+/// See docs/report.md. `axis`: the one that the curve runs along at first; std::nullopt for a sweep of one
+/// machine.
 [[nodiscard]] nlohmann::ordered_json explorer_json(const ReportPoints& sweep,
                                                    std::span<const AxisModel> models, const Chosen& chosen,
                                                    std::optional<std::size_t> axis);

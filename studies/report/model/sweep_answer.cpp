@@ -134,7 +134,7 @@ std::vector<std::size_t> front_by(const ReportPoints& sweep, std::string_view fi
 
 }  // namespace
 
-Chosen choose(const ReportPoints& sweep) {
+Chosen choose(const ReportPoints& sweep, std::optional<double> budget) {
   const auto shortest = std::min_element(
       sweep.points.begin(), sweep.points.end(),
       [](const ReportPoint& a, const ReportPoint& b) { return a.figure("end") < b.figure("end"); });
@@ -143,6 +143,12 @@ Chosen choose(const ReportPoints& sweep) {
   chosen.energy_front = front_by(sweep, "energy", shortest->frame);
   chosen.fastest = chosen.front.back();
   chosen.knee = knee_of(sweep, chosen.front);
+  chosen.budget = budget;
+  for (const std::size_t i : chosen.front) {  // ascending by price: each is faster than the one before
+    if (budget && price_of(sweep.points[i]) <= *budget) {
+      chosen.within = i;
+    }
+  }
   return chosen;
 }
 
@@ -187,6 +193,15 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
                     chosen.front.size(), time_text(knee.figure("end")), speed_text(knee), unit,
                     price_of(knee), time, 100.0 * price, place_text(sweep, knee)));
     add_limit("What would help that one, predicted", knee);
+  }
+  if (chosen.within) {
+    const ReportPoint& within = sweep.points[*chosen.within];
+    answer.push_back(fmt::format("The fastest within a budget of {:g}: {} a frame{} {} {:g}: {}.",
+                                 *chosen.budget, time_text(within.figure("end")), speed_text(within), unit,
+                                 price_of(within), place_text(sweep, within)));
+  } else if (chosen.budget) {
+    answer.push_back(fmt::format("No machine is within a budget of {:g}; the cheapest is {} {:g}.",
+                                 *chosen.budget, unit, price_of(sweep.points[chosen.front.front()])));
   }
   if (const Advice steps = advice(sweep, knee); !steps.text.empty()) {
     answer.push_back(fmt::format("What to change there, one step at a time: {}.", steps.text));

@@ -25,30 +25,35 @@ struct SliceChart {
   std::string_view title;
   std::string_view note;
   std::vector<std::string> fields;
+  std::string what{};  // of the waits: whose
 };
 
-std::vector<SliceChart> charts_over_nodes() {
+constexpr std::string_view percentiles_note =
+    "Means are exact; a percentile is the upper end of its bucket of the histogram, at most an eighth too "
+    "long.";
+
+std::vector<std::string> waits_of(const std::string& what) {
+  return {"mean_" + what + "_wait", what + "_wait_p50", what + "_wait_p95", what + "_wait_p99"};
+}
+
+std::vector<SliceChart> charts_over_axis() {
   std::vector<std::string> parts;
   for (const std::string_view group : cycle_group_names) {
     parts.push_back("part_" + std::string(group));
   }
-  return {
-      {"efficiency",
-       "Efficiency",
-       "Speed-up by the number of nodes; 100 % is the dashed line.",
-       {"efficiency"}},
-      {"cycles", "Where the cycles go",
-       "All nodes' time from 0 to the end of the frame; it adds up to 100 %.", parts},
-      {"utilisation",
-       "How busy the shared parts are",
-       "What comes near 100 % limits the machine.",
-       {"interconnect_utilisation", "bank_utilisation", "network_utilisation"}},
-      {"waits",
-       "How long nodes wait for shared parts",
-       "Means are exact; a percentile is the upper end of its bucket of the histogram, at most an eighth too "
-       "long.",
-       {"mean_interconnect_wait", "interconnect_wait_p50", "interconnect_wait_p95", "interconnect_wait_p99",
-        "mean_bank_wait", "bank_wait_p50", "bank_wait_p95", "bank_wait_p99"}}};
+  return {{"efficiency",
+           "Efficiency",
+           "Speed-up by the number of nodes; 100 % is the dashed line.",
+           {"efficiency"}},
+          {"cycles", "Where the cycles go",
+           "All nodes' time from 0 to the end of the frame; it adds up to 100 %.", parts},
+          {"utilisation",
+           "How busy the shared parts are",
+           "What comes near 100 % limits the machine.",
+           {"interconnect_utilisation", "bank_utilisation", "network_utilisation"}},
+          {"waits", "How long nodes wait for the interconnect", percentiles_note, waits_of("interconnect"),
+           "interconnect"},
+          {"waits", "How long nodes wait for banks", percentiles_note, waits_of("bank"), "bank"}};
 }
 
 // Axes along which hit ratios are worth a chart of their own.
@@ -84,18 +89,6 @@ void keep_folded(Json& spec, const Json& names) {
   }
 }
 
-// In a layered chart each layer has its own title of the x axis.
-void set_x_title(Json& view, const std::string& title) {
-  if (view.contains("encoding") && view["encoding"].contains("x")) {
-    view["encoding"]["x"]["title"] = title;
-  }
-  if (view.contains("layer")) {
-    for (Json& layer : view["layer"]) {
-      set_x_title(layer, title);
-    }
-  }
-}
-
 // Takes the ideal speed-up out of the chart of a figure that has none.
 void drop_ideal(Json& spec) {
   std::size_t ideal = 0;
@@ -110,20 +103,20 @@ void drop_ideal(Json& spec) {
   spec["layer"].erase(ideal);
 }
 
-// Exact points and the model's curve over an axis. `model` may be null.
+// Exact points over an axis, with the model's curve if it is one of numbers. `model` may be null.
 void add_explored(const std::string& name, const std::string& title, const ReportAxis& axis,
                   const AxisModel* model, ChartWords words, ReportData& report) {
   ReportChart chart = live_chart("over_axis", name, fmt::format("{} over {}", title, axis.name),
                                  {{"rows", "explorer"}, {"title", title}}, words);
-  chart.note = error_note(model);
-  chart.spec["encoding"]["x"].update(channel_of(axis), true);
+  chart.note = axis.numeric ? error_note(model) : std::string(no_curve);
   report.charts.push_back(std::move(chart));
 }
 
-// Without any of its fields there is no chart.
-void add_slice(const ReportPoints& sweep, const SliceChart& slice, std::size_t axis, const std::string& name,
-               ReportData& report) {
-  const std::string& along = sweep.axes[axis].name;
+// Over an axis, or without one over that which the reader chooses, at first `first`. Without any of its
+// fields there is no chart.
+void add_slice(const ReportPoints& sweep, const SliceChart& slice, std::optional<std::size_t> axis,
+               std::size_t first, const std::string& name, ReportData& report) {
+  const std::string& along = sweep.axes[axis.value_or(first)].name;
   Json fields = Json::array();
   for (const std::string& field : slice.fields) {
     if (report.explorer["columns"].contains(field)) {
@@ -133,10 +126,15 @@ void add_slice(const ReportPoints& sweep, const SliceChart& slice, std::size_t a
   if (fields.empty()) {
     return;
   }
-  ReportChart chart = live_chart(slice.name, name, fmt::format("{} over {}", slice.title, along),
-                                 {{"rows", "slice"}, {"axis", axis}, {"fields", fields}});
+  Json live = {{"rows", "slice"}, {"fields", fields}};
+  if (axis) {
+    live["axis"] = *axis;
+  } else {
+    live["title"] = slice.title;
+  }
+  ReportChart chart = live_chart(slice.name, name, fmt::format("{} over {}", slice.title, along), live,
+                                 {{"WHAT", slice.what}});
   chart.note = slice.note;
-  set_x_title(chart.spec, along);
   keep_folded(chart.spec, fields);
   report.charts.push_back(std::move(chart));
 }
@@ -146,7 +144,9 @@ void add_front(const ReportPoints& sweep, const std::string& figure, const std::
                std::string_view axis, ReportData& report) {
   ReportChart chart = live_chart("front", figure, "Frame time and " + title,
                                  {{"rows", "all"}, {"by", figure}}, {{"FIGURE", figure}, {"TITLE", axis}});
-  chart.note = "Every machine of the sweep; the line joins those that no other beats in both.";
+  chart.note =
+      "Every machine of the sweep; the line joins those that no other beats in both. Named are the "
+      "fastest, the knee, the best within the budget where one is given, and the chosen one.";
   const bool has_free = std::any_of(
       sweep.points.begin(), sweep.points.end(),
       [&figure](const ReportPoint& point) { return point.has(figure) && point.figure(figure) <= 0.0; });
@@ -197,7 +197,7 @@ Table error_table(const ReportPoints& sweep, std::span<const AxisModel> models) 
   return table;
 }
 
-// The axis that the page begins with: nodes, else the first of numbers.
+// The axis that the page begins with: nodes, else the first of numbers, else the first.
 std::optional<std::size_t> first_axis(const ReportPoints& sweep) {
   if (const std::optional<std::size_t> nodes = sweep.axis("machine.nodes");
       nodes && sweep.axes[*nodes].numeric) {
@@ -208,13 +208,13 @@ std::optional<std::size_t> first_axis(const ReportPoints& sweep) {
       return i;
     }
   }
-  return std::nullopt;
+  return sweep.axes.empty() ? std::nullopt : std::optional<std::size_t>(0);
 }
 
 }  // namespace
 
-ReportData sweep_report(const ReportPoints& sweep) {
-  const Chosen chosen = choose(sweep);
+ReportData sweep_report(const ReportPoints& sweep, std::optional<double> budget) {
+  const Chosen chosen = choose(sweep, budget);
   const std::vector<AxisModel> models = model_sweep(sweep);
   const std::optional<std::size_t> axis = first_axis(sweep);
   ReportData report;
@@ -231,25 +231,30 @@ ReportData sweep_report(const ReportPoints& sweep) {
     drop_ideal(report.charts.back().spec);
     add_explored("speed_up", "Speed-up", sweep.axes[*axis], curve,
                  {{"FIGURE", "speed_up"}, {"TITLE", "speed-up"}}, report);
-    for (const SliceChart& slice : charts_over_nodes()) {
-      add_slice(sweep, slice, *axis, std::string(slice.name), report);
-    }
-  }
-  const SliceChart hit_ratios = {
-      "hit_ratio",
-      "Hit ratio",
-      "Of all references of the first level, and by kind of record.",
-      {"hit_ratio", "hit_ratio_node", "hit_ratio_list", "hit_ratio_primitive", "hit_ratio_material"}};
-  for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
-    if (bears_on_caches(sweep.axes[i].name)) {
-      add_slice(sweep, hit_ratios, i, "hit_ratio_" + plain_name(sweep.axes[i].name), report);
-    }
   }
   if (sweep.points.size() > 1) {
     add_front(sweep, "price", sweep.priced ? "price" : "number of nodes", sweep.priced ? "price" : "nodes",
               report);
     if (!chosen.energy_front.empty()) {
       add_front(sweep, "energy", "energy", "energy of a frame, mJ", report);
+    }
+  }
+  if (axis) {
+    for (const SliceChart& slice : charts_over_axis()) {
+      add_slice(sweep, slice, std::nullopt, *axis,
+                slice.what.empty() ? std::string(slice.name) : slice.what + "_" + std::string(slice.name),
+                report);
+    }
+  }
+  const SliceChart hit_ratios = {
+      "hit_ratio",
+      "Hit ratio",
+      "Of all references of the first level, and by kind of record; those of the other kinds are in the "
+      "figures of a chosen point.",
+      {"hit_ratio", "hit_ratio_node", "hit_ratio_list", "hit_ratio_primitive"}};
+  for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
+    if (bears_on_caches(sweep.axes[i].name)) {
+      add_slice(sweep, hit_ratios, i, i, "hit_ratio_" + plain_name(sweep.axes[i].name), report);
     }
   }
   constexpr std::size_t few = 12;

@@ -33,18 +33,22 @@ marti.charts = (() => {
     const spec = fitted(chart.spec, place.clientWidth || 560);
     const view = makeView(spec, marti.theme.inPage, { renderer: "svg", container: place, hover: true });
     view.description(chart.title);
+    view.tooltip(marti.tooltip);
+    view.addEventListener("click", (_, item) => {
+      const ordinal = item?.datum?.ordinal;
+      if (ordinal !== undefined) marti.explorer?.chooseOrdinal(ordinal);
+    });
     marti.views[name] = view;
     await view.runAsync();
   }
 
-  /** Other rows for a chart that stays otherwise as it is. */
-  async function change(name, rows) {
-    const chart = charts.get(name);
-    if (!chart) return;
-    chart.spec.data.values = rows;
+  /** Shows the rows that the chart's specification has now; it stays otherwise as it is. */
+  async function change(name) {
+    const { spec } = charts.get(name);
     const view = marti.views[name];
     if (!view) return;
-    view.data("rows", vega.ingest ? rows.map((row) => vega.ingest({ ...row })) : rows);
+    const sets = { rows: spec.data.values, ...spec.datasets };
+    for (const [set, rows] of Object.entries(sets)) view.data(set, rows.map((row) => vega.ingest({ ...row })));
     await view.runAsync();
   }
 
@@ -81,8 +85,9 @@ marti.charts = (() => {
     if (!link) return;
     event.preventDefault();
     const chart = charts.get(link.dataset.chart);
-    // The row that marks the slider's position is not a figure.
-    const figures = () => chart.spec.data.values.filter(({ kind }) => kind !== "cursor");
+    // What marks the slider's position and the chosen point is no figure.
+    const figures = () =>
+      chart.spec.data.values.filter(({ kind }) => kind !== "cursor").map(({ chosen, filtered, ...row }) => row);
     if (link.dataset.save === "csv") save(`${chart.name}.csv`, "text/csv", csv(figures()));
     else saveSvg(chart);
   });

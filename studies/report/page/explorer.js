@@ -1,29 +1,47 @@
-// The what-if explorer: a control for each axis of the sweep, and the charts that follow them.
+// The explorer of a sweep: a control for each axis, the charts that follow them, the table of all points and the chosen
+// point. What is chosen is in the page's address.
 "use strict";
+
+marti.short = (value, { unit, percent }) => {
+  const text = String(Number((percent ? value * 100 : value).toPrecision(4)));
+  const shown = percent ? "%" : unit;
+  return !shown || shown === "1" ? text : `${text} ${shown}`;
+};
 
 marti.explorer = (() => {
   const { data, charts } = marti.charts;
   const explorer = data.explorer;
   if (!explorer) return null;
-  const state = {
-    axis: explorer.axis,
-    place: explorer.axes.map((_, a) => explorer.place[a][explorer.start]),
-    x: null, // index of the sample that the curve is read at
-  };
+  const { axes } = explorer;
+  const first = marti.rows.firstView(explorer);
+  const state = { ...first, place: [...first.place], x: null }; // x: index of the sample that the curve is read at
+  const live = [...charts.values()].filter((chart) => chart.live);
+  const declared = new Map(live.map((chart) => [chart.name, chart.spec]));
   const controls = document.getElementById("controls");
   const reading = document.getElementById("reading");
   const inputs = new Map();
-  const digits = (value) => String(Number(Number(value).toPrecision(4)));
+  const points = new Map(explorer.ordinal.map((_, p) => [axes.map((_, a) => explorer.place[a][p]).join(), p]));
+  const digits = (value) => marti.short(value, {});
 
-  const samples = () => explorer.models[state.axis]?.x ?? explorer.axes[state.axis].values;
-  const valueAt = (axis) => explorer.axes[axis].texts[state.place[axis]];
+  /** Places along an axis at which the curve can be read; a name is only itself. */
+  const samples = (a = state.axis) => (axes[a].numeric ? explorer.models[a]?.x ?? axes[a].values : axes[a].texts.map((_, i) => i));
+  const placeOf = (axis, x) => (axis.numeric ? axis.values.indexOf(x) : x);
   const withUnit = (axis, x) => {
-    const at = axis.values.indexOf(x);
-    return at >= 0 ? axis.texts[at] : `${digits(x)}${axis.unit && axis.unit !== "1" ? " " + axis.unit : ""}`;
+    const at = placeOf(axis, x);
+    return at >= 0 ? axis.texts[at] : marti.short(x, axis);
   };
+
+  /** The point where the controls stand; undefined between points, and where none was timed. */
+  function chosen() {
+    const between = state.axis !== null && placeOf(axes[state.axis], samples()[state.x]) < 0;
+    return between ? undefined : points.get(state.place.join());
+  }
+
+  const view = () => ({ ...state, chosen: chosen(), lets: table.lets });
 
   /** The exact value nearest to a sample: what the other charts show. */
   function nearest(axis, x) {
+    if (!axis.numeric) return x;
     const distance = (value) => Math.abs(axis.logarithmic ? Math.log(value / x) : value - x);
     let best = 0;
     axis.values.forEach((value, i) => {
@@ -33,11 +51,9 @@ marti.explorer = (() => {
   }
 
   function read() {
-    const axis = explorer.axes[state.axis];
+    const axis = axes[state.axis];
     const x = samples()[state.x];
-    const at = axis.values.indexOf(x);
-    const line = marti.rows.line(explorer, state.axis, state.place);
-    const point = at < 0 ? undefined : line.find((p) => explorer.place[state.axis][p] === at);
+    const point = chosen();
     let text = `${axis.name} = ${withUnit(axis, x)}: `;
     let beyond = false;
     if (point !== undefined) {
@@ -45,7 +61,7 @@ marti.explorer = (() => {
       const speedUp = explorer.columns.speed_up && explorer.columns.speed_up[point];
       text += speedUp ? `, speed-up ${digits(speedUp)}.` : ".";
     } else {
-      const row = marti.rows.samples(explorer, state.axis, state.place, state.x)[0];
+      const row = axis.numeric && marti.rows.samples(explorer, state.axis, state.place, state.x)[0];
       if (!row) {
         text += "this machine was not timed, and the model has no measured error here.";
       } else {
@@ -61,20 +77,48 @@ marti.explorer = (() => {
     reading.classList.toggle("extrapolated", beyond);
   }
 
+  /** What of the choices shapes a chart: where it differs, the chart is drawn anew. */
+  function shape({ axis, rows }) {
+    if (rows === "all") return String(state.colour);
+    if (rows === "slice") return String(axis ?? state.axis);
+    const coloured = state.colour !== null && state.colour !== state.axis;
+    return [state.axis, ...(coloured ? [state.colour, ...marti.rows.around(explorer, state.colour, state.place)] : [])].join();
+  }
+
+  /** Gives each chart what it is to show; the names of those that must be drawn anew. */
   function fill() {
-    for (const chart of charts.values()) {
-      if (!chart.live) continue;
-      const rows = marti.rows.of(explorer, chart.live, state.axis, state.place);
-      if (chart.live.rows === "explorer") rows.push({ kind: "cursor", x: samples()[state.x] });
-      chart.spec.data.values = rows;
+    const now = view();
+    return live.filter((chart) => {
+      const form = shape(chart.live);
+      const spec = marti.specs.filled(explorer, declared.get(chart.name), chart.live, now);
+      if (chart.live.rows === "explorer" && axes[state.axis].numeric) {
+        spec.data.values.push({ kind: "cursor", x: samples()[state.x] });
+      }
+      const another = chart.form !== form;
+      Object.assign(chart, { spec, form, title: spec.title });
+      return another;
+    });
+  }
+
+  function showTitles() {
+    for (const chart of live) {
+      document.getElementById(`title-${chart.name}`).textContent = chart.title;
+      if (chart.live.rows !== "explorer") continue;
+      const note = axes[state.axis].numeric ? explorer.models[state.axis]?.note ?? explorer.no_model : explorer.no_curve;
+      document.getElementById(`note-${chart.name}`).textContent = note;
     }
   }
 
   async function update() {
-    read();
-    fill();
-    for (const [name, chart] of charts) {
-      if (chart.live && chart.live.rows !== "all") await marti.charts.change(name, chart.spec.data.values);
+    if (state.axis !== null) read();
+    const anew = new Set(fill());
+    showTitles();
+    table.mark(chosen());
+    showPoint(chosen(), state.budget);
+    marti.address.write(address());
+    for (const chart of live) {
+      if (anew.has(chart)) await marti.charts.draw(chart.name);
+      else await marti.charts.change(chart.name);
     }
   }
 
@@ -84,54 +128,74 @@ marti.explorer = (() => {
   function request() {
     if (pending) return;
     pending = true;
-    requestAnimationFrame(() => {
+    requestAnimationFrame(async () => {
       pending = false;
-      working(update);
+      running += 1;
+      try {
+        await update();
+      } finally {
+        running -= 1;
+      }
     });
-  }
-
-  /** What takes time and changes what charts show. */
-  async function working(work) {
-    running += 1;
-    try {
-      await work();
-    } finally {
-      running -= 1;
-    }
   }
 
   // Whether the charts may not show yet what the controls say.
   const busy = () => pending || running > 0;
 
   function showControl(a) {
-    const axis = explorer.axes[a];
+    const axis = axes[a];
     const { input, output } = inputs.get(a);
-    if (axis.numeric) {
-      const own = a === state.axis;
-      input.max = (own ? samples().length : axis.values.length) - 1;
-      input.value = own ? state.x : state.place[a];
-      const text = own ? withUnit(axis, samples()[state.x]) : valueAt(a);
-      output.textContent = text + (own ? " (along the curve)" : "");
-      input.setAttribute("aria-valuetext", text);
-    } else {
+    if (!axis.numeric) {
       input.value = state.place[a];
+      return;
     }
+    const own = a === state.axis;
+    input.max = (own ? samples().length : axis.values.length) - 1;
+    input.value = own ? state.x : state.place[a];
+    const text = own ? withUnit(axis, samples()[state.x]) : axis.texts[state.place[a]];
+    output.textContent = text + (own ? " (along the curve)" : "");
+    input.setAttribute("aria-valuetext", text);
   }
 
+  function showControls() {
+    for (const a of inputs.keys()) showControl(a);
+    document.getElementById("along").value = state.axis;
+    document.getElementById("colour").value = state.colour ?? "";
+    const budget = document.getElementById("budget");
+    if (Number(budget.value) !== state.budget) budget.value = state.budget ?? "";
+  }
+
+  /** The curve is read where the machine stands. */
   function toSample() {
-    const axis = explorer.axes[state.axis];
-    state.x = Math.max(0, samples().indexOf(axis.values[state.place[state.axis]]));
+    const axis = axes[state.axis];
+    const at = state.place[state.axis];
+    state.x = Math.max(0, samples().indexOf(axis.numeric ? axis.values[at] : at));
+  }
+
+  function choose(p) {
+    state.place = axes.map((_, a) => explorer.place[a][p]);
+    if (state.axis !== null) {
+      toSample();
+      showControls();
+    }
+    request();
+  }
+
+  function labelled(input, id, ...texts) {
+    const label = document.createElement("label");
+    input.id = id;
+    label.htmlFor = id;
+    label.append(...texts, input);
+    controls.append(label);
+    return input;
   }
 
   function addControl(a) {
-    const axis = explorer.axes[a];
-    const label = document.createElement("label");
+    const axis = axes[a];
     const input = document.createElement(axis.numeric ? "input" : "select");
     const output = document.createElement("output");
-    label.append(`${[axis.name, ...axis.followers].join(", ")} `, output, input);
     input.dataset.axis = axis.name;
-    input.id = `axis-${a}`;
-    label.htmlFor = input.id;
+    labelled(input, `axis-${a}`, `${[axis.name, ...axis.followers].join(", ")} `, output);
     if (axis.numeric) {
       input.type = "range";
       input.min = 0;
@@ -141,7 +205,7 @@ marti.explorer = (() => {
     }
     input.addEventListener("input", () => {
       const value = Number(input.value);
-      if (axis.numeric && a === state.axis) {
+      if (a === state.axis) {
         state.x = value;
         state.place[a] = nearest(axis, samples()[value]);
       } else {
@@ -151,95 +215,94 @@ marti.explorer = (() => {
       request();
     });
     inputs.set(a, { input, output });
-    controls.append(label);
   }
 
-  /** Another axis for the two charts of the explorer: other scales, so they are drawn anew. */
-  async function turn(a) {
-    state.axis = a;
-    toSample();
-    for (const each of inputs.keys()) showControl(each);
-    read();
-    fill();
-    for (const [name, chart] of charts) {
-      if (!chart.live) continue;
-      if (chart.live.rows === "explorer") {
-        chart.spec.encoding.x = { field: "x", type: "quantitative", ...explorer.axes[a].x };
-        chart.title = `${chart.live.title} over ${explorer.axes[a].name}`;
-        chart.spec.title = chart.title;
-        document.getElementById(`title-${name}`).textContent = chart.title;
-        document.getElementById(`note-${name}`).textContent = explorer.models[a]?.note ?? explorer.no_model;
-        await marti.charts.draw(name);
-      } else {
-        await marti.charts.change(name, chart.spec.data.values);
-      }
+  function addChoices() {
+    const along = labelled(document.createElement("select"), "along", "Curve along ");
+    const colour = labelled(document.createElement("select"), "colour", "Colours show ");
+    colour.append(new Option("nothing", ""));
+    axes.forEach((axis, a) => {
+      along.append(new Option(axis.name, a));
+      colour.append(new Option(axis.name, a));
+    });
+    along.addEventListener("change", () => {
+      state.axis = Number(along.value);
+      toSample();
+      showControls();
+      request();
+    });
+    colour.addEventListener("change", () => {
+      state.colour = colour.value === "" ? null : Number(colour.value);
+      request();
+    });
+    const budget = labelled(document.createElement("input"), "budget", `Budget (${explorer.price}) `);
+    budget.type = "number";
+    budget.min = 0;
+    budget.step = "any";
+    budget.addEventListener("input", () => {
+      state.budget = budgetOf(budget.value);
+      request();
+    });
+  }
+
+  const budgetOf = (text) => (text && Number(text) >= 0 && Number.isFinite(Number(text)) ? Number(text) : null);
+
+  /** The choices that differ from those that the page begins with, by name. */
+  function address() {
+    const point = chosen();
+    const named = { ...table.state };
+    if (state.axis === null) return named;
+    if (state.axis !== first.axis) named.along = axes[state.axis].name;
+    if (state.colour !== first.colour) named.colour = state.colour === null ? "none" : axes[state.colour].name;
+    if (state.budget !== first.budget) named.budget = state.budget ?? "none";
+    if (point !== undefined) {
+      if (point !== explorer.start) named.point = explorer.ordinal[point];
+      return named;
     }
+    axes.forEach((axis, a) => (named[`axis.${axis.name}`] = axis.texts[state.place[a]]));
+    if (axes[state.axis].numeric) named.at = samples()[state.x];
+    return named;
   }
 
-  function addAxisChoice() {
-    const label = document.createElement("label");
-    const select = document.createElement("select");
-    select.id = "along";
-    label.htmlFor = select.id;
-    label.append("Curve along ", select);
-    explorer.axes.forEach((axis, a) => {
-      if (axis.numeric) select.append(new Option(axis.name, a));
+  /** The choices of an address; what it does not say, or says wrongly, is as the page begins. */
+  function take(named) {
+    const axisNamed = (name, other) => (axes.some((axis) => axis.name === name) ? axes.findIndex((axis) => axis.name === name) : other);
+    const point = explorer.ordinal.indexOf(Number(named.point ?? NaN));
+    table.set(named);
+    if (state.axis === null) return;
+    state.axis = axisNamed(named.along, first.axis);
+    state.colour = named.colour === "none" ? null : axisNamed(named.colour, first.colour);
+    state.budget = named.budget === "none" ? null : budgetOf(named.budget) ?? first.budget;
+    state.place = axes.map((axis, a) => {
+      const at = axis.texts.indexOf(named[`axis.${axis.name}`]);
+      return at >= 0 ? at : explorer.place[a][point >= 0 ? point : explorer.start];
     });
-    select.value = state.axis;
-    select.addEventListener("change", () => working(() => turn(Number(select.value))));
-    controls.append(label);
+    toSample();
+    const sample = samples().indexOf(Number(named.at ?? NaN));
+    if (sample >= 0 && axes[state.axis].numeric) {
+      state.x = sample;
+      state.place[state.axis] = nearest(axes[state.axis], samples()[sample]);
+    }
+    showControls();
   }
 
-  function addPoints() {
-    const details = document.getElementById("points");
-    const most = 1000;
-    const fields = explorer.fields;
-    const measure = ({ name, unit }) => (unit === "1" ? name : `${name}_${unit}`);
-    const names = [...explorer.axes.map((axis) => axis.name), ...fields.map(measure)];
-    const row = (i) => [
-      ...explorer.axes.map((axis, a) => axis.texts[explorer.place[a][i]]),
-      ...fields.map((field) => explorer.columns[field.name][i]),
-    ];
-    document.getElementById("save-points").addEventListener("click", (event) => {
-      event.preventDefault();
-      const named = (i) => Object.fromEntries(row(i).map((cell, c) => [names[c], cell]));
-      const rows = explorer.ordinal.map((ordinal, i) => ({ ordinal, ...named(i) }));
-      marti.charts.save("machines.csv", "text/csv", marti.charts.csv(rows));
-    });
-    details.addEventListener("toggle", () => {
-      const place = document.getElementById("points-table");
-      if (!details.open || place.childElementCount > 0) return;
-      const table = document.createElement("table");
-      const head = table.createTHead().insertRow();
-      ["point", ...names].forEach((name) => {
-        const cell = document.createElement("th");
-        cell.scope = "col";
-        cell.textContent = name.replaceAll("_", " ");
-        head.append(cell);
-      });
-      const body = table.createTBody();
-      explorer.ordinal.slice(0, most).forEach((ordinal, i) => {
-        const line = body.insertRow();
-        [ordinal, ...row(i)].forEach((value) => {
-          const cell = line.insertCell();
-          cell.textContent = typeof value === "number" && !Number.isInteger(value) ? digits(value) : (value ?? "");
-          if (typeof value === "number") cell.className = "number";
-        });
-      });
-      place.append(table);
-    });
+  const table = marti.table(explorer, { choose, changed: request });
+  const showPoint = marti.chosenPoint(explorer);
+  if (state.axis !== null) {
+    axes.forEach((_, a) => addControl(a));
+    addChoices();
   }
-
-  if (state.axis === null) {
-    fill();
-    return null;
-  }
-  explorer.axes.forEach((_, a) => addControl(a));
-  addAxisChoice();
-  toSample();
-  for (const a of inputs.keys()) showControl(a);
-  addPoints();
-  read();
+  take(marti.address.read() ?? {});
+  if (state.axis !== null) read();
   fill();
-  return { busy };
+  showTitles();
+  table.mark(chosen());
+  showPoint(chosen(), state.budget);
+  window.addEventListener("hashchange", () => {
+    const named = marti.address.read();
+    if (!named) return;
+    take(named);
+    request();
+  });
+  return { busy, chooseOrdinal: (ordinal) => choose(explorer.ordinal.indexOf(ordinal)) };
 })();

@@ -11,7 +11,12 @@ namespace marti::studies {
 [[nodiscard]] Script report_page_css();
 // Scripts.
 [[nodiscard]] Script report_theme_js();
+[[nodiscard]] Script report_tooltip_js();
 [[nodiscard]] Script report_charts_js();
+[[nodiscard]] Script report_address_js();
+[[nodiscard]] Script report_points_filter_js();
+[[nodiscard]] Script report_points_table_js();
+[[nodiscard]] Script report_chosen_point_js();
 [[nodiscard]] Script report_explorer_js();
 [[nodiscard]] Script report_main_js();
 

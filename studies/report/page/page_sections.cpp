@@ -80,14 +80,24 @@ std::string explorer_html(const std::string& charts) {
          "reaches one step "
          "of the axis beyond the points, where it is dashed and marked as extrapolated. All charts of the "
          "sweep follow "
-         "the controls.</p>\n"
+         "the controls; a click on a point, here or in the table, chooses its machine.</p>\n"
          "<div id=\"controls\" role=\"group\" aria-label=\"The machine that is shown\"></div>\n"
          "<p id=\"reading\" role=\"status\" aria-live=\"polite\"></p>\n" +
-         charts +
-         "<details id=\"points\"><summary>All points</summary>\n<p class=\"saves\"><a href=\"#points\" "
-         "id=\"save-points\">CSV</a></p>\n<div id=\"points-table\" class=\"table\" role=\"region\" "
-         "tabindex=\"0\" "
-         "aria-label=\"All points\"></div></details>\n";
+         charts;
+}
+
+// Filled by page/points_table.js.
+std::string points_html() {
+  return "<p><label for=\"filter\">Only points with </label><input id=\"filter\" type=\"search\" "
+         "placeholder=\"cache.size &gt;= 16 KiB, speed_up &gt; 8\" aria-describedby=\"filter-fault\"> "
+         "<span id=\"filter-fault\" role=\"status\"></span></p>\n"
+         "<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"All points\">"
+         "<table id=\"points-table\"></table></div>\n"
+         "<p class=\"pages\"><button type=\"button\" id=\"points-before\">Previous</button> "
+         "<span id=\"points-shown\" role=\"status\"></span> "
+         "<button type=\"button\" id=\"points-after\">Next</button></p>\n"
+         "<p class=\"saves\"><a href=\"#points\" id=\"save-points\" aria-label=\"These points with all "
+         "figures: save as CSV\">CSV</a></p>\n";
 }
 
 std::string images_html(const ReportData& report) {
@@ -134,6 +144,7 @@ std::vector<PageSection> page_sections(const ReportData& report) {
   const std::string explored = charts_html(report, true);
   add("answer", "The answer", report.answer.empty() ? "" : answer_html(report));
   add("explorer", "What if", explored.empty() ? "" : explorer_html(explored));
+  add("points", "All points", report.explorer.is_object() ? points_html() : "");
   add("charts", "Charts", charts_html(report, false));
   add("images", "Images", report.images.empty() ? "" : images_html(report));
   add("tables", "Tables", tables_html(report));

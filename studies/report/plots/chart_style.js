@@ -9,6 +9,7 @@ globalThis.martiChartStyle = (ink, line) => ({
   header: { labelColor: ink, titleColor: ink },
   view: { stroke: line },
   mark: { color: "#0072B2" },
+  text: { color: ink },
   // Okabe and Ito: told apart by everybody.
   range: { category: ["#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#999999", "#F0E442"] },
 });

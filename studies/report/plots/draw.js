@@ -49,12 +49,12 @@ async function draw(spec) {
 
 (async () => {
   const { charts, explorer } = marti.report;
-  const place = explorer?.axes.map((_, a) => explorer.place[a][explorer.start]);
+  const view = explorer && marti.rows.firstView(explorer);
   const drawings = [];
   for (const { name, spec, live } of charts) {
-    if (live) spec.data.values = marti.rows.of(explorer, live, explorer.axis, place);
+    const whole = live ? marti.specs.filled(explorer, spec, live, view) : spec;
     try {
-      drawings.push({ svg: await draw(spec), rows: live && spec.data.values });
+      drawings.push({ svg: await draw(whole), rows: live && whole.data.values });
     } catch (error) {
       throw new Error(`chart ${name} cannot be drawn: ${error.message}`);
     }

@@ -1,6 +1,7 @@
 // Rows of the charts that follow the explorer, from the columns and curves of a sweep (docs/report.md). A page has
-// them for the machine that its reader has chosen, a plot for the one that the page begins with. No element of the
-// page is touched here.
+// them for the machine that its reader has chosen, a plot for the one that the page begins with. A view says what is
+// chosen: {axis, place, colour, chosen, lets, budget}, of which a plot has the first three. No element of the page is touched
+// here.
 "use strict";
 
 marti.rows = (() => {
@@ -61,7 +62,38 @@ marti.rows = (() => {
     return most;
   }
 
-  function explore(explorer, axis, place) {
+  const most = 4; // lines that a reader tells apart in one chart
+
+  /** Indices of the values of the axis that colours show in a chart of lines: the chosen one and those around it. */
+  function around(explorer, colour, place) {
+    const all = explorer.axes[colour].texts.length;
+    const first = Math.max(0, Math.min(place[colour] - 1, all - most));
+    return [...Array(Math.min(most, all)).keys()].map((i) => first + i);
+  }
+
+  /** What an exact point is called and, where colours show an axis, its value there. */
+  function named(explorer, p, colour) {
+    const row = { ordinal: explorer.ordinal[p] };
+    if (colour !== null) row.colour = explorer.axes[colour].texts[explorer.place[colour][p]];
+    return row;
+  }
+
+  /** The machine of a point: "machine.nodes = 16, cache.size = 16 KiB". */
+  const machine = ({ axes, place }, p) => axes.map((axis, a) => `${axis.name} = ${axis.texts[place[a][p]]}`).join(", ");
+
+  function exact(explorer, { axis, chosen }, p, colour, kind) {
+    const { numeric, values, texts } = explorer.axes[axis];
+    const at = explorer.place[axis][p];
+    const row = { kind, zone: "between", ...named(explorer, p, colour), value: texts[at], ms: explorer.columns.end[p] };
+    if (numeric) row.x = values[at];
+    if (explorer.columns.speed_up) row.speed_up = explorer.columns.speed_up[p];
+    if (p === chosen) row.chosen = 1;
+    return row;
+  }
+
+  function explore(explorer, view) {
+    const { axis, place } = view;
+    const shown = view.colour === axis ? null : view.colour;
     const points = line(explorer, axis, place);
     const xs = points.map((p) => explorer.axes[axis].values[explorer.place[axis][p]]);
     const model = explorer.models[axis];
@@ -78,41 +110,82 @@ marti.rows = (() => {
       for (const row of modelled) rows.push(unit > 0 ? { ...row, ideal: unit * row.x } : row);
     }
     points.forEach((p, i) => {
-      const row = { kind: "exact", zone: "between", x: xs[i], ms: explorer.columns.end[p] };
-      if (explorer.columns.speed_up) row.speed_up = explorer.columns.speed_up[p];
-      if (unit > 0) row.ideal = unit * xs[i];
-      rows.push(row);
+      const row = exact(explorer, view, p, shown, "exact");
+      rows.push(unit > 0 ? { ...row, ideal: unit * xs[i] } : row);
     });
+    for (const value of shown === null ? [] : around(explorer, shown, place)) {
+      if (value === place[shown]) continue;
+      const other = place.map((at, a) => (a === shown ? value : at));
+      for (const p of line(explorer, axis, other)) rows.push(exact(explorer, view, p, shown, "other"));
+    }
     return rows;
   }
 
   /** Exact points along an axis: its texts and some figures. */
-  function slice(explorer, live, place) {
-    const axis = explorer.axes[live.axis];
-    return line(explorer, live.axis, place).map((p) => {
-      const row = { value: axis.texts[explorer.place[live.axis][p]] };
+  function slice(explorer, live, view) {
+    const along = live.axis ?? view.axis;
+    const axis = explorer.axes[along];
+    return line(explorer, along, view.place).map((p) => {
+      const row = { ordinal: explorer.ordinal[p], value: axis.texts[explorer.place[along][p]] };
       for (const field of live.fields) row[field] = explorer.columns[field][p];
+      if (p === view.chosen) row.chosen = 1;
       return row;
     });
   }
 
-  /** Every point that has the figure `live.by`, by that and time. */
-  function all(explorer, live) {
+  /** Every point that has the figure `live.by`, by that and time; `lets` are those that the table's filter lets through. */
+  function all(explorer, live, { colour, lets }) {
     const front = new Set(explorer.fronts[live.by]);
-    const rows = explorer.ordinal.map((ordinal, i) => ({
-      ordinal,
-      [live.by]: explorer.columns[live.by][i],
-      ms: explorer.columns.end[i],
-      front: front.has(i) ? 1 : 0,
+    const rows = explorer.ordinal.map((_, p) => ({
+      ...named(explorer, p, colour),
+      machine: machine(explorer, p),
+      [live.by]: explorer.columns[live.by][p],
+      ms: explorer.columns.end[p],
+      front: front.has(p) ? 1 : 0,
+      ...(lets && !lets[p] && { filtered: 1 }),
     }));
     return rows.filter((row) => row[live.by] !== null);
   }
 
-  /** Rows of the chart with this `live`, for the machine at `place` and the curve along `axis`. */
-  function of(explorer, live, axis, place) {
-    if (live.rows === "explorer") return explore(explorer, axis, place);
-    return live.rows === "slice" ? slice(explorer, live, place) : all(explorer, live);
+  /** Numbers of points by what they are known for: the fastest, the knee, the best within the budget. */
+  function roles(explorer, budget) {
+    const found = [["fastest", explorer.fastest], ["knee", explorer.start]];
+    const within = explorer.fronts.price.filter((p) => explorer.columns.price[p] <= (budget ?? -1));
+    if (within.length > 0) found.push([`best within ${budget}`, within.at(-1)]);
+    return found;
   }
 
-  return { line, samples, of };
+  /** The points that a chart of all points marks by name, and the budget. */
+  function marks(explorer, live, { chosen, budget }) {
+    const names = new Map();
+    const add = (name, p) => p !== undefined && names.set(p, [...(names.get(p) ?? []), name]);
+    for (const [name, p] of roles(explorer, budget)) {
+      if (live.by === "price" || name === "fastest") add(name, p);
+    }
+    add("chosen", chosen);
+    const rows = [...names].map(([p, role]) => ({
+      ordinal: explorer.ordinal[p],
+      machine: machine(explorer, p),
+      role: role.join(", "),
+      side: role[0],
+      chosen: p === chosen ? 1 : 0,
+      [live.by]: explorer.columns[live.by][p],
+      ms: explorer.columns.end[p],
+    }));
+    if (live.by === "price" && budget > 0) rows.push({ budget: 1, price: budget });
+    return rows.filter((row) => row[live.by] !== null);
+  }
+
+  /** What a page begins with and a plot shows: the machines around the knee. */
+  const firstView = ({ axis, axes, place, start, colour, budget }) => {
+    return { axis, place: axes.map((_, a) => place[a][start]), colour: colour ?? null, budget: budget ?? null };
+  };
+
+  /** Rows of the chart with this `live`, for a view. */
+  function of(explorer, live, view) {
+    if (live.rows === "explorer") return explore(explorer, view);
+    return live.rows === "slice" ? slice(explorer, live, view) : all(explorer, live, view);
+  }
+
+  return { line, samples, around, machine, roles, marks, firstView, of };
 })();

@@ -69,6 +69,7 @@ std::string drawing_program(const ReportData& report) {
       -1, ' ', true, Json::error_handler_t::replace);
   program += "const marti = {report: JSON.parse(" + Json(text).dump() + ")};\n";
   program += report_explorer_rows_js().text;
+  program += report_explorer_specs_js().text;
   program += draw_script();
   return program;
 }

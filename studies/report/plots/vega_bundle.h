@@ -30,7 +30,8 @@ inline constexpr const char* no_vega_scripts =
     "network configure again (cmake --preset release -DMARTI_REPORT=ON says what is missing) and build";
 
 // The project's own scripts for charts, in a page and in node.
-[[nodiscard]] Script report_chart_style_js();    ///< colours
-[[nodiscard]] Script report_explorer_rows_js();  ///< rows of the charts that follow the explorer
+[[nodiscard]] Script report_chart_style_js();     ///< colours
+[[nodiscard]] Script report_explorer_rows_js();   ///< rows of the charts that follow the explorer
+[[nodiscard]] Script report_explorer_specs_js();  ///< their specifications
 
 }  // namespace marti::studies

@@ -30,11 +30,18 @@ bool is_study(const fs::path& file) {
 
 }  // namespace
 
-ReportData read_report(const fs::path& directory) {
+ReportData read_report(const fs::path& directory, std::optional<double> budget) {
+  const auto refuse_budget = [&] {
+    if (budget) {
+      throw sim::UserError("--budget: chooses among the machines of a sweep, and " + directory.string() +
+                           " is none; leave it out");
+    }
+  };
   std::error_code error;
   const fs::file_status status = fs::status(directory, error);
   if (status.type() == fs::file_type::not_found) {
     if (const std::optional<PointName> point = point_named(directory.string())) {
+      refuse_budget();
       return read_point_report(*point);
     }
     throw sim::UserError(directory.string() + ": there is no such directory; " + std::string(expected));
@@ -47,9 +54,14 @@ ReportData read_report(const fs::path& directory) {
   }
   const fs::path file = results_in(directory, expected);
   if (file.extension() == ".json") {
+    refuse_budget();
     return read_run_report(directory);
   }
-  return is_study(file) ? read_study_report(directory) : sweep_report(read_report_points(file));
+  if (is_study(file)) {
+    refuse_budget();
+    return read_study_report(directory);
+  }
+  return sweep_report(read_report_points(file), budget);
 }
 
 }  // namespace marti::studies

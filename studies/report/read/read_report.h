@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "studies/report/model/report_data.h"
 #include "studies/tables/result_directory.h"
@@ -11,8 +12,10 @@ namespace marti::studies {
 /// Reads the directory that `marti run -o`, `marti sweep -o` or `marti study ... -o` has written, or point N
 /// of a sweep ("DIR:N"). The same files give the same data. Throws UserError, naming the file and what to do,
 /// for any other directory, and for what cannot be read, is damaged, of another version or too large for a
-/// page.
-[[nodiscard]] ReportData read_report(const std::filesystem::path& directory);
+/// page. `budget`: the price that a machine of a sweep may have; UserError for a run and a study, which have
+/// no machines to choose from.
+[[nodiscard]] ReportData read_report(const std::filesystem::path& directory,
+                                     std::optional<double> budget = std::nullopt);
 
 // The readers of each kind of directory. They throw as read_report() does.
 

@@ -11,6 +11,7 @@
 
 #include "sim/error.h"
 #include "sim/files.h"
+#include "studies/report/model/chart_library.h"
 #include "studies/report/plots/child_process.h"
 #include "studies/report/plots/vega_bundle.h"
 
@@ -97,6 +98,16 @@ ReportData report_of(const std::vector<ReportChart>& charts) {
   return report;
 }
 
+// Two sizes by two kinds of interconnect; one of the points has no frame time, and the page begins with it.
+nlohmann::ordered_json four_points() {
+  return nlohmann::ordered_json::parse(
+      R"({"axis": 0, "start": 2, "fastest": 0, "ordinal": [0, 1, 2, 4], "place": [[0, 1, 0, 1], [0, 0, 1, 1]],
+          "axes": [{"name": "size", "texts": ["1 KiB", "2 KiB"], "values": [1024, 2048], "numeric": true, "x": {}},
+                   {"name": "kind", "texts": ["bus", "ideal"], "values": [], "numeric": false}],
+          "fronts": {"price": [3]}, "models": {},
+          "columns": {"end": [1.5, 2, null, 4], "price": [1, 2, 3, 4]}})");
+}
+
 class Plots : public testing::Test {
  protected:
   void SetUp() override {
@@ -141,26 +152,55 @@ TEST_F(Plots, HaveTheRowsOfTheExplorer) {
   slice.name = "slice";
   slice.live = {{"rows", "slice"}, {"axis", 0}, {"fields", {"end"}}};
   ReportData report = report_of({prices, slice});
-  report.explorer = nlohmann::ordered_json::parse(
-      R"({"axis": 0, "start": 2, "axes": [{"texts": ["1 KiB", "2 KiB"]}, {"texts": ["bus", "ideal"]}],
-          "place": [[0, 1, 0, 1], [0, 0, 1, 1]], "ordinal": [0, 1, 2, 4], "fronts": {"price": [3]}, "models": {},
-          "columns": {"end": [1.5, 2, null, 4], "price": [1, 2, 3, 4]}})");
+  report.explorer = four_points();
   const std::vector<Plot> plots = draw_plots(report, directory_, /*pdf=*/false);
   ASSERT_EQ(plots.size(), 4U);
-  EXPECT_EQ(plots[1].content, "ordinal,price,ms,front\r\n0,1,1.5,0\r\n1,2,2,0\r\n2,3,,0\r\n4,4,4,1\r\n");
-  EXPECT_EQ(plots[3].content, "value,end\r\n1 KiB,\r\n2 KiB,4\r\n");
+  EXPECT_EQ(plots[1].content,
+            "ordinal,machine,price,ms,front\r\n"
+            "0,\"size = 1 KiB, kind = bus\",1,1.5,0\r\n1,\"size = 2 KiB, kind = bus\",2,2,0\r\n"
+            "2,\"size = 1 KiB, kind = ideal\",3,,0\r\n4,\"size = 2 KiB, kind = ideal\",4,4,1\r\n");
+  EXPECT_EQ(plots[3].content, "ordinal,value,end\r\n2,1 KiB,\r\n4,2 KiB,4\r\n");
+}
+
+// Over sizes exact points are joined, over names they are bars; the colours of the other axis show its other
+// points.
+TEST_F(Plots, HaveBarsForNamesAndColoursForAnotherAxis) {
+  const auto drawn = [&](int axis, const nlohmann::ordered_json& colour) {
+    const ReportChart curve = live_chart("over_axis", "curve", "T", {{"rows", "explorer"}, {"title", "Time"}},
+                                         {{"FIGURE", "ms"}, {"TITLE", "frame time, ms"}});
+    ReportData report = report_of({curve});
+    report.explorer = four_points();
+    report.explorer["axis"] = axis;
+    report.explorer["colour"] = colour;
+    return draw_plots(report, directory_, /*pdf=*/false);
+  };
+  const std::vector<Plot> sizes = drawn(0, nullptr);
+  EXPECT_THAT(sizes[0].content, HasSubstr("Time over size"));
+  EXPECT_THAT(sizes[0].content, testing::Not(HasSubstr("ordinal: 4; colour")));
+  EXPECT_EQ(
+      sizes[1].content,
+      "kind,zone,ordinal,value,ms,x\r\nexact,between,2,1 KiB,,1024\r\nexact,between,4,2 KiB,4,2048\r\n");
+  const std::vector<Plot> coloured = drawn(0, 1);
+  EXPECT_THAT(coloured[1].content, HasSubstr("other,between,0,bus,1 KiB,1.5,1024\r\n"));
+  EXPECT_THAT(coloured[1].content, HasSubstr("exact,between,4,ideal,2 KiB,4,2048\r\n"));
+  EXPECT_THAT(coloured[0].content, HasSubstr("mark-line"));
+  const std::vector<Plot> names = drawn(1, 0);
+  EXPECT_THAT(names[0].content, HasSubstr("Time over kind"));
+  EXPECT_THAT(names[0].content, HasSubstr("roledescription=\"bar\""));
+  EXPECT_THAT(names[0].content, testing::Not(HasSubstr("mark-line")));
+  EXPECT_THAT(names[1].content, HasSubstr("exact,between,0,1 KiB,bus,1.5\r\n"));
+  EXPECT_THAT(names[1].content, HasSubstr("other,between,4,2 KiB,ideal,4\r\n"));
 }
 
 // A curve of the model with its bands, zones and saturation, worked out by hand: errors are factors of 1.25
 // between the points and of 2 beyond them.
 TEST_F(Plots, HaveTheCurveOfTheExplorer) {
-  ReportChart curve = chart("curve");
-  curve.spec["data"]["values"] = nlohmann::ordered_json::array();
-  curve.live = {{"rows", "explorer"}};
+  const ReportChart curve = live_chart("over_axis", "curve", "T", {{"rows", "explorer"}},
+                                       {{"FIGURE", "ms"}, {"TITLE", "frame time, ms"}});
   ReportData report = report_of({curve});
   report.explorer = nlohmann::ordered_json::parse(
       R"({"axis": 0, "start": 0, "place": [[0, 1, 2]], "ordinal": [0, 1, 2],
-          "axes": [{"name": "machine.nodes", "texts": ["1", "2", "4"], "values": [1, 2, 4]}],
+          "axes": [{"name": "machine.nodes", "texts": ["1", "2", "4"], "values": [1, 2, 4], "numeric": true}],
           "columns": {"end": [8, 4, 2], "speed_up": [1, 2, 4], "efficiency": [1, 1, 1]},
           "models": {"0": {"x": [1, 2, 4, 8],
             "error": {"between": {"known": true, "p95": 0.25}, "beyond": {"known": true, "p95": 1}},
@@ -170,18 +210,19 @@ TEST_F(Plots, HaveTheCurveOfTheExplorer) {
   ASSERT_EQ(plots.size(), 2U);
   EXPECT_EQ(
       plots[1].content,
-      "kind,zone,x,x2,ms,ms_low,ms_high,ms_bound,ideal,speed_up,speed_up_low,speed_up_high,speed_up_bound\r\n"
-      "zone,above,4,8,,,,,,,,,\r\n"
-      "saturation,,3,,,,,,,,,,\r\n"
-      "model,below,1,,8,4,16,8,1,,,,\r\n"
-      "model,between,1,,8,6.4,10,8,1,1,0.8,1.25,1\r\n"
-      "model,between,2,,4,3.2,5,4,2,2,1.6,2.5,2\r\n"
-      "model,between,4,,2,1.6,2.5,2,4,4,3.2,5,4\r\n"
-      "model,above,4,,2,1,4,2,4,,,,\r\n"
-      "model,above,8,,1,0.5,2,2,8,,,,\r\n"
-      "exact,between,1,,8,,,,1,1,,,\r\n"
-      "exact,between,2,,4,,,,2,2,,,\r\n"
-      "exact,between,4,,2,,,,4,4,,,\r\n");
+      "kind,zone,x,x2,ms,ms_low,ms_high,ms_bound,ideal,speed_up,speed_up_low,speed_up_high,speed_up_bound,"
+      "ordinal,value\r\n"
+      "zone,above,4,8,,,,,,,,,,,\r\n"
+      "saturation,,3,,,,,,,,,,,,\r\n"
+      "model,below,1,,8,4,16,8,1,,,,,,\r\n"
+      "model,between,1,,8,6.4,10,8,1,1,0.8,1.25,1,,\r\n"
+      "model,between,2,,4,3.2,5,4,2,2,1.6,2.5,2,,\r\n"
+      "model,between,4,,2,1.6,2.5,2,4,4,3.2,5,4,,\r\n"
+      "model,above,4,,2,1,4,2,4,,,,,,\r\n"
+      "model,above,8,,1,0.5,2,2,8,,,,,,\r\n"
+      "exact,between,1,,8,,,,1,1,,,,0,1\r\n"
+      "exact,between,2,,4,,,,2,2,,,,1,2\r\n"
+      "exact,between,4,,2,,,,4,4,,,,2,4\r\n");
 }
 
 TEST_F(Plots, AreTheSameBytesAgain) {

@@ -1,6 +1,7 @@
 // The answers of the reports of a sweep and of a run.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "studies/report/model/answer_text.h"
@@ -69,6 +70,26 @@ TEST(AnswerOfSweep, ComparesTheSameWorkOnly) {
   EXPECT_NE(text.find("The sweep has 2 different frames"), std::string::npos) << text;
   EXPECT_NE(text.find("are compared here: machine.nodes = 1."), std::string::npos) << text;
   EXPECT_EQ(text.find("What to change"), std::string::npos) << "the next value is other work\n" << text;
+}
+
+// Beside a search through all machines.
+TEST(Choose, TakesTheFastestWithinTheBudget) {
+  const ReportPoints sweep = line_of({{5, 90}, {3, 70}, {3, 60}, {8, 20}, {6, 60}, {9, 20}});
+  for (int budget = 0; budget <= 10; ++budget) {
+    const Chosen chosen = choose(sweep, budget);
+    double shortest = 1e9;
+    for (const ReportPoint& point : sweep.points) {
+      if (point.figure("price") <= budget) {
+        shortest = std::min(shortest, point.figure("end"));
+      }
+    }
+    ASSERT_EQ(chosen.within.has_value(), shortest < 1e9) << budget;
+    if (chosen.within) {
+      EXPECT_EQ(sweep.points[*chosen.within].figure("end"), shortest) << budget;
+      EXPECT_LE(sweep.points[*chosen.within].figure("price"), budget);
+    }
+    EXPECT_EQ(choose(sweep).within, std::nullopt);
+  }
 }
 
 TEST(AnswerOfSweep, AdvisesGainsUpAndDown) {

@@ -1,0 +1,53 @@
+// The filter above the table of points: conditions with commas between them, all of which a point must meet.
+// "machine.nodes >= 16, cache.size = 16 KiB, price < 30" compare columns; another text must be in one of the point's values.
+"use strict";
+
+marti.filter = (() => {
+  const plain = (text) => String(text).replaceAll(/\s/g, "").toLowerCase();
+  const compare = {
+    "=": (a, b) => a === b,
+    "<": (a, b) => a < b,
+    ">": (a, b) => a > b,
+    "<=": (a, b) => a <= b,
+    ">=": (a, b) => a >= b,
+  };
+  const units = { kib: 2 ** 10, mib: 2 ** 20, gib: 2 ** 30, "%": 1 };
+
+  function numberOf(text) {
+    const [, number, unit] = /^(.*?)(kib|mib|gib|%)?$/.exec(plain(text));
+    return number === "" ? NaN : Number(number) * (units[unit] ?? 1);
+  }
+
+  /** A column's condition: by its numbers, or for equality by its texts. */
+  function comparison(column, sign, wanted) {
+    const text = plain(wanted);
+    if (sign === "=" && column.texts) {
+      const same = column.texts.map((each) => plain(each) === text);
+      if (same.some((each) => each)) return (i) => same[column.place[i]];
+    }
+    const known = column.texts ? column.texts.findIndex((each) => plain(each) === text) : -1;
+    const number = known >= 0 && column.values.length > 0 ? column.values[known] : numberOf(wanted);
+    if (!column.number || Number.isNaN(number)) throw new Error(`${wanted.trim()} is no value of ${column.name}`);
+    return (i) => column.number(i) !== null && compare[sign](column.number(i), number);
+  }
+
+  function condition(text, columns) {
+    const parts = /^([^<>=]+)(<=|>=|=|<|>)(.+)$/.exec(text);
+    if (parts) {
+      const name = plain(parts[1]);
+      const column = columns.find((each) => plain(each.name) === name) ?? columns.find((each) => plain(each.title) === name);
+      if (!column) throw new Error(`there is no column ${parts[1].trim()}`);
+      return comparison(column, parts[2], parts[3]);
+    }
+    const word = plain(text);
+    const axes = columns.filter(({ texts }) => texts);
+    const holding = axes.map(({ texts }) => texts.map((each) => plain(each).includes(word)));
+    return (i) => axes.some(({ place }, a) => holding[a][place[i]]);
+  }
+
+  /** A function that says of a point whether it is let through. Throws an Error that says what is wrong. */
+  return (text, columns) => {
+    const all = text.split(",").filter((each) => each.trim() !== "").map((each) => condition(each, columns));
+    return (i) => all.every((each) => each(i));
+  };
+})();
