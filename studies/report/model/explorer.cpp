@@ -70,10 +70,11 @@ Json model_json(const AxisModel& model) {
 struct ExplorerField {
   std::string name;        // as in ReportPoint::figures
   std::string unit = "1";  // as shown
-  double divisor = 1.0;    // shown is the figure by this: a whole number, so that all digits are the figure's own
-  bool exact = false;      // all its digits are shown
-  bool main = false;       // has a column in the table of points
-  std::string title{};     // for people; empty: the name in words
+  double divisor =
+      1.0;             // shown is the figure by this: a whole number, so that all digits are the figure's own
+  bool exact = false;  // all its digits are shown
+  bool main = false;   // has a column in the table of points
+  std::string title{};  // for people; empty: the name in words
 };
 
 // The fields that at least one point has.

@@ -42,13 +42,13 @@ marti.charts = (() => {
     await view.runAsync();
   }
 
-  /** Shows the rows that the chart's specification has now; it stays otherwise as it is. */
+  /** Shows what the chart's specification has now in the data sets that have changed; it stays otherwise as it is. */
   async function change(name) {
-    const { spec } = charts.get(name);
+    const { spec, changed } = charts.get(name);
     const view = marti.views[name];
     if (!view) return;
     const sets = { rows: spec.data.values, ...spec.datasets };
-    for (const [set, rows] of Object.entries(sets)) view.data(set, rows.map((row) => vega.ingest({ ...row })));
+    for (const set of changed) view.data(set, sets[set].map((row) => vega.ingest({ ...row })));
     await view.runAsync();
   }
 

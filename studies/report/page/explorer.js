@@ -85,17 +85,25 @@ marti.explorer = (() => {
     return [state.axis, ...(coloured ? [state.colour, ...marti.rows.around(explorer, state.colour, state.place)] : [])].join();
   }
 
-  /** Gives each chart what it is to show; the names of those that must be drawn anew. */
+  /** Gives each chart what it is to show; those that must be drawn anew. */
   function fill() {
     const now = view();
     return live.filter((chart) => {
       const form = shape(chart.live);
+      const another = chart.form !== form;
+      const { filter } = table.state;
+      const all = chart.live.rows === "all";
+      if (all && !another && chart.filter === filter) {
+        // Of thousands of points that stay as they are only the named ones change.
+        chart.spec.datasets = { marks: marti.rows.marks(explorer, chart.live, now) };
+        chart.changed = ["marks"];
+        return false;
+      }
       const spec = marti.specs.filled(explorer, declared.get(chart.name), chart.live, now);
       if (chart.live.rows === "explorer" && axes[state.axis].numeric) {
         spec.data.values.push({ kind: "cursor", x: samples()[state.x] });
       }
-      const another = chart.form !== form;
-      Object.assign(chart, { spec, form, title: spec.title });
+      Object.assign(chart, { spec, form, filter, title: spec.title, changed: all ? ["rows", "marks"] : ["rows"] });
       return another;
     });
   }
