@@ -179,6 +179,17 @@ Json nodes_json(const processors::MachineResult& result) {
   return nodes;
 }
 
+// What the colours of each map stand for.
+Json heat_maps_json(const HeatMap& map) {
+  Json object = Json::object();
+  for (std::size_t i = 0; i < heats; ++i) {
+    const Legend legend = legend_of(map.figures(static_cast<Heat>(i)));
+    object[std::string(heat_names[i])] = {
+        {"brightest", legend.brightest}, {"largest", legend.largest}, {"mean", legend.mean}};
+  }
+  return object;
+}
+
 Json files_json(const std::map<std::string, std::string>& files) {
   Json object = Json::object();
   for (const auto& [name, hash] : files) {
@@ -214,6 +225,9 @@ std::string json_of(const RunResult& r, const std::map<std::string, std::string>
   }
   if (r.working_set) {
     machine["working_set"] = working_set_json(*r.working_set);
+  }
+  if (r.heat_map) {
+    machine["heat_maps"] = heat_maps_json(*r.heat_map);
   }
   add_critical_path(r, timed.nodes.size() <= most_listed, machine);
   if (!timed.contexts.nodes.empty()) {

@@ -39,10 +39,29 @@ export const overflow = (page) =>
     const scrolled = (element) =>
       element && (/auto|scroll|hidden/.test(getComputedStyle(element).overflowX) || scrolled(element.parentElement));
     const wide = [...document.body.querySelectorAll("*")]
-      .filter((element) => element.getBoundingClientRect().right > width + 1 && !scrolled(element.parentElement))
+      .filter((element) => element.checkVisibility() && element.getBoundingClientRect().right > width + 1)
+      .filter((element) => !scrolled(element.parentElement))
       .map((element) => `${element.tagName} ${element.id || element.className?.baseVal || element.className}`);
     return { pixels: document.documentElement.scrollWidth - width, elements: wide.slice(0, 5) };
   });
+
+/** What does not fit a page of A4 with the browser's margins, charts that are wider than their place, and controls, which
+ *  paper has no use for. As in printing, charts are not drawn anew. */
+export async function onPaper(page) {
+  const session = await page.context().newCDPSession(page);
+  const width = 718;
+  await session.send("Emulation.setDeviceMetricsOverride", { width, height: 1000, deviceScaleFactor: 1, mobile: false });
+  const beyond = await overflow(page);
+  const shown = await page.evaluate(() => {
+    const visible = (element) => element.checkVisibility() && element.getBoundingClientRect().width > 0;
+    const controls = [...document.querySelectorAll("button, select, input, nav")].filter((element) => !element.closest("table") && visible(element));
+    const charts = [...document.querySelectorAll("[id^='chart-'] > svg, [id^='chart-'] svg.marks")];
+    const wider = charts.filter((svg) => svg.getBoundingClientRect().width > svg.closest("figure").clientWidth + 1);
+    return { wider: wider.map((svg) => svg.parentElement.id), controls: controls.map((element) => element.id) };
+  });
+  await session.send("Emulation.clearDeviceMetricsOverride");
+  return { ...beyond, ...shown };
+}
 
 /** What has no name for those who do not see it, and what else they would miss. */
 export const unnamed = (page) =>

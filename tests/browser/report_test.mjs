@@ -12,6 +12,7 @@ import {
   drawing,
   markBoxes,
   markCount,
+  onPaper,
   overflow,
   rowsOf,
   unnamed,
@@ -123,6 +124,7 @@ for (const [kind, report] of Object.entries(reports)) {
         for (const name of await chartNames(page)) {
           assert.ok(await page.locator(`#chart-${name} svg`).isVisible(), name);
         }
+        assert.deepEqual(await onPaper(page), { pixels: 0, elements: [], wider: [], controls: [] });
         const paper = await page.pdf({ format: "A4", path: pictures && join(pictures, `${kind}-paper.pdf`) });
         assert.equal(paper.subarray(0, 5).toString(), "%PDF-");
         await page.emulateMedia({ media: null });

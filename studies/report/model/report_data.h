@@ -27,14 +27,16 @@ struct ReportTable {
 };
 
 struct ReportImage {
-  std::string name;   ///< of its file, without extension
-  std::string title;  ///< for people
-  std::string png;    ///< the file's bytes
+  std::string name;     ///< of its file, without extension
+  std::string title;    ///< for people
+  std::string png;      ///< the file's bytes
+  std::string scale{};  ///< of a map in false colours: what the brightest stands for, 0 being the darkest
 };
 
 struct ReportData {
   std::string kind;                 ///< "run", "sweep" or "study"
   std::string title;                ///< one line
+  std::string about;                ///< which machine and scene, in one line; may be empty
   std::vector<std::string> answer;  ///< sentences, the most important first
   std::vector<ReportChart> charts;
   std::vector<ReportTable> tables;
@@ -46,5 +48,10 @@ struct ReportData {
   /// describes them; null without.
   nlohmann::ordered_json explorer;
 };
+
+/// What a chart says below its title when it leaves the page.
+[[nodiscard]] inline std::string chart_about(const ReportData& report) {
+  return report.about.empty() ? report.title : report.title + "; " + report.about;
+}
 
 }  // namespace marti::studies

@@ -1,5 +1,7 @@
 #include "studies/report/model/run_charts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <stdexcept>
@@ -297,12 +299,59 @@ Table nodes_table(const RunJson& run) {
   return table;
 }
 
+// Of many nodes: groups of neighbours, with the mean, the least and the most of each part.
+Table envelope_of(const Table& nodes, std::size_t groups) {
+  Table table(nodes.name(), nodes.title(),
+              {{"node", ColumnType::integer, "1", "first of the group"},
+               {"last", ColumnType::integer, "1", "last of the group"},
+               {"what", ColumnType::text, "", "part of the frame"},
+               {"mean", ColumnType::real, "fraction", "of the group's nodes"},
+               {"least", ColumnType::real, "fraction", "of any of them"},
+               {"most", ColumnType::real, "fraction", "of any of them"}});
+  const std::size_t count = nodes.rows().size();
+  for (const Column& column : nodes.columns().subspan(1)) {
+    for (std::size_t group = 0; group < groups; ++group) {
+      const std::size_t first = group * count / groups;
+      const std::size_t end = (group + 1) * count / groups;
+      double sum = 0.0;
+      double least = std::get<double>(nodes.at(first, column.name));
+      double most = least;
+      for (std::size_t node = first; node < end; ++node) {
+        const double share = std::get<double>(nodes.at(node, column.name));
+        sum += share;
+        least = std::min(least, share);
+        most = std::max(most, share);
+      }
+      // Rounding must not put the mean beside what it is the mean of.
+      const double mean = std::clamp(sum / static_cast<double>(end - first), least, most);
+      table.add_row({static_cast<std::int64_t>(first), static_cast<std::int64_t>(end - 1), column.name, mean,
+                     least, most});
+    }
+  }
+  return table;
+}
+
+// More bars than this are narrower than a reader can tell apart.
+constexpr std::size_t most_bars = 64;
+
+void add_nodes(const Table& nodes, ReportData& report) {
+  if (nodes.rows().size() <= most_bars) {
+    add(report, nodes, "Uneven bars are imbalance.");
+    return;
+  }
+  report.charts.push_back(
+      make_chart("run_nodes_envelope", envelope_of(nodes, most_bars),
+                 fmt::format("{} nodes in {} groups of neighbours: the line is the mean of a group, the area "
+                             "reaches from the least to the most of its nodes.",
+                             nodes.rows().size(), most_bars)));
+}
+
 void add_all(const RunJson& run, ReportData& report) {
   add(report, cycles_table(run), "All nodes' time from 0 to the end of the frame, without remainder.");
   add(report, loss_table(run),
       "The parts add up to the number of nodes less the speed-up times the nodes of the base.");
   add(report, energy_table(run), "The parts add up to the energy of the frame.");
-  add(report, nodes_table(run), "Uneven bars are imbalance.");
+  add_nodes(nodes_table(run), report);
   add(report, references_table(run));
   add_levels(run, report);
   add(report, visits_table(run));

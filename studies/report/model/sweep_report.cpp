@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -161,7 +162,7 @@ Table front_table(const ReportPoints& sweep, const Chosen& chosen) {
               {{"ordinal", ColumnType::integer, "1", "number of the point in the sweep, from 0"},
                {"machine", ColumnType::text, "", "its values"},
                {"price", ColumnType::real, "1", sweep.priced ? "cost by [prices]" : "number of nodes"},
-               {"ms", ColumnType::real, "ms", "frame time"},
+               {"frame_time", ColumnType::real, "ms", "from its start until the last node is done"},
                {"speed_up", ColumnType::real, "1", "over the base machine"},
                {"efficiency", ColumnType::real, "fraction", "speed-up by the number of nodes"},
                {"limit", ColumnType::text, "", "what would help it, predicted (docs/sweep.md)"}});
@@ -197,6 +198,28 @@ Table error_table(const ReportPoints& sweep, std::span<const AxisModel> models) 
   return table;
 }
 
+// "teapot:12, 512 x 512 pixels; machine.nodes 1 to 256, cache.size 4 KiB to 64 KiB": the frame, and what is
+// varied.
+std::string about_sweep(const ReportPoints& sweep) {
+  const std::map<std::string, std::string> shared(sweep.settings.begin(), sweep.settings.end());
+  std::string text;
+  if (const auto scene = shared.find("scene.source"); scene != shared.end()) {
+    text += scene->second;
+  }
+  if (shared.contains("image.width") && shared.contains("image.height")) {
+    text += fmt::format("{}{} x {} pixels", text.empty() ? "" : ", ", shared.at("image.width"),
+                        shared.at("image.height"));
+  }
+  std::erase(text, '"');
+  std::string varied;
+  for (const ReportAxis& axis : sweep.axes) {
+    varied += (varied.empty() ? "" : ", ") + axis.name;
+    varied += axis.numeric ? " " + axis.texts.front() + " to " + axis.texts.back()
+                           : fmt::format(" ({} names)", axis.texts.size());
+  }
+  return text + (text.empty() || varied.empty() ? "" : "; ") + varied;
+}
+
 // The axis that the page begins with: nodes, else the first of numbers, else the first.
 std::optional<std::size_t> first_axis(const ReportPoints& sweep) {
   if (const std::optional<std::size_t> nodes = sweep.axis("machine.nodes");
@@ -220,6 +243,7 @@ ReportData sweep_report(const ReportPoints& sweep, std::optional<double> budget)
   ReportData report;
   report.kind = "sweep";
   report.title = fmt::format("Sweep of {} machines", sweep.points.size());
+  report.about = about_sweep(sweep);
   report.answer = answer_of(sweep, chosen);
   report.explorer = explorer_json(sweep, models, chosen, axis);
   if (axis) {

@@ -14,10 +14,12 @@ marti.charts = (() => {
 
   const isPlain = (spec) => !["facet", "concat", "hconcat", "vconcat", "repeat"].some((part) => part in spec);
 
-  /** As wide as there is room; the page has the title already. */
-  function fitted(spec, room) {
-    const copy = { ...spec };
-    delete copy.title;
+  /** As wide as there is room. The page has the title already, but not the machine of a chart that follows the reader. */
+  function fitted({ spec, live }, room) {
+    const { title, ...copy } = spec;
+    if (live && live.rows !== "all" && title.subtitle) {
+      copy.title = { text: title.subtitle, fontSize: 10, fontWeight: "normal" };
+    }
     if (isPlain(copy)) {
       copy.width = Math.max(200, Math.min(room, 900));
       copy.autosize = { type: "fit-x", contains: "padding" };
@@ -30,7 +32,7 @@ marti.charts = (() => {
     const place = document.getElementById(`chart-${name}`);
     const old = marti.views[name];
     if (old) old.finalize();
-    const spec = fitted(chart.spec, place.clientWidth || 560);
+    const spec = fitted(chart, place.clientWidth || 560);
     const view = makeView(spec, marti.theme.inPage, { renderer: "svg", container: place, hover: true });
     view.description(chart.title);
     view.tooltip(marti.tooltip);
@@ -74,7 +76,9 @@ marti.charts = (() => {
   }
 
   async function saveSvg(chart) {
-    const view = makeView(chart.spec, marti.theme.inFile, { renderer: "none" });
+    // A file of its own says what it is about.
+    const title = chart.live ? chart.spec.title : martiTitle(chart.spec.title, data.about);
+    const view = makeView({ ...chart.spec, title }, marti.theme.inFile, { renderer: "none" });
     const svg = await view.toSVG();
     view.finalize();
     save(`${chart.name}.svg`, "image/svg+xml", svg);

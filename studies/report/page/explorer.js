@@ -99,11 +99,11 @@ marti.explorer = (() => {
         chart.changed = ["marks"];
         return false;
       }
-      const spec = marti.specs.filled(explorer, declared.get(chart.name), chart.live, now);
+      const spec = marti.specs.filled(explorer, declared.get(chart.name), chart.live, now, data.about);
       if (chart.live.rows === "explorer" && axes[state.axis].numeric) {
         spec.data.values.push({ kind: "cursor", x: samples()[state.x] });
       }
-      Object.assign(chart, { spec, form, filter, title: spec.title, changed: all ? ["rows", "marks"] : ["rows"] });
+      Object.assign(chart, { spec, form, filter, title: spec.title.text ?? spec.title, changed: all ? ["rows", "marks"] : ["rows"] });
       return another;
     });
   }

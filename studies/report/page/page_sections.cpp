@@ -3,30 +3,63 @@
 #include <fmt/format.h>
 
 #include "sim/base64.h"
+#include "sim/units.h"
 #include "studies/report/model/answer_text.h"
 #include "studies/report/page/html_text.h"
+#include "studies/tables/cell_number.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
 namespace {
 
+// How a column's numbers are shown: times of the simulation in milliseconds, shares in percent, sizes with
+// the unit that suits each.
+struct ShownColumn {
+  std::string unit;      // in the heading
+  double divisor = 1.0;  // of what the table holds
+  bool sizes = false;
+};
+
+ShownColumn shown_as(const Column& column) {
+  if (column.unit == "ps") {
+    return {"ms", 1e9};
+  }
+  if (column.unit == "fraction") {
+    return {"%", 0.01};
+  }
+  if (column.unit == "byte") {
+    return {"", 1.0, true};
+  }
+  return {column.unit == "1" ? "" : column.unit};
+}
+
+std::string cell_text(const Cell& cell, const ShownColumn& how) {
+  const std::optional<double> number = number_of(cell);
+  if (number && how.sizes) {
+    const auto* whole = std::get_if<std::int64_t>(&cell);
+    return whole != nullptr && *whole >= 0 && *whole % 1024 == 0 ? sim::print_size(*whole) : bytes(*number);
+  }
+  return number && how.divisor != 1.0 ? short_text(*number / how.divisor, "") : short_text(cell, "");
+}
+
 std::string table_html(const Table& table) {
   std::string html = "<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"" +
                      html_text(table.title()) + "\"><table><thead><tr>";
+  std::vector<ShownColumn> shown;
   for (const Column& column : table.columns()) {
-    const bool has_unit = !column.unit.empty() && column.unit != "1";
+    const std::string& unit = shown.emplace_back(shown_as(column)).unit;
     html +=
         fmt::format("<th scope=\"col\"{} title=\"{}\">{}{}</th>",
                     column.type == ColumnType::text ? "" : " class=\"number\"", html_text(column.description),
-                    html_text(words(column.name)), has_unit ? ", " + html_text(column.unit) : "");
+                    html_text(words(column.name)), unit.empty() ? "" : ", " + html_text(unit));
   }
   html += "</tr></thead><tbody>\n";
   for (const std::vector<Cell>& row : table.rows()) {
     html += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
       html += table.columns()[i].type == ColumnType::text ? "<td>" : "<td class=\"number\">";
-      html += html_text(short_text(row[i], "")) + "</td>";
+      html += html_text(cell_text(row[i], shown[i])) + "</td>";
     }
     html += "</tr>\n";
   }
@@ -100,13 +133,20 @@ std::string points_html() {
          "figures: save as CSV\">CSV</a></p>\n";
 }
 
+// The colours of a map, from dark to bright, and what they stand for.
+std::string scale_html(const ReportImage& image) {
+  return image.scale.empty() ? std::string()
+                             : "<span class=\"scale\"><span>0</span><span class=\"colours\"></span><span>" +
+                                   html_text(image.scale) + "</span></span>";
+}
+
 std::string images_html(const ReportData& report) {
   std::string html = "<div class=\"images\">\n";
   for (const ReportImage& image : report.images) {
     html += fmt::format(
-        "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption>"
+        "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}{2}</figcaption>"
         "</figure>\n",
-        html_text(image.title), sim::base64(image.png));
+        html_text(image.title), sim::base64(image.png), scale_html(image));
   }
   return html + "</div>\n";
 }

@@ -19,7 +19,7 @@ std::string source_of(const Script& script) { return " 'sha256-" + std::string(s
 
 // The data of the page's scripts.
 Json data_of(const ReportData& report) {
-  Json data = {{"kind", report.kind}, {"charts", Json::array()}};
+  Json data = {{"kind", report.kind}, {"about", chart_about(report)}, {"charts", Json::array()}};
   for (const ReportChart& chart : report.charts) {
     Json& each =
         data["charts"].emplace_back(Json{{"name", chart.name}, {"title", chart.title}, {"spec", chart.spec}});
@@ -81,14 +81,17 @@ std::string report_page(const ReportData& report, std::span<const Script> script
                 "\"><h2 id=\"title-of-" + section.id + "\">" + section.title + "</h2>\n" + section.html +
                 "</section>\n";
   }
-  return fill(report_page_html(), {{"policy", policy},
-                                   {"version", html_text(version)},
-                                   {"title", html_text(report.title)},
-                                   {"style", std::string(report_page_css().text)},
-                                   {"contents", contents},
-                                   {"sections", sections},
-                                   {"data", script_json(data_of(report))},
-                                   {"scripts", script_elements}});
+  return fill(report_page_html(),
+              {{"policy", policy},
+               {"version", html_text(version)},
+               {"title", html_text(report.title)},
+               {"about", report.about.empty() ? std::string()
+                                              : "<p class=\"about\">" + html_text(report.about) + "</p>\n"},
+               {"style", std::string(report_page_css().text)},
+               {"contents", contents},
+               {"sections", sections},
+               {"data", script_json(data_of(report))},
+               {"scripts", script_elements}});
 }
 
 }  // namespace marti::studies

@@ -1,5 +1,5 @@
 // Draws charts in node, after the scripts of vega_bundle.h, without a page: reads marti.report, {charts: [{name, spec,
-// live}], explorer}, and writes to standard output a JSON array of {svg, rows}, with rows where `live` says how to make them.
+// live}], about, explorer}, and writes to standard output a JSON array of {svg, rows}, with rows where `live` says how to make them.
 // Text is measured by estimate, so that the same charts give the same bytes wherever they are drawn.
 "use strict";
 
@@ -48,11 +48,11 @@ async function draw(spec) {
 }
 
 (async () => {
-  const { charts, explorer } = marti.report;
+  const { charts, about, explorer } = marti.report;
   const view = explorer && marti.rows.firstView(explorer);
   const drawings = [];
   for (const { name, spec, live } of charts) {
-    const whole = live ? marti.specs.filled(explorer, spec, live, view) : spec;
+    const whole = live ? marti.specs.filled(explorer, spec, live, view, about) : { ...spec, title: martiTitle(spec.title, about) };
     try {
       drawings.push({ svg: await draw(whole), rows: live && whole.data.values });
     } catch (error) {

@@ -16,16 +16,17 @@ marti.rows = (() => {
     return found.sort((a, b) => explorer.place[axis][a] - explorer.place[axis][b]);
   }
 
-  /** What the model says at sample `i` of a curve, with the band of a zone: "below", "between" or "above". */
-  function banded(model, curve, i, zone) {
+  /** What the model says at sample `i` of a curve, with the band of a zone: "below", "between" or "above". At an exact
+   *  point the model is exact, and the band has no width. */
+  function banded(model, curve, i, zone, exact) {
     const which = zone === "between" ? "between" : "beyond";
-    const factor = 1 + model.error[which].p95;
+    const factor = exact ? 1 : 1 + model.error[which].p95;
     const base = Array.isArray(curve.base) ? curve.base[i] : curve.base;
     const ms = curve.ms[i];
     const row = { kind: "model", zone, x: model.x[i], ms, ms_low: ms / factor, ms_high: ms * factor };
     row.ms_bound = curve.bound[i];
     if (base > 0 && model.speed_up_error[which].known) {
-      const speedFactor = 1 + model.speed_up_error[which].p95;
+      const speedFactor = exact ? 1 : 1 + model.speed_up_error[which].p95;
       row.speed_up = base / ms;
       row.speed_up_low = row.speed_up / speedFactor;
       row.speed_up_high = row.speed_up * speedFactor;
@@ -47,7 +48,7 @@ marti.rows = (() => {
     if (x <= first && model.error.beyond.known) zones.push("below");
     if (x >= first && x <= last && model.error.between.known) zones.push("between");
     if (x >= last && model.error.beyond.known) zones.push("above");
-    return zones.map((zone) => banded(model, curve, i, zone));
+    return zones.map((zone) => banded(model, curve, i, zone, xs.includes(x)));
   }
 
   /** Speed-up that is the number of nodes, for a unit of the axis; 0 when it is no axis of nodes. */

@@ -109,9 +109,18 @@ marti.specs = (() => {
   const titled = (explorer, live, view, title) =>
     live.title && live.axis === undefined ? `${live.title} over ${explorer.axes[view.axis].name}` : title;
 
+  /** The machine of a chart along an axis: the values on the others; of a chart of all points the sweep. */
+  function aboutOf(explorer, live, view, about) {
+    if (live.rows === "all") return about;
+    const shown = [live.axis ?? view.axis, ...(live.rows === "explorer" && view.colour !== null ? [view.colour] : [])];
+    const others = explorer.axes.flatMap(({ name, texts }, a) => (shown.includes(a) ? [] : [`${name} = ${texts[view.place[a]]}`]));
+    return others.join(", ");
+  }
+
   /** A complete specification, with title, rows and marks. */
-  function filled(explorer, spec, live, view) {
-    const made = { ...of(explorer, spec, live, view), title: titled(explorer, live, view, spec.title) };
+  function filled(explorer, spec, live, view, about) {
+    const title = martiTitle(titled(explorer, live, view, spec.title), aboutOf(explorer, live, view, about));
+    const made = { ...of(explorer, spec, live, view), title };
     made.data = { name: "rows", values: marti.rows.of(explorer, live, view) };
     if (live.rows === "all") made.datasets = { marks: marti.rows.marks(explorer, live, view) };
     return made;

@@ -65,8 +65,9 @@ std::string drawing_program(const ReportData& report) {
     charts.push_back({{"name", chart.name}, {"spec", chart.spec}, {"live", chart.live}});
   }
   // Passed as a text to be parsed: in an object literal "__proto__" would set the prototype.
-  const std::string text = Json{{"charts", charts}, {"explorer", report.explorer}}.dump(
-      -1, ' ', true, Json::error_handler_t::replace);
+  const std::string text =
+      Json{{"charts", charts}, {"about", chart_about(report)}, {"explorer", report.explorer}}.dump(
+          -1, ' ', true, Json::error_handler_t::replace);
   program += "const marti = {report: JSON.parse(" + Json(text).dump() + ")};\n";
   program += report_explorer_rows_js().text;
   program += report_explorer_specs_js().text;

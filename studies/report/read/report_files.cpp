@@ -68,7 +68,8 @@ std::vector<fs::path> files_ending_in(const fs::path& directory, std::string_vie
   return files;
 }
 
-void take_image(const fs::path& file, const std::string& title, ReportData& report) {
+void take_image(const fs::path& file, const std::string& title, ReportData& report,
+                const std::string& scale) {
   std::error_code error;
   const std::uintmax_t size = fs::file_size(file, error);
   if (!error && size > static_cast<std::uintmax_t>(largest_image)) {
@@ -76,7 +77,7 @@ void take_image(const fs::path& file, const std::string& title, ReportData& repo
                             sim::print_size(largest_image) + ".");
     return;
   }
-  ReportImage image{file.stem().string(), title, sim::read_file(file, largest_image)};
+  ReportImage image{file.stem().string(), title, sim::read_file(file, largest_image), scale};
   check_png(file, image.png);
   report.images.push_back(std::move(image));
 }

@@ -92,6 +92,47 @@ bool is_of_run(const fs::path& directory, const std::string& name,
   return false;
 }
 
+// What the brightest colour of a heat map stands for; empty for other images, and where the run does not say.
+std::string scale_text(const RunJson& run, const char* heat, const char* unit) {
+  if (heat == nullptr) {
+    return {};
+  }
+  const std::optional<double> brightest = run.number(fmt::format("machine.heat_maps.{}.brightest", heat));
+  return brightest ? fmt::format("{:g} {} or more", *brightest, unit) : std::string();
+}
+
+// A value as in the file, without quotation marks.
+std::string setting(const RunJson& run, const char* key) {
+  const RunJson keys = run.part("config.keys");
+  const auto at = keys.json().find(key);
+  std::string text = at == keys.json().end() ? std::string() : keys.of(*at).text("value");
+  std::erase(text, '"');
+  return text;
+}
+
+// "image scheme, nodes at 100 MHz, caches of 16 KiB, bus": what tells a machine from others, as far as the
+// result says it.
+std::string about_machine(const RunJson& run) {
+  std::string text;
+  const auto add = [&](const std::string& value, const std::string& before, const std::string& after = {}) {
+    if (!value.empty()) {
+      text += (text.empty() ? "" : ", ") + before + value + after;
+    }
+  };
+  add(setting(run, "machine.scheme"), "", " scheme");
+  add(setting(run, "node.clock"), "nodes at ");
+  if (const std::string caches = setting(run, "cache.organisation"); caches == "none") {
+    add("no caches", "");
+  } else {
+    add(setting(run, "cache.size"), "caches of ");
+  }
+  add(setting(run, "interconnect.kind"), "");
+  if (const std::string width = setting(run, "image.width"); !width.empty()) {
+    add(width + " x " + setting(run, "image.height"), "", " pixels");
+  }
+  return text;
+}
+
 void add_files(const fs::path& directory, const RunJson& run, ReportData& report) {
   const std::map<std::string, std::string> files = files_of(run);
   if (const char* chart = "working_set.vl.json"; is_of_run(directory, chart, files, report)) {
@@ -99,15 +140,21 @@ void add_files(const fs::path& directory, const RunJson& run, ReportData& report
     report.charts.push_back(chart_of_results(chart_named(chart_specifications(), "working_set"),
                                              read_chart_rows(directory / chart)));
   }
-  constexpr std::pair<const char*, const char*> images[] = {
+  struct Image {
+    const char* name;
+    const char* title;
+    const char* heat = nullptr;  // of a heat map
+    const char* unit = nullptr;
+  };
+  constexpr Image images[] = {
       {"image.png", "The image"},
       {"exact.png", "The exact image, without the voxel cut"},
-      {"heat-cycles.png", "Heat map: cycles of each pixel"},
-      {"heat-misses.png", "Heat map: misses of each pixel"},
-      {"heat-waits.png", "Heat map: waits of each pixel"}};
-  for (const auto& [name, title] : images) {
-    if (is_of_run(directory, name, files, report)) {
-      take_image(directory / name, title, report);
+      {"heat-cycles.png", "Heat map: cycles of each pixel", "cycles", "cycles"},
+      {"heat-misses.png", "Heat map: misses of each pixel", "misses", "misses"},
+      {"heat-waits.png", "Heat map: cycles that each pixel waited", "waits", "cycles"}};
+  for (const Image& image : images) {
+    if (is_of_run(directory, image.name, files, report)) {
+      take_image(directory / image.name, image.title, report, scale_text(run, image.heat, image.unit));
     }
   }
 }
@@ -116,6 +163,7 @@ void add_files(const fs::path& directory, const RunJson& run, ReportData& report
 ReportData machine_report(const RunJson& run, const std::string& base) {
   ReportData report;
   report.kind = "run";
+  report.about = about_machine(run);
   report.answer = answer_of(run, base);
   add_run_charts(run, report);
   add_configuration(run, report);

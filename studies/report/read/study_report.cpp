@@ -121,15 +121,27 @@ void take_settings(const Table& table, ReportData& report) {
   }
 }
 
-// Takes the report's first paragraph as the title, if it is short.
+// Takes the first line of the report as the title and the other lines of its first paragraph as what it is
+// about, if they are short.
 void take_text(const fs::path& file, ReportData& report) {
   report.text = sim::read_file(file, largest_text);
-  const std::size_t end = report.text.find("\n\n");
-  std::string first = report.text.substr(0, end);
-  std::replace(first.begin(), first.end(), '\n', ' ');
-  constexpr std::size_t longest = 300;
-  if (!first.empty() && first.size() <= longest) {
-    report.title = first;
+  std::string first = report.text.substr(0, report.text.find("\n\n"));
+  constexpr std::size_t longest = 400;
+  if (first.empty() || first.size() > longest) {
+    return;
+  }
+  const std::size_t end = first.find('\n');
+  report.title = first.substr(0, end);
+  if (end == std::string::npos) {
+    return;
+  }
+  // Columns of the text become one space each, lines become parts of a sentence.
+  for (const char c : first.substr(end + 1)) {
+    if (c == '\n') {
+      report.about += "; ";
+    } else if (c != ' ' || (!report.about.empty() && report.about.back() != ' ')) {
+      report.about += c;
+    }
   }
 }
 

@@ -193,7 +193,7 @@ TEST_F(Plots, HaveBarsForNamesAndColoursForAnotherAxis) {
 }
 
 // A curve of the model with its bands, zones and saturation, worked out by hand: errors are factors of 1.25
-// between the points and of 2 beyond them.
+// between the points and of 2 beyond them; at a point there is none.
 TEST_F(Plots, HaveTheCurveOfTheExplorer) {
   const ReportChart curve = live_chart("over_axis", "curve", "T", {{"rows", "explorer"}},
                                        {{"FIGURE", "ms"}, {"TITLE", "frame time, ms"}});
@@ -202,10 +202,10 @@ TEST_F(Plots, HaveTheCurveOfTheExplorer) {
       R"({"axis": 0, "start": 0, "place": [[0, 1, 2]], "ordinal": [0, 1, 2],
           "axes": [{"name": "machine.nodes", "texts": ["1", "2", "4"], "values": [1, 2, 4], "numeric": true}],
           "columns": {"end": [8, 4, 2], "speed_up": [1, 2, 4], "efficiency": [1, 1, 1]},
-          "models": {"0": {"x": [1, 2, 4, 8],
+          "models": {"0": {"x": [1, 2, 3, 4, 8],
             "error": {"between": {"known": true, "p95": 0.25}, "beyond": {"known": true, "p95": 1}},
             "speed_up_error": {"between": {"known": true, "p95": 0.25}, "beyond": {"known": false}},
-            "curves": {"*": {"ms": [8, 4, 2, 1], "bound": [8, 4, 2, 2], "base": 8, "saturation": 3}}}}})");
+            "curves": {"*": {"ms": [8, 4, 3, 2, 1], "bound": [8, 4, 2, 2, 2], "base": 8, "saturation": 3}}}}})");
   const std::vector<Plot> plots = draw_plots(report, directory_, /*pdf=*/false);
   ASSERT_EQ(plots.size(), 2U);
   EXPECT_EQ(
@@ -214,11 +214,12 @@ TEST_F(Plots, HaveTheCurveOfTheExplorer) {
       "ordinal,value\r\n"
       "zone,above,4,8,,,,,,,,,,,\r\n"
       "saturation,,3,,,,,,,,,,,,\r\n"
-      "model,below,1,,8,4,16,8,1,,,,,,\r\n"
-      "model,between,1,,8,6.4,10,8,1,1,0.8,1.25,1,,\r\n"
-      "model,between,2,,4,3.2,5,4,2,2,1.6,2.5,2,,\r\n"
-      "model,between,4,,2,1.6,2.5,2,4,4,3.2,5,4,,\r\n"
-      "model,above,4,,2,1,4,2,4,,,,,,\r\n"
+      "model,below,1,,8,8,8,8,1,,,,,,\r\n"
+      "model,between,1,,8,8,8,8,1,1,1,1,1,,\r\n"
+      "model,between,2,,4,4,4,4,2,2,2,2,2,,\r\n"
+      "model,between,3,,3,2.4,3.75,2,3,2.6666666666666665,2.1333333333333333,3.333333333333333,4,,\r\n"
+      "model,between,4,,2,2,2,2,4,4,4,4,4,,\r\n"
+      "model,above,4,,2,2,2,2,4,,,,,,\r\n"
       "model,above,8,,1,0.5,2,2,8,,,,,,\r\n"
       "exact,between,1,,8,,,,1,1,,,,0,1\r\n"
       "exact,between,2,,4,,,,2,2,,,,1,2\r\n"

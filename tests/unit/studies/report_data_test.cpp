@@ -1,9 +1,11 @@
 // The data of a report, and how texts of any origin become parts of a page.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <regex>
 #include <set>
 #include <utility>
 
@@ -14,6 +16,7 @@
 #include "studies/report/model/cycle_groups.h"
 #include "studies/report/model/run_charts.h"
 #include "studies/report/model/sweep_answer.h"
+#include "studies/report/model/sweep_report.h"
 #include "studies/report/page/html_text.h"
 #include "studies/report/page/page_files.h"
 #include "studies/report/page/report_page.h"
@@ -83,6 +86,69 @@ TEST(ReportPage, AllowsItsOwnScriptsOnly) {
     const auto hash = sim::sha256(each.text);
     EXPECT_EQ(each.sha256, sim::base64(std::string(hash.begin(), hash.end())));
   }
+}
+
+std::string table_page(const Column& column, const Cell& cell) {
+  Table table("t", "T", {column});
+  table.add_row({cell});
+  ReportData report;
+  report.tables.push_back({table, false});
+  const std::string page = report_page(report, {});
+  const std::size_t begin = page.find("<thead>");
+  return page.substr(begin, page.find("</table>", begin) - begin);
+}
+
+// Units stand in the heading, or for sizes beside each value.
+TEST(ReportPage, ShowsNumbersAsPeopleWriteThem) {
+  const auto shows = [](const char* unit, const Cell& cell, const std::string& heading,
+                        const std::string& text) {
+    const std::string html = table_page(
+        {"some_figure", std::holds_alternative<std::int64_t>(cell) ? ColumnType::integer : ColumnType::real,
+         unit, ""},
+        cell);
+    EXPECT_NE(html.find(">" + heading + "</th>"), std::string::npos) << html;
+    EXPECT_NE(html.find(">" + text + "</td>"), std::string::npos) << html;
+  };
+  shows("ps", std::int64_t{40'858'349'694}, "some figure, ms", "40.8583");
+  shows("fraction", 0.9375, "some figure, %", "93.75");
+  shows("byte", std::int64_t{16'384}, "some figure", "16 KiB");
+  shows("byte", std::int64_t{262'100}, "some figure", "256.0 KiB");
+  shows("byte", std::int64_t{100}, "some figure", "100 B");
+  shows("us", 2.5, "some figure, us", "2.5");
+  shows("1", std::int64_t{16'384}, "some figure", "16384");
+  shows("ps", Cell(), "some figure, ms", "");
+}
+
+// A sweep whose names would be markup, script or the end of a text if they were not escaped.
+TEST(ReportPage, KeepsNamesOfPointsTexts) {
+  const std::vector<std::string> names = {"<script>alert(1)</script>", "\"quoted\" 'name' \\",
+                                          "</td>{{data}}"};
+  ReportPoints sweep;
+  ReportAxis axis;
+  axis.name = "point";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    axis.values.emplace_back(names[i]);
+    axis.texts.push_back(names[i]);
+    ReportPoint point;
+    point.ordinal = static_cast<std::int64_t>(i);
+    point.place = {i};
+    point.figures = {{"price", 1.0 + static_cast<double>(i)}, {"end", 1e9 / static_cast<double>(i + 1)}};
+    sweep.points.push_back(point);
+  }
+  sweep.axes.push_back(axis);
+  sweep.planned = names.size();
+  const ReportData report = sweep_report(sweep, 2.0);
+  const std::string page = report_page(report, {});
+  EXPECT_EQ(page.find("<script>alert"), std::string::npos);
+  EXPECT_EQ(page.find("</td>{{"), std::string::npos);
+  EXPECT_NE(page.find("&quot;quoted&quot; &#39;name&#39; \\"), std::string::npos);
+  EXPECT_EQ(page, report_page(sweep_report(sweep, 2.0), {}));
+  const std::size_t begin = page.find("id=\"data\">") + 10;
+  const Json data = Json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  EXPECT_EQ(data["explorer"]["axes"][0]["texts"], Json(names));
+  EXPECT_EQ(data["explorer"]["axis"], 0) << "names have bars";
+  EXPECT_EQ(data["explorer"]["budget"], 2.0);
+  EXPECT_EQ(data["explorer"]["columns"]["end"], Json({1.0, 0.5, 1e9 / 3.0 / 1e9}));
 }
 
 TEST(OrderAxes, JoinsKeysThatChangeTogether) {
@@ -189,6 +255,106 @@ TEST(ReportCharts, AllSpecificationsAreWhole) {
   EXPECT_THROW((void)make_chart("none", table), sim::InternalError);
 }
 
+// All charts together: the colours of Okabe and Ito, greys, and what tells the parts of stacked bars apart.
+TEST(ReportCharts, HaveOnePalette) {
+  const std::set<std::string> palette = {"#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7",
+                                         "#56B4E9", "#F0E442", "#999999", "#777777", "#ffffff",
+                                         "#6b4c9a", "#7fbf9b", "#e5b8d2", "#b39ddb", "#c9b400"};
+  const std::regex colour("#[0-9a-fA-F]{3,8}\\b");
+  for (const auto charts : {report_chart_specifications(), chart_specifications()}) {
+    for (const ChartSpecification& chart : charts) {
+      const std::string text(chart.json);
+      for (std::sregex_iterator at(text.begin(), text.end(), colour), end; at != end; ++at) {
+        EXPECT_TRUE(palette.contains(at->str())) << chart.name << ": " << at->str();
+      }
+    }
+  }
+}
+
+// Calls visit for every channel of x and y with a title in a specification.
+template <class Visit>
+void for_each_axis(const Json& part, const Visit& visit) {
+  for (const auto& [key, value] : part.items()) {
+    if ((key == "x" || key == "y") && value.is_object() && value.contains("field")) {
+      visit(value);
+    }
+    if (value.is_structured()) {
+      for_each_axis(value, visit);
+    }
+  }
+}
+
+// An axis of shares says so in its title, and none has labels like "16.384k".
+TEST(ReportCharts, HaveUnitsOnTheirAxes) {
+  std::size_t shares = 0;
+  for (const auto charts : {report_chart_specifications(), chart_specifications()}) {
+    for (const ChartSpecification& chart : charts) {
+      for_each_axis(Json::parse(chart.json), [&](const Json& axis) {
+        const std::string format = axis.value(Json::json_pointer("/axis/format"), "");
+        EXPECT_EQ(format.find('s'), std::string::npos) << chart.name;
+        if (format.ends_with("%") && axis.contains("title")) {
+          EXPECT_TRUE(axis["title"].get<std::string>().ends_with("%")) << chart.name;
+          ++shares;
+        }
+      });
+    }
+  }
+  EXPECT_GE(shares, 15U);
+}
+
+Json nodes_of(std::size_t count) {
+  Json nodes = Json::array();
+  for (std::size_t i = 0; i < count; ++i) {
+    // Whole shares of 16 ps, so that sums are exact.
+    const std::size_t idle = (i * 7) % 16;
+    nodes.push_back({{"time_ps", {{"traversal", 16 - idle}, {"idle", idle}}}});
+  }
+  return Json{{"figures", {{"machine", {{"end", 16}}}}}, {"machine", {{"per_node", nodes}}}};
+}
+
+const ReportChart* nodes_chart(const ReportData& report) {
+  const auto at = std::find_if(report.charts.begin(), report.charts.end(),
+                               [](const ReportChart& chart) { return chart.name == "run_nodes"; });
+  return at == report.charts.end() ? nullptr : &*at;
+}
+
+TEST(RunCharts, ShowAThousandNodesAsAnEnvelope) {
+  for (const std::size_t count : {64U, 65U, 100U, 1000U, 4096U}) {
+    ReportData report;
+    add_run_charts(RunJson(nodes_of(count), "f"), report);
+    const ReportChart* const chart = nodes_chart(report);
+    ASSERT_NE(chart, nullptr);
+    const Json& rows = chart->spec["data"]["values"];
+    if (count == 64) {
+      EXPECT_EQ(rows.size(), 64U) << "a bar each";
+      continue;
+    }
+    ASSERT_EQ(rows.size(), 4U * 64U);
+    std::size_t next = 0;
+    for (const Json& row : rows) {
+      if (row["what"] != "idle") {
+        continue;
+      }
+      ASSERT_EQ(row["node"], next) << "every node is in one group";
+      next = row["last"].get<std::size_t>() + 1;
+      double least = 1.0;
+      double most = 0.0;
+      double sum = 0.0;
+      for (std::size_t i = row["node"]; i < next; ++i) {
+        const double share = static_cast<double>((i * 7) % 16) / 16.0;
+        least = std::min(least, share);
+        most = std::max(most, share);
+        sum += share;
+      }
+      EXPECT_EQ(row["least"], least);
+      EXPECT_EQ(row["most"], most);
+      EXPECT_DOUBLE_EQ(row["mean"].get<double>(),
+                       sum / static_cast<double>(next - row["node"].get<std::size_t>()));
+    }
+    EXPECT_EQ(next, count);
+  }
+}
+
 TEST(ReadChartRows, TakesRowsOfNumbersAndTextsOnly) {
   const TemporaryDirectory directory;
   const fs::path file = directory.path() / "a.vl.json";
@@ -218,7 +384,8 @@ TEST(ChartOfResults, IsDrawnAsItIsBuiltIn) {
   const ReportChart chart = chart_of_results(built_in, Json::parse(R"([{"a": 1}])"));
   EXPECT_EQ(chart.name, "working_set");
   EXPECT_EQ(chart.title, Json::parse(built_in.json)["title"]);
-  EXPECT_EQ(chart.spec["mark"], Json::parse(built_in.json)["mark"]);
+  EXPECT_EQ(chart.spec["spec"], Json::parse(built_in.json)["spec"]);
+  EXPECT_FALSE(chart.spec["spec"].empty());
   EXPECT_EQ(chart.spec["data"]["values"][0]["a"], 1);
 }
 
