@@ -226,22 +226,22 @@ std::string json_of(const RunResult& r, const std::map<std::string, std::string>
   if (r.working_set) {
     machine["working_set"] = working_set_json(*r.working_set);
   }
-  if (r.heat_map) {
-    machine["heat_maps"] = heat_maps_json(*r.heat_map);
-  }
   add_critical_path(r, timed.nodes.size() <= most_listed, machine);
   if (!timed.contexts.nodes.empty()) {
     machine["contexts"] = context_json(r.machine, timed.contexts, timed.nodes.size() <= most_listed);
   }
-  const Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
-                       {"config", config_json(r.config_name, r.values)},
-                       {"figures", figures_json(r)},
-                       {"scene", scene_json(r)},
-                       {"structure", structure_json(r)},
-                       {"voxel_cut", voxel_json(r)},
-                       {"plan", plan_json(r.plan)},
-                       {"machine", machine},
-                       {"files", files_json(files)}};
+  Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
+                 {"config", config_json(r.config_name, r.values)},
+                 {"figures", figures_json(r)},
+                 {"scene", scene_json(r)},
+                 {"structure", structure_json(r)},
+                 {"voxel_cut", voxel_json(r)},
+                 {"plan", plan_json(r.plan)},
+                 {"machine", machine}};
+  if (r.heat_map) {
+    result["heat_maps"] = heat_maps_json(*r.heat_map);
+  }
+  result["files"] = files_json(files);
   return json_text(result);
 }
 

@@ -1,4 +1,5 @@
 // `marti report` as its user runs it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -110,6 +111,14 @@ TEST_F(ReportCommand, ReportsARun) {
   EXPECT_NE(page.find("What would make the frame shorter"), std::string::npos);
   const json data = data_of(run / "report.html");
   EXPECT_NE(page.find("<img alt=\"The image\" src=\"data:image/png;base64,"), std::string::npos);
+  // Each heat map has the scale of its colours.
+  for (const char* heat : {"cycles", "misses", "waits"}) {
+    const double brightest = result["heat_maps"][heat]["brightest"];
+    EXPECT_LE(brightest, result["heat_maps"][heat]["largest"].get<double>());
+    const std::string unit = std::string(heat) == "misses" ? " misses" : " cycles";
+    EXPECT_NE(page.find(fmt::format("<span>{:g}{} or more</span>", brightest, unit)), std::string::npos)
+        << heat;
+  }
   EXPECT_NE(page.find("Heat map: misses"), std::string::npos);
   for (const char* name :
        {"run_cycles", "run_loss", "run_nodes", "run_references", "run_level_accesses", "run_level_hit_ratio",

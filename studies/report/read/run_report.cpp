@@ -97,7 +97,7 @@ std::string scale_text(const RunJson& run, const char* heat, const char* unit) {
   if (heat == nullptr) {
     return {};
   }
-  const std::optional<double> brightest = run.number(fmt::format("machine.heat_maps.{}.brightest", heat));
+  const std::optional<double> brightest = run.number(fmt::format("heat_maps.{}.brightest", heat));
   return brightest ? fmt::format("{:g} {} or more", *brightest, unit) : std::string();
 }
 
@@ -146,12 +146,11 @@ void add_files(const fs::path& directory, const RunJson& run, ReportData& report
     const char* heat = nullptr;  // of a heat map
     const char* unit = nullptr;
   };
-  constexpr Image images[] = {
-      {"image.png", "The image"},
-      {"exact.png", "The exact image, without the voxel cut"},
-      {"heat-cycles.png", "Heat map: cycles of each pixel", "cycles", "cycles"},
-      {"heat-misses.png", "Heat map: misses of each pixel", "misses", "misses"},
-      {"heat-waits.png", "Heat map: cycles that each pixel waited", "waits", "cycles"}};
+  constexpr Image images[] = {{"image.png", "The image"},
+                              {"exact.png", "The exact image, without the voxel cut"},
+                              {"heat-cycles.png", "Heat map: cycles of each pixel", "cycles", "cycles"},
+                              {"heat-misses.png", "Heat map: misses of each pixel", "misses", "misses"},
+                              {"heat-waits.png", "Heat map: waits of each pixel", "waits", "cycles"}};
   for (const Image& image : images) {
     if (is_of_run(directory, image.name, files, report)) {
       take_image(directory / image.name, image.title, report, scale_text(run, image.heat, image.unit));
