@@ -5,7 +5,7 @@ globalThis.martiChartStyle = (ink, line) => ({
   font: "system-ui, sans-serif",
   title: { color: ink, subtitleColor: ink, subtitleFontSize: 10, anchor: "start" },
   axis: { labelColor: ink, titleColor: ink, gridColor: line, domainColor: line, tickColor: line },
-  legend: { labelColor: ink, titleColor: ink, labelLimit: 260 },
+  legend: { labelColor: ink, titleColor: ink, labelLimit: 260, symbolOpacity: 1 },
   header: { labelColor: ink, titleColor: ink },
   view: { stroke: line },
   mark: { color: "#0072B2", tooltip: true },
