@@ -17,9 +17,7 @@ marti.explorer = (() => {
   const state = { ...first, place: [...first.place], x: null }; // x: index of the sample that the curve is read at
   const live = [...charts.values()].filter((chart) => chart.live);
   const declared = new Map(live.map((chart) => [chart.name, chart.spec]));
-  const controls = document.getElementById("controls");
   const reading = document.getElementById("reading");
-  const inputs = new Map();
   const points = new Map(explorer.ordinal.map((_, p) => [axes.map((_, a) => explorer.place[a][p]).join(), p]));
   const digits = (value) => marti.short(value, {});
 
@@ -150,27 +148,8 @@ marti.explorer = (() => {
   // Whether the charts may not show yet what the controls say.
   const busy = () => pending || running > 0;
 
-  function showControl(a) {
-    const axis = axes[a];
-    const { input, output } = inputs.get(a);
-    if (!axis.numeric) {
-      input.value = state.place[a];
-      return;
-    }
-    const own = a === state.axis;
-    input.max = (own ? samples().length : axis.values.length) - 1;
-    input.value = own ? state.x : state.place[a];
-    const text = own ? withUnit(axis, samples()[state.x]) : axis.texts[state.place[a]];
-    output.textContent = text + (own ? " (along the curve)" : "");
-    input.setAttribute("aria-valuetext", text);
-  }
-
   function showControls() {
-    for (const a of inputs.keys()) showControl(a);
-    document.getElementById("along").value = state.axis;
-    document.getElementById("colour").value = state.colour ?? "";
-    const budget = document.getElementById("budget");
-    if (Number(budget.value) !== state.budget) budget.value = state.budget ?? "";
+    controls.show(state, { at: state.x, last: samples().length - 1, text: withUnit(axes[state.axis], samples()[state.x]) });
   }
 
   /** The curve is read where the machine stands. */
@@ -189,71 +168,31 @@ marti.explorer = (() => {
     request();
   }
 
-  function labelled(input, id, ...texts) {
-    const label = document.createElement("label");
-    input.id = id;
-    label.htmlFor = id;
-    label.append(...texts, input);
-    controls.append(label);
-    return input;
+  // What the controls say.
+  function moved(a, value) {
+    const own = a === state.axis;
+    if (own) state.x = value;
+    state.place[a] = own ? nearest(axes[a], samples()[value]) : value;
+    showControls();
+    request();
   }
 
-  function addControl(a) {
-    const axis = axes[a];
-    const input = document.createElement(axis.numeric ? "input" : "select");
-    const output = document.createElement("output");
-    input.dataset.axis = axis.name;
-    labelled(input, `axis-${a}`, `${[axis.name, ...axis.followers].join(", ")} `, output);
-    if (axis.numeric) {
-      input.type = "range";
-      input.min = 0;
-      input.step = 1;
-    } else {
-      axis.texts.forEach((text, i) => input.append(new Option(text, i)));
-    }
-    input.addEventListener("input", () => {
-      const value = Number(input.value);
-      if (a === state.axis) {
-        state.x = value;
-        state.place[a] = nearest(axis, samples()[value]);
-      } else {
-        state.place[a] = value;
-      }
-      showControl(a);
-      request();
-    });
-    inputs.set(a, { input, output });
+  function turned(a) {
+    state.axis = a;
+    toSample();
+    showControls();
+    request();
   }
 
-  function addChoices() {
-    const along = labelled(document.createElement("select"), "along", "Curve along ");
-    const colour = labelled(document.createElement("select"), "colour", "Colours show ");
-    colour.append(new Option("nothing", ""));
-    axes.forEach((axis, a) => {
-      along.append(new Option(axis.name, a));
-      colour.append(new Option(axis.name, a));
-    });
-    along.addEventListener("change", () => {
-      state.axis = Number(along.value);
-      toSample();
-      showControls();
-      request();
-    });
-    colour.addEventListener("change", () => {
-      state.colour = colour.value === "" ? null : Number(colour.value);
-      request();
-    });
-    const budget = labelled(document.createElement("input"), "budget", `Budget (${explorer.price}) `);
-    budget.type = "number";
-    budget.min = 0;
-    budget.step = "any";
-    budget.addEventListener("input", () => {
-      state.budget = budgetOf(budget.value);
-      request();
-    });
+  function coloured(a) {
+    state.colour = a;
+    request();
   }
 
-  const budgetOf = (text) => (text && Number(text) >= 0 && Number.isFinite(Number(text)) ? Number(text) : null);
+  function budgeted(price) {
+    state.budget = price;
+    request();
+  }
 
   /** The choices that differ from those that the page begins with, by name. */
   function address() {
@@ -280,7 +219,7 @@ marti.explorer = (() => {
     if (state.axis === null) return;
     state.axis = axisNamed(named.along, first.axis);
     state.colour = named.colour === "none" ? null : axisNamed(named.colour, first.colour);
-    state.budget = named.budget === "none" ? null : budgetOf(named.budget) ?? first.budget;
+    state.budget = named.budget === "none" ? null : marti.budgetOf(named.budget) ?? first.budget;
     state.place = axes.map((axis, a) => {
       const at = axis.texts.indexOf(named[`axis.${axis.name}`]);
       return at >= 0 ? at : explorer.place[a][point >= 0 ? point : explorer.start];
@@ -296,10 +235,7 @@ marti.explorer = (() => {
 
   const table = marti.table(explorer, { choose, changed: request });
   const showPoint = marti.chosenPoint(explorer);
-  if (state.axis !== null) {
-    axes.forEach((_, a) => addControl(a));
-    addChoices();
-  }
+  const controls = state.axis === null ? null : marti.controls(explorer, { moved, turned, coloured, budgeted });
   take(marti.address.read() ?? {});
   if (state.axis !== null) read();
   fill();

@@ -17,6 +17,7 @@ namespace marti::studies {
 [[nodiscard]] Script report_points_filter_js();
 [[nodiscard]] Script report_points_table_js();
 [[nodiscard]] Script report_chosen_point_js();
+[[nodiscard]] Script report_controls_js();
 [[nodiscard]] Script report_explorer_js();
 [[nodiscard]] Script report_main_js();
 

@@ -65,7 +65,7 @@ std::string report_page(const ReportData& report, std::span<const Script> script
   if (report.explorer.is_object()) {
     all.insert(all.end(), {report_explorer_rows_js(), report_explorer_specs_js(), report_address_js(),
                            report_points_filter_js(), report_points_table_js(), report_chosen_point_js(),
-                           report_explorer_js()});
+                           report_controls_js(), report_explorer_js()});
   }
   all.push_back(report_main_js());
   std::string script_elements;
