@@ -13,6 +13,7 @@ namespace marti::studies {
 [[nodiscard]] Script report_theme_js();
 [[nodiscard]] Script report_charts_js();
 [[nodiscard]] Script report_explorer_js();
+[[nodiscard]] Script report_sort_tables_js();
 [[nodiscard]] Script report_main_js();
 
 }  // namespace marti::studies
