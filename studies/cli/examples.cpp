@@ -47,7 +47,7 @@ constexpr std::array<Examples, 25> table = {{
      {"marti trace configs/marti.toml -o out",
       "marti trace configs/marti.toml --nodes 0-3 --limit 1GiB -o out"}},
     {"compare",
-     {"marti compare out/small-cache out/large-cache", "marti compare out/run out/sweep:12 --all"}},
+     {"marti compare out/small-cache out/large-cache", "marti compare out/run out/sweep -o out/compared.html"}},
     {"report", {"marti report out", "marti report out/sweep:12 -o point.html --plots plots"}},
     {"config", {"marti config cache", "marti config machine.nodes --json"}},
     {"figures", {"marti figures", "marti figures --markdown"}},

@@ -93,10 +93,10 @@ std::vector<std::string> verdict_of(const TwoSweeps& found) {
                                       speed_text(point.end_a, point.end_b)));
     };
     if (best.end_b < best.end_a) {
-      say("It gains most", best);
+      say("B gains most", best);
     }
     if (worst.end_b > worst.end_a) {
-      say("It loses most", worst);
+      say("B loses most", worst);
     }
     if (const std::optional<double> mean = mean_ratio(found); mean && best.ratio() != worst.ratio()) {
       sentences.push_back(fmt::format("In the geometric mean B takes {} times as long as A.", times(*mean)));

@@ -21,6 +21,8 @@ constexpr std::size_t most_named = 6;
 // Activities are named until they explain this part of the change, and no more than so many.
 constexpr double enough = 0.9;
 constexpr std::size_t most_activities = 3;
+// Beyond this part of the change, what goes the other way is told too.
+constexpr double most_against = 0.25;
 
 std::optional<double> figure(const ComparedResult& result, const std::string& name) {
   const auto at = result.figures.find(name);
@@ -65,9 +67,28 @@ std::string settings_sentence(const std::vector<Difference>& settings) {
   return joined(parts);
 }
 
+// Where the activities pull in both directions: the largest changes of either.
+std::string both_ways(const ComparedPair& pair) {
+  std::vector<std::string> parts;
+  for (const ActivityTime& time : pair.times) {
+    if (parts.size() == most_activities) {
+      break;
+    }
+    parts.push_back(fmt::format("{} ({})", words(time.activity), signed_seconds(std::llround(time.change))));
+  }
+  return "What changes most, as the mean of a node: " + joined(parts) + ".";
+}
+
 // Which activities the change of the frame time comes from.
 std::string why(const ComparedPair& pair, std::int64_t change) {
   const double all = static_cast<double>(change);
+  double against = 0.0;
+  for (const ActivityTime& time : pair.times) {
+    against += time.change * all < 0.0 ? std::abs(time.change) : 0.0;
+  }
+  if (against > most_against * std::abs(all)) {
+    return both_ways(pair);
+  }
   std::vector<std::string> parts;
   double explained = 0.0;
   for (const ActivityTime& time : pair.times) {
