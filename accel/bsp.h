@@ -23,6 +23,7 @@
 #include "accel/mailbox.h"
 #include "accel/octree.h"
 #include "accel/octree_start.h"
+#include "accel/queries.h"
 #include "accel/ray.h"
 #include "accel/topology.h"
 #include "accel/traversal.h"
@@ -49,7 +50,7 @@ struct BspOptions {
   sim::MemoryBudget memory{};
 };
 
-class Bsp {
+class Bsp : public Queries<Bsp> {
  public:
   static constexpr std::string_view kind_name = "bsp";
 
@@ -72,25 +73,8 @@ class Bsp {
   /// levels()[i] is level i + 1 of this tree.
   [[nodiscard]] const std::vector<LevelStatistics>& levels() const { return levels_; }
 
-  /// The nearest hit. Real is the scalar of the arithmetic (double, Counted to count operations, or float for
-  /// comparison).
-  template <class Real = double, class Visitor>
-  [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
-    const RaySetup<Real> setup(ray);
-    Best<Real> best(setup);
-    query<false>(ray, setup, best, visitor);
-    return best.hit();
-  }
-
-  /// Whether anything is hit; ends at the first hit.
-  template <class Real = double, class Visitor>
-  [[nodiscard]] bool occluded(const Ray& ray, Visitor& visitor) const {
-    const RaySetup<Real> setup(ray);
-    Best<Real> best(setup);
-    return query<true>(ray, setup, best, visitor);
-  }
-
  private:
+  friend class Queries<Bsp>;
   /// At most one sibling a level waits.
   static constexpr std::size_t stack_size = 3 * 20 + 1;
 
@@ -166,8 +150,7 @@ bool Bsp::walk(const WalkStart<Real>& start, const RaySetup<Real>& setup, Best<R
 template <bool Any, class Real, class Visitor>
 bool Bsp::walk_far(const FarRay& far, std::uint32_t node, const glm::dvec3& lo, const glm::dvec3& hi,
                    const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const {
-  const FarSpan span = far.span(lo, hi);
-  if (!(span.in <= span.out) || span.out < far.t_min - far.slack || span.in > plain(best.t) + far.slack) {
+  if (!far.may_hit(far.span(lo, hi), plain(best.t))) {
     return false;
   }
   const TopologyNode& record = topology_.nodes[node];

@@ -16,6 +16,7 @@
 #include "accel/bvh_walk.h"
 #include "accel/cache_aligned.h"
 #include "accel/mailbox.h"
+#include "accel/queries.h"
 #include "accel/ray.h"
 #include "accel/topology.h"
 #include "accel/traversal.h"
@@ -24,7 +25,7 @@
 
 namespace marti::accel {
 
-class Bvh {
+class Bvh : public Queries<Bvh> {
  public:
   static constexpr std::string_view kind_name = "bvh";
 
@@ -41,31 +42,15 @@ class Bvh {
 
   /// The expected cost of a random ray that meets the root's box: the sum over the branches of the chance to
   /// meet their boxes, plus that over the leaves times their numbers of primitives. A chance is the surface
-  /// area of a box, as it is kept, over that of the root. 0 without primitives or without area.
+  /// area of a box, as the records hold it, over that of the root. The cost is 0 for a scene without
+  /// primitives and for one without area.
   [[nodiscard]] double sah_cost() const;
 
   /// Bytes of host memory for the walks' own records, without the topology.
   [[nodiscard]] std::uint64_t walk_bytes() const;
 
-  /// The nearest hit. Real is the scalar of the arithmetic (double, Counted to count operations, or float for
-  /// comparison).
-  template <class Real = double, class Visitor>
-  [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
-    const RaySetup<Real> setup(ray);
-    Best<Real> best(setup);
-    query<false>(ray, setup, best, visitor);
-    return best.hit();
-  }
-
-  /// Whether anything is hit; ends at the first hit.
-  template <class Real = double, class Visitor>
-  [[nodiscard]] bool occluded(const Ray& ray, Visitor& visitor) const {
-    const RaySetup<Real> setup(ray);
-    Best<Real> best(setup);
-    return query<true>(ray, setup, best, visitor);
-  }
-
  private:
+  friend class Queries<Bvh>;
   Bvh() = default;
 
   void number_nodes(const BvhBinaryTree& binary);

@@ -58,8 +58,7 @@ bool walk_bvh_far(const BvhView<Node>& view, const Ray& ray, const RaySetup<Real
     return false;
   }
   const FarRay far(*view.frame, ray, std::is_same_v<Real, float>);
-  const FarSpan span = far.span(box.lo, box.hi);
-  if (!(span.in <= span.out) || span.out < far.t_min - far.slack || span.in > plain(best.t) + far.slack) {
+  if (!far.may_hit(far.span(box.lo, box.hi), plain(best.t))) {
     return false;
   }
   return walk_bvh_far_branch<Any>(view, far, 0U, 0U, setup, best, visitor);

@@ -81,7 +81,8 @@ struct alignas(64) BvhNode {
 /// there, children are not placed by octant, because the walk orders them by distance.
 struct alignas(16) BvhQuantisedNode {
   static constexpr std::size_t width = 8;
-  /// As in BvhNode. Also: its bit in `branches`; the bits below it, and their number; a sum.
+  /// As in BvhNode. Four more: testing the child's bit in `branches`, masking the bits below it, counting
+  /// them, and adding the count to the place of the first child.
   static constexpr std::uint32_t child_operations = 5;
 
   std::array<float, 3> corner{};

@@ -40,9 +40,10 @@ struct BvhOptions {
   /// Intervals into which a node's extent is divided along each axis to look for the best split. From 2 to
   /// bvh_most_bins.
   std::uint32_t bins = 32;
-  /// Host threads that build; 0: all. The tree is the same with any number.
+  /// Number of host threads that build; 0 stands for all that the computer has. Equal trees come of any
+  /// number.
   unsigned threads = 0;
-  /// As OctreeOptions::memory.
+  /// What the build may take of the host's memory.
   sim::MemoryBudget memory{};
 };
 

@@ -1,6 +1,6 @@
 // The walk of bvh_walk.h for doubles on machines with AVX2: the boxes of a record in vectors of four or eight
-// floats. Each lane does the same operations in the same order, so visits
-// and hits are the same, bit for bit.
+// floats. Each lane does the operations of that walk for one box in their order, so visits and hits are
+// equal, bit for bit.
 #pragma once
 
 #include "accel/avx2.h"

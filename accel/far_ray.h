@@ -58,6 +58,11 @@ struct FarRay {
     slack = 4.0 * margin / speed;
   }
 
+  /// Whether a hit may lie in a box with this interval that is not beyond the parameter `best`.
+  [[nodiscard]] bool may_hit(const FarSpan& span, double best) const {
+    return span.in <= span.out && span.out >= t_min - slack && span.in <= best + slack;
+  }
+
   [[nodiscard]] FarSpan span(const glm::dvec3& box_lo, const glm::dvec3& box_hi) const {
     FarSpan span{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     for (int a = 0; a < 3; ++a) {

@@ -33,6 +33,7 @@
 #include "accel/list_test.h"
 #include "accel/mailbox.h"
 #include "accel/octree_start.h"
+#include "accel/queries.h"
 #include "accel/ray.h"
 #include "accel/topology.h"
 #include "accel/triangles.h"
@@ -61,7 +62,7 @@ struct GridOptions {
 /// The topology: node 0, the grid's header, is a branch, and its children are all cells as leaves: cell (x,
 /// y, z) is node 1 + x + nx (y + ny z). Without triangles node 0 is an empty leaf. A walk visits the header
 /// once and then the cells on the ray, front to back, empty cells included.
-class Grid {
+class Grid : public Queries<Grid> {
  public:
   static constexpr std::string_view kind_name = "grid";
 
@@ -82,25 +83,8 @@ class Grid {
   /// Plane `i` of an axis, from 0 to the resolution.
   [[nodiscard]] double plane(unsigned axis, std::uint32_t i) const { return planes_[axis][i]; }
 
-  /// The nearest hit. Real is the scalar of the arithmetic (double, Counted to count operations, or float for
-  /// comparison).
-  template <class Real = double, class Visitor>
-  [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
-    const RaySetup<Real> setup(ray);
-    Best<Real> best(setup);
-    query<false>(ray, setup, best, visitor);
-    return best.hit();
-  }
-
-  /// Whether anything is hit; ends at the first hit.
-  template <class Real = double, class Visitor>
-  [[nodiscard]] bool occluded(const Ray& ray, Visitor& visitor) const {
-    const RaySetup<Real> setup(ray);
-    Best<Real> best(setup);
-    return query<true>(ray, setup, best, visitor);
-  }
-
  private:
+  friend class Queries<Grid>;
   Grid() = default;
 
   template <bool Any, class Real, class Visitor>
@@ -218,10 +202,7 @@ bool Grid::walk_far(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& bes
   const FarRay far(frame_, ray, std::is_same_v<Real, float>);
   glm::dvec3 lo = frame_.box.lo;
   glm::dvec3 hi = frame_.box.hi;
-  const auto met = [&] {
-    const FarSpan span = far.span(lo, hi);
-    return span.in <= span.out && span.out >= far.t_min - far.slack && span.in <= plain(best.t) + far.slack;
-  };
+  const auto met = [&] { return far.may_hit(far.span(lo, hi), plain(best.t)); };
   if (!met()) {
     return false;
   }

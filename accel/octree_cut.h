@@ -230,8 +230,7 @@ class CutOctree {
       if (!box.empty()) {
         const FarRay far(*view.frame, ray, std::is_same_v<Real, float>);
         const FarSpan span = far.span(box.lo, box.hi);
-        if (span.in <= span.out && span.out >= far.t_min - far.slack &&
-            span.in <= plain(best.t) + far.slack) {
+        if (far.may_hit(span, plain(best.t))) {
           walk_far_cut_node(view, far, 0U, 1U, span, box.lo, box.hi, setup, cut, best, visitor);
         }
       }

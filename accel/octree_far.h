@@ -72,8 +72,7 @@ bool walk_octree_far(const View& view, const Ray& ray, const RaySetup<Real>& set
     return false;
   }
   const FarRay far(*view.frame, ray, std::is_same_v<Real, float>);
-  const FarSpan span = far.span(box.lo, box.hi);
-  if (!(span.in <= span.out) || span.out < far.t_min - far.slack || span.in > plain(best.t) + far.slack) {
+  if (!far.may_hit(far.span(box.lo, box.hi), plain(best.t))) {
     return false;
   }
   return walk_far_node<Any>(view, far, 0U, box.lo, box.hi, setup, best, visitor);

@@ -16,6 +16,7 @@
 
 #include "accel/structure.h"
 #include "bench/report.h"
+#include "memory/dram_presets.h"
 #include "processors/cost/cost_model.h"
 #include "processors/program/render.h"
 #include "processors/replay/replay.h"
@@ -137,6 +138,37 @@ void run_stripped(bench::Report& report, const processors::WorkLog& log, double 
   add("64 nodes, 4 KiB, 1 way, stripped log", timing.seconds, 3.0);
 }
 
+// DRAM beside banks of fixed time: behind a slow bus, where it is nearly idle, and behind a fast crossbar,
+// where accesses queue.
+void run_dram(bench::Report& report, const processors::WorkLog& log, double render, int repeats) {
+  for (const bool crossbar : {false, true}) {
+    processors::MachineConfig machine = machine_of(64, 8);
+    const std::string behind = crossbar ? "crossbar" : "bus";
+    if (crossbar) {
+      machine.clock = sim::Clock::from_hertz(2e9);
+      machine.interconnect.kind = memory::InterconnectKind::crossbar;
+      machine.interconnect.clock = sim::Clock::from_hertz(2e9);
+      machine.banks.count = 2;
+      machine.banks.clock = sim::Clock::from_hertz(2e9);
+      machine.banks.access_cycles = 60;
+    }
+    const Timing fixed = time_replay(log, machine, repeats);
+    print(("64 nodes, " + behind).c_str(), fixed, render, 0.0);
+    machine.banks.dram = memory::dram_preset(0);
+    machine.banks.dram->channels = 2;
+    for (const memory::DramPolicy policy : {memory::DramPolicy::fcfs, memory::DramPolicy::frfcfs}) {
+      machine.banks.dram->policy = policy;
+      const std::string name = "64 nodes, " + behind + ", " +
+                               std::string(memory::dram_policy_names[static_cast<std::size_t>(policy)]);
+      const Timing timing = time_replay(log, machine, repeats);
+      print(name.c_str(), timing, render, 0.0);
+      const double aim = policy == memory::DramPolicy::fcfs ? 1.5 : 3.0;
+      report.add(bench::against(name, "ms", 1e3 * timing.seconds, "banks of fixed time", 1e3 * fixed.seconds,
+                                bench::Aim{aim, false}));
+    }
+  }
+}
+
 void run(bench::Report& report, std::uint32_t size, int repeats) {
   const scenes::Scene scene = scenes::make_procedural("teapot:12");
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
@@ -197,6 +229,7 @@ void run(bench::Report& report, std::uint32_t size, int repeats) {
                             "of 64, same packets", 1e9 * same.seconds / same.references));
   report.add({"a simulated node beside its tags", "B", static_cast<double>(many.bytes_per_node)});
   run_stripped(report, *frame.log, render, repeats);
+  run_dram(report, *frame.log, render, repeats);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ using sim::Ticks;
 
 ArbitratedBus::ArbitratedBus(const InterconnectConfig& config, const BankConfig& banks,
                              const InterconnectSite& site)
-    : Banked(banks, site, config.clock.cycles(config.address_cycles)),
+    : Banked(banks, site, config.clock.cycles(config.address_cycles), true),
       mode_(config.mode),
       arbitration_(config.arbitration),
       beats_(config),

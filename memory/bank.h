@@ -100,6 +100,8 @@ class Banks {
   [[nodiscard]] const std::vector<BankStatistics>& statistics() const { return statistics_; }
   /// Of each channel of a DRAM memory; empty if it is none.
   [[nodiscard]] std::vector<DramStatistics> dram_statistics() const;
+  /// The cache before the banks; null without one.
+  [[nodiscard]] SharedCache* cache() { return cache_ ? &*cache_ : nullptr; }
   /// Statistics of the cache; null without a cache.
   [[nodiscard]] const SharedCacheStatistics* cache_statistics() const {
     return cache_ ? &cache_->statistics() : nullptr;

@@ -27,14 +27,16 @@ class Banked : public Interconnect {
   ~Banked() override;
 
  protected:
-  /// `notice`: every access is asked for so long before it arrives, or longer.
-  Banked(const BankConfig& banks, const InterconnectSite& site, sim::Ticks notice);
+  /// `notice`: every access is asked for so long before it arrives, or longer. `one_at_a_time`: accesses
+  /// arrive at distances of at least `notice`.
+  Banked(const BankConfig& banks, const InterconnectSite& site, sim::Ticks notice, bool one_at_a_time);
 
   [[nodiscard]] bool late() const { return late_ != nullptr; }
-  /// Where accesses end late: an access that arrives at `arrival`. A write is reported to the client when its
-  /// data have been written.
+  /// Where accesses end late: an access that arrives at `arrival`, in order of arrival. A write is reported
+  /// to the client when its data have been written.
   void ask_late(const Transaction& transaction, bool write, sim::Ticks arrival);
-  /// A read's data will be ready at read.ready, which is not in the past.
+  /// A read's data will be ready at read.ready, which is not in the past. Of the transaction only the port is
+  /// given.
   virtual void late_read(const LateAccess& read) = 0;
   /// When a write is done, given when its bank has served it.
   [[nodiscard]] virtual sim::Ticks end_of_write(const LateAccess& write) const;
@@ -43,10 +45,15 @@ class Banked : public Interconnect {
   Banks banks_;
 
  private:
-  // Tells whoever waits for the access that it is done.
+  // Whether the cache before the banks serves a read, now or later.
+  bool cached(const Transaction& transaction, sim::Ticks arrival);
+  // Reports the end of a write to the client, and of a read to the interconnect, with those that waited for
+  // it.
   void finish(const LateAccess& access);
 
   std::unique_ptr<LateDram> late_;
+  // How long after an arrival the next access may arrive.
+  sim::Ticks distance_;
 };
 
 }  // namespace marti::memory

@@ -5,7 +5,7 @@
 namespace marti::memory {
 
 Bus::Bus(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site)
-    : Banked(banks, site, config.clock.cycles(config.address_cycles)),
+    : Banked(banks, site, config.clock.cycles(config.address_cycles), true),
       mode_(config.mode),
       beats_(config),
       address_(config.clock.cycles(config.address_cycles)),

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "sim/mix.h"
+
 namespace marti::memory {
 
 /// plru: tree-PLRU, a tree of bits over the ways of a set (plru_trees.h).
@@ -46,12 +48,8 @@ class VictimStream {
  public:
   VictimStream(std::uint64_t seed, std::uint64_t set) : state_(seed + set * 0xd1342543de82ef95ULL) {}
   std::uint32_t next(std::uint32_t ways) {
-    state_ += 0x9e3779b97f4a7c15ULL;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
-    z ^= z >> 31U;
-    return static_cast<std::uint32_t>(((z >> 32U) * ways) >> 32U);
+    state_ += sim::mix_step;
+    return static_cast<std::uint32_t>(((sim::mixed_bits(state_) >> 32U) * ways) >> 32U);
   }
 
  private:

@@ -8,10 +8,11 @@ using sim::add_ticks;
 using sim::Ticks;
 
 Crossbar::Crossbar(const InterconnectConfig& config, const BankConfig& banks, const InterconnectSite& site)
-    : Banked(banks, site, config.clock.cycles(config.latency_cycles)),
+    : Banked(banks, site, config.clock.cycles(config.latency_cycles), false),
       beats_(config),
       latency_(config.clock.cycles(config.latency_cycles)),
-      links_(banks_.count()) {
+      links_(banks_.count()),
+      pending_(late() ? site.ports : 0) {
   statistics_.links = banks_.count();
 }
 
@@ -24,6 +25,7 @@ void Crossbar::read(const Transaction& transaction) {
   statistics_.bytes += transaction.bytes;
   const Ticks arrival = add_ticks(site_.engine.now(), latency_);
   if (late()) {
+    pending_[transaction.port].transaction = transaction;
     ask_late(transaction, false, arrival);
     return;
   }
@@ -31,7 +33,16 @@ void Crossbar::read(const Transaction& transaction) {
 }
 
 void Crossbar::late_read(const LateAccess& read) {
-  send_data(read.transaction, read.arrival, {read.start, read.ready});
+  Pending& pending = pending_[read.transaction.port];
+  pending.arrival = read.arrival;
+  pending.access = {read.start, read.ready};
+  site_.engine.post(
+      sim::Event::make(read.ready, site_.reply_class, site_.first_component + read.transaction.port));
+}
+
+void Crossbar::reply(std::uint32_t port) {
+  const Pending& pending = pending_[port];
+  send_data(pending.transaction, pending.arrival, pending.access);
 }
 
 Ticks Crossbar::end_of_write(const LateAccess& write) const {

@@ -12,12 +12,11 @@ Dram::Dram(const DramConfig& config)
       channels_(config.channels, DramInOrder(config)) {}
 
 Dram::Times Dram::access(Address address, std::uint32_t bytes, bool write, sim::Ticks arrival) {
-  const DramPlace place = mapping_.place(address);
-  const std::int64_t bursts = bursts_of(address, bytes, burst_bytes_);
-  const DramService service =
-      channels_[place.channel].serve({place, bursts, write, clock_.cycle_at(arrival)});
-  return {place.channel, clock_.ticks(service.first - 1), clock_.ticks(service.end),
-          sim::multiply_ticks(burst_ticks_, bursts)};
+  const DramRequest request{mapping_.place(address), bursts_of(address, bytes, burst_bytes_), write,
+                            clock_.cycle_at(arrival)};
+  const DramService service = channels_[request.place.channel].serve(request);
+  return {request.place.channel, clock_.ticks(service.first - 1), clock_.ticks(service.end),
+          sim::multiply_ticks(burst_ticks_, request.bursts)};
 }
 
 std::vector<DramStatistics> Dram::statistics() const {

@@ -1,12 +1,14 @@
 // A memory of DRAM channels that serve first come, first served, in the simulator's time.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "memory/dram_in_order.h"
 #include "memory/dram_mapping.h"
+#include "sim/divider.h"
 #include "sim/time.h"
 
 namespace marti::memory {
@@ -14,21 +16,22 @@ namespace marti::memory {
 /// Times of the DRAM's clock in ticks, and back.
 class DramClock {
  public:
-  explicit DramClock(sim::Ticks period) : period_(period) {}
+  explicit DramClock(sim::Ticks period) : period_(period), divide_(static_cast<std::uint64_t>(period)) {}
   /// The first cycle that does not begin before `time`.
   [[nodiscard]] DramCycle cycle_at(sim::Ticks time) const {
     if (time > latest) {
       sim::fail_time_overflow();
     }
-    return (time + period_ - 1) / period_;
+    return static_cast<DramCycle>(divide_(static_cast<std::uint64_t>(time + period_ - 1)));
   }
   [[nodiscard]] sim::Ticks ticks(DramCycle cycle) const { return sim::multiply_ticks(period_, cycle); }
 
  private:
   // Leaves so much room that no sum of times of commands overflows.
-  static constexpr sim::Ticks latest = std::numeric_limits<sim::Ticks>::max() / 2;
+  static constexpr sim::Ticks latest = std::numeric_limits<sim::Ticks>::max() / 4;
 
   sim::Ticks period_;
+  sim::Divider divide_;
 };
 
 class Dram {
@@ -56,9 +59,11 @@ class Dram {
   std::vector<DramInOrder> channels_;
 };
 
-/// The bursts that hold the bytes from `address` on.
+/// The bursts that hold the bytes from `address` on; `burst`: bytes of one, a power of two.
 [[nodiscard]] inline std::int64_t bursts_of(Address address, std::uint32_t bytes, std::uint32_t burst) {
-  return static_cast<std::int64_t>((address % burst + bytes + burst - 1) / burst);
+  const Address from = address & (burst - 1U);
+  return static_cast<std::int64_t>((from + bytes + burst - 1U) >>
+                                   static_cast<unsigned>(std::countr_zero(burst)));
 }
 
 /// The time of a read of `bytes` that meets no other access, in a bank whose row is closed.

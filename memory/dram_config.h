@@ -23,28 +23,28 @@ inline constexpr std::array<std::string_view, 2> dram_page_names = {"open", "clo
 /// Least times between commands, in cycles of the DRAM's clock; names as in the JEDEC standards. `l` is for
 /// commands to the same bank group, `s` for commands to different ones.
 struct DramTiming {
-  std::int64_t bl = 4;          ///< data of one burst on the data bus
-  std::int64_t cl = 16;         ///< read command to its first data
-  std::int64_t cwl = 12;        ///< write command to its first data
-  std::int64_t rcd = 16;        ///< activation to a read of the row
-  std::int64_t rcd_write = 16;  ///< activation to a write of the row
-  std::int64_t rp = 16;         ///< precharge to activation
-  std::int64_t ras = 39;        ///< activation to precharge
-  std::int64_t rc = 55;         ///< activation to activation of the same bank
-  std::int64_t rrd_s = 4;       ///< activation to activation of another bank
-  std::int64_t rrd_l = 6;
-  std::int64_t faw = 26;   ///< in which a rank may have four activations
-  std::int64_t ccd_s = 4;  ///< read to read, write to write
-  std::int64_t ccd_l = 6;
+  std::int64_t bl = 4;           ///< data of one burst on the data bus
+  std::int64_t cl = 16;          ///< read command to its first data
+  std::int64_t cwl = 12;         ///< write command to its first data
+  std::int64_t rcd = 16;         ///< activation to a read of the row
+  std::int64_t rcd_write = 16;   ///< activation to a write of the row
+  std::int64_t rp = 16;          ///< precharge to activation
+  std::int64_t ras = 39;         ///< activation to precharge
+  std::int64_t rc = 55;          ///< activation to activation of the same bank
+  std::int64_t rrd_s = 4;        ///< activation to activation of another bank
+  std::int64_t rrd_l = 6;        ///< of the same bank group
+  std::int64_t faw = 26;         ///< in which a rank may have four activations
+  std::int64_t ccd_s = 4;        ///< read to read, write to write
+  std::int64_t ccd_l = 6;        ///< read to read of the same bank group
   std::int64_t ccd_l_write = 6;  ///< write to write of the same bank group
   std::int64_t wr = 18;          ///< end of written data to precharge
   std::int64_t wtr_s = 3;        ///< end of written data to a read
-  std::int64_t wtr_l = 9;
-  std::int64_t rtp = 9;       ///< read to precharge
-  std::int64_t rtw_gap = 2;   ///< free cycles of the data bus between data read and data written
-  std::int64_t rank_gap = 2;  ///< free cycles of the data bus between data of two ranks
-  std::int64_t refi = 9364;   ///< between two refreshes; 0: no refresh
-  std::int64_t rfc = 433;     ///< one refresh
+  std::int64_t wtr_l = 9;        ///< of the same bank group
+  std::int64_t rtp = 9;          ///< read to precharge
+  std::int64_t rtw_gap = 2;      ///< free cycles of the data bus between data read and data written
+  std::int64_t rank_gap = 2;     ///< free cycles of the data bus between data of two ranks
+  std::int64_t refi = 9364;      ///< between two refreshes; 0: no refresh
+  std::int64_t rfc = 433;        ///< one refresh
 };
 
 /// The parts of an address that choose a place in the memory.

@@ -13,9 +13,12 @@ constexpr DramCycle long_ago = std::numeric_limits<DramCycle>::min() / 4;
 
 DramDevice::DramDevice(const DramConfig& config)
     : timing_(config.timing_of_commands()),
+      activate_cycles_(config.activate_cycles),
+      column_cycles_(config.column_cycles),
       settling_(std::max({timing_.rc, timing_.ras + timing_.rp, timing_.rtp + timing_.rp, timing_.rfc,
                           timing_.cwl + timing_.bl + timing_.wr + timing_.rp})),
       one_data_bus_(!config.pseudo_channels),
+      one_command_bus_(!config.two_command_buses),
       banks_of_rank_(config.banks_of_rank()),
       banks_(std::size_t{config.ranks} * config.banks_of_rank()),
       groups_(std::size_t{config.ranks} * config.bank_groups),
@@ -47,6 +50,16 @@ void DramDevice::issue(DramCommand command, const DramPlace& place, DramCycle cy
       }
       return;
   }
+}
+
+void DramDevice::issue(const Course& course, const DramPlace& place, bool write, bool close) {
+  if (course.precharge >= 0) {
+    issue(DramCommand::precharge, place, course.precharge);
+  }
+  if (course.activate >= 0) {
+    issue(DramCommand::activate, place, course.activate);
+  }
+  issue(write ? DramCommand::write : DramCommand::read, place, course.column, close);
 }
 
 void DramDevice::issue_activate(const DramPlace& place, DramCycle cycle) {
@@ -92,6 +105,26 @@ void DramDevice::issue_column(DramCommand command, const DramPlace& place, DramC
       raise(of(rank, DramCommand::write), free - timing_.cwl);
     }
   }
+}
+
+DramDevice::Course DramDevice::course(const DramPlace& place, bool write, DramCycle row,
+                                      DramCycle column) const {
+  const DramCommand moving = write ? DramCommand::write : DramCommand::read;
+  Course course;
+  course.column = std::max(column, earliest(moving, place));
+  if (banks_[place.bank].row == place.row) {
+    return course;
+  }
+  course.activate = std::max(row, earliest(DramCommand::activate, place));
+  if (banks_[place.bank].row != no_row) {
+    course.precharge = std::max(row, earliest(DramCommand::precharge, place));
+    raise(course.activate, course.precharge + std::max(timing_.rp, bus_cycles(DramCommand::precharge)));
+  }
+  raise(course.column, course.activate + (write ? timing_.rcd_write : timing_.rcd));
+  if (one_command_bus_) {
+    raise(course.column, course.activate + bus_cycles(DramCommand::activate));
+  }
+  return course;
 }
 
 bool DramDevice::has_open_row(std::uint32_t rank) const {

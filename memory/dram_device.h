@@ -16,6 +16,11 @@ using DramCycle = std::int64_t;
 
 enum class DramCommand : std::uint8_t { activate, precharge, read, write };
 
+/// Whether a command moves data.
+[[nodiscard]] constexpr bool is_column(DramCommand command) {
+  return command == DramCommand::read || command == DramCommand::write;
+}
+
 /// Knows times and states, but no requests: a controller decides which command comes next. Times are those of
 /// JEDEC's standards, in the form of the tables of Ramulator 2.1 (Luo et al., IEEE CAL 23(1), 2024).
 class DramDevice {
@@ -24,8 +29,6 @@ class DramDevice {
 
   explicit DramDevice(const DramConfig& config);
 
-  /// The open row of a bank, or no_row.
-  [[nodiscard]] std::int64_t open_row(std::uint32_t bank) const { return banks_[bank].row; }
   /// The command that an access to this place needs next.
   [[nodiscard]] DramCommand next_command(const DramPlace& place, bool write) const {
     const std::int64_t row = banks_[place.bank].row;
@@ -40,6 +43,29 @@ class DramDevice {
   /// none of them would have moved the other. A read or write with `close` closes its row by itself.
   void issue(DramCommand command, const DramPlace& place, DramCycle cycle, bool close = false);
 
+  /// The cycles of the commands of one burst, without any other between them; -1: no such command is needed.
+  struct Course {
+    DramCycle precharge = -1;
+    DramCycle activate = -1;
+    DramCycle column = 0;
+
+    [[nodiscard]] DramCommand first_command(bool write) const {
+      return precharge >= 0  ? DramCommand::precharge
+             : activate >= 0 ? DramCommand::activate
+             : write         ? DramCommand::write
+                             : DramCommand::read;
+    }
+    [[nodiscard]] DramCycle first() const {
+      return precharge >= 0 ? precharge : activate >= 0 ? activate : column;
+    }
+  };
+  /// Those of a burst whose rows are opened and closed from cycle `row` on, and its data moved from `column`
+  /// on.
+  [[nodiscard]] Course course(const DramPlace& place, bool write, DramCycle row, DramCycle column) const;
+
+  /// Issues all commands of a course.
+  void issue(const Course& course, const DramPlace& place, bool write, bool close);
+
   [[nodiscard]] bool has_open_row(std::uint32_t rank) const;
   /// When all open rows of a rank may be closed.
   [[nodiscard]] DramCycle earliest_precharge_all(std::uint32_t rank) const;
@@ -53,6 +79,21 @@ class DramDevice {
   /// After so many cycles without another command each bank may be precharged, activated and refreshed.
   [[nodiscard]] DramCycle settling() const { return settling_; }
 
+  /// The refreshes that fall due up to a cycle, if nothing delays them: one each refresh interval.
+  struct DueRefreshes {
+    std::int64_t more = 0;  ///< those after the first
+    DramCycle last = 0;     ///< when the last one is due
+  };
+  /// The first one is due at `due`, which is not after `cycle`.
+  [[nodiscard]] DueRefreshes due_refreshes(DramCycle due, DramCycle cycle) const {
+    const std::int64_t more = (cycle - due) / timing_.refi;
+    return {more, due + more * timing_.refi};
+  }
+
+  /// For which a command has its command bus.
+  [[nodiscard]] DramCycle bus_cycles(DramCommand command) const {
+    return is_column(command) ? column_cycles_ : command == DramCommand::activate ? activate_cycles_ : 1;
+  }
   /// The cycle after the last data of a column command that is issued at `cycle`.
   [[nodiscard]] DramCycle end_of_data(DramCommand command, DramCycle cycle) const {
     return cycle + (command == DramCommand::write ? timing_.cwl : timing_.cl) + timing_.bl;
@@ -80,8 +121,11 @@ class DramDevice {
   void issue_column(DramCommand command, const DramPlace& place, DramCycle cycle);
 
   DramTiming timing_;
+  DramCycle activate_cycles_;
+  DramCycle column_cycles_;
   DramCycle settling_;
   bool one_data_bus_;
+  bool one_command_bus_;
   std::uint32_t banks_of_rank_;
   std::vector<Bank> banks_;
   std::vector<Times> groups_;

@@ -12,7 +12,6 @@ DramInOrder::DramInOrder(const DramConfig& config)
       ranks_(config.ranks),
       burst_bytes_(config.burst_bytes),
       column_cycles_(config.column_cycles),
-      activate_cycles_(config.activate_cycles),
       two_command_buses_(config.two_command_buses),
       close_(config.page == DramPage::closed),
       device_(config),
@@ -21,9 +20,9 @@ DramInOrder::DramInOrder(const DramConfig& config)
 DramService DramInOrder::serve(const DramRequest& request) {
   DramService service;
   for (std::int64_t i = 0; i < request.bursts; ++i) {
-    const Issued issued = burst(request, i + 1 == request.bursts);
+    const DramCycle first = burst(request, i + 1 == request.bursts);
     if (i == 0) {
-      service.first = issued.first;
+      service.first = first;
     }
   }
   service.end = device_.end_of_data(request.write ? DramCommand::write : DramCommand::read, last_column_);
@@ -35,45 +34,54 @@ DramService DramInOrder::serve(const DramRequest& request) {
   return service;
 }
 
-DramInOrder::Issued DramInOrder::burst(const DramRequest& request, bool last) {
+DramCycle DramInOrder::burst(const DramRequest& request, bool last) {
   DramCycle from = std::max(prepared_, request.arrival + 1);
-  Issued issued;
+  if (!columns_.empty() && columns_.back() + column_cycles_ > from) {
+    return burst_by_commands(request, last, from);
+  }
+  for (;;) {
+    const DramCycle column = std::max(from, last_column_ + column_cycles_);
+    const DramDevice::Course course = device_.course(request.place, request.write, from, column);
+    if (course.column < refresh_due_) {
+      device_.issue(course, request.place, request.write, close_ && last);
+      count_start(course.first_command(request.write));
+      if (course.activate >= 0) {
+        ++statistics_.activations;
+        prepared_ = course.activate + device_.bus_cycles(DramCommand::activate);
+      }
+      end_burst(course.column, course.activate >= 0);
+      return course.first();
+    }
+    if (course.first() < refresh_due_) {
+      return burst_by_commands(request, last, from);
+    }
+    from = refresh_before(request, course.first(), from);
+  }
+}
+
+DramCycle DramInOrder::burst_by_commands(const DramRequest& request, bool last, DramCycle from) {
+  DramCycle first = 0;
   bool begun = false;
   bool opened = false;
   for (;;) {
     const DramCommand command = device_.next_command(request.place, request.write);
-    const bool column = command == DramCommand::read || command == DramCommand::write;
+    const bool column = is_column(command);
     DramCycle cycle = std::max(from, device_.earliest(command, request.place));
-    const DramCycle length = command == DramCommand::activate ? activate_cycles_
-                             : column                         ? column_cycles_
-                                                              : 1;
+    const DramCycle length = device_.bus_cycles(command);
     cycle = column ? std::max(cycle, last_column_ + length) : free_slot(cycle, length);
     if (cycle >= refresh_due_ && !opened) {
-      const DramCycle due = refresh_due_;
-      refresh(cycle);
-      // What the refresh costs this access: until its row may be opened again.
-      const DramCycle again = device_.earliest(DramCommand::activate, request.place);
-      statistics_.refresh_stall += period_ * std::max<DramCycle>(0, again - std::max(cycle, due));
-      from = std::max(from, prepared_);
+      from = refresh_before(request, cycle, from);
       continue;
     }
     if (!begun) {
       begun = true;
-      issued.first = cycle;
-      ++(column                             ? statistics_.row_hits
-         : command == DramCommand::activate ? statistics_.row_misses
-                                            : statistics_.row_conflicts);
+      first = cycle;
+      count_start(command);
     }
     device_.issue(command, request.place, cycle, column && close_ && last);
     if (column) {
-      prepared_ = opened ? prepared_ : cycle + (two_command_buses_ ? 0 : length);
-      last_column_ = cycle;
-      columns_.push_back(cycle);
-      while (!columns_.empty() && columns_.front() + column_cycles_ <= prepared_) {
-        columns_.pop_front();
-      }
-      issued.column = cycle;
-      return issued;
+      end_burst(cycle, opened);
+      return first;
     }
     from = cycle + length;
     if (command == DramCommand::activate) {
@@ -84,12 +92,45 @@ DramInOrder::Issued DramInOrder::burst(const DramRequest& request, bool last) {
   }
 }
 
+DramCycle DramInOrder::refresh_before(const DramRequest& request, DramCycle cycle, DramCycle from) {
+  refresh(cycle);
+  // What the refresh costs this access: until its row may be opened again.
+  const DramCycle again = device_.earliest(DramCommand::activate, request.place);
+  statistics_.refresh_stall += period_ * std::max<DramCycle>(0, again - cycle);
+  return std::max(from, prepared_);
+}
+
+void DramInOrder::count_start(DramCommand command) {
+  ++(is_column(command)                 ? statistics_.row_hits
+     : command == DramCommand::activate ? statistics_.row_misses
+                                        : statistics_.row_conflicts);
+}
+
+void DramInOrder::end_burst(DramCycle column, bool opened) {
+  last_column_ = column;
+  if (two_command_buses_) {
+    prepared_ = opened ? prepared_ : column;
+    return;
+  }
+  prepared_ = opened ? prepared_ : column + column_cycles_;
+  std::size_t past = 0;
+  while (past < columns_.size() && columns_[past] + column_cycles_ <= prepared_) {
+    ++past;
+  }
+  if (past == columns_.size()) {
+    columns_.clear();
+  } else if (past > 0) {
+    columns_.erase(columns_.begin(), columns_.begin() + static_cast<std::ptrdiff_t>(past));
+  }
+  if (column + column_cycles_ > prepared_) {
+    columns_.push_back(column);
+  }
+}
+
 DramCycle DramInOrder::free_slot(DramCycle cycle, DramCycle length) const {
-  if (!two_command_buses_) {
-    for (const DramCycle taken : columns_) {
-      if (taken < cycle + length && cycle < taken + column_cycles_) {
-        cycle = taken + column_cycles_;
-      }
+  for (const DramCycle taken : columns_) {
+    if (taken < cycle + length && cycle < taken + column_cycles_) {
+      cycle = taken + column_cycles_;
     }
   }
   return cycle;
@@ -97,8 +138,7 @@ DramCycle DramInOrder::free_slot(DramCycle cycle, DramCycle length) const {
 
 void DramInOrder::refresh(DramCycle cycle) {
   // While nothing is asked for, each refresh begins when it is due: only the last one matters.
-  const std::int64_t more = (cycle - refresh_due_) / timing_.refi;
-  const DramCycle last = refresh_due_ + more * timing_.refi;
+  const auto [more, last] = device_.due_refreshes(refresh_due_, cycle);
   const bool idle = last >= std::max(last_column_, last_refresh_) + device_.settling();
   DramCycle end = std::max(last_column_ + (two_command_buses_ ? 0 : column_cycles_), prepared_);
   for (std::uint32_t rank = 0; rank < ranks_; ++rank) {

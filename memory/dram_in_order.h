@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
+#include <vector>
 
 #include "memory/dram_device.h"
 #include "memory/dram_statistics.h"
@@ -41,15 +41,20 @@ class DramInOrder {
   [[nodiscard]] const DramStatistics& statistics() const { return statistics_; }
 
  private:
-  // Opens the row of an access and issues the command of its first or next burst; returns the cycles of the
-  // first of its commands and of the last.
-  struct Issued {
-    DramCycle first = 0;
-    DramCycle column = 0;
-  };
-  Issued burst(const DramRequest& request, bool last);
+  // Opens the row of an access and issues the command of its first or next burst; returns the cycle of the
+  // first of its commands.
+  DramCycle burst(const DramRequest& request, bool last);
   // The first cycle from `cycle` on in which a command of `length` keeps the bus from no older access.
   [[nodiscard]] DramCycle free_slot(DramCycle cycle, DramCycle length) const;
+  // burst() where refreshes or older accesses may come between its commands, the first at `from` or later.
+  DramCycle burst_by_commands(const DramRequest& request, bool last, DramCycle from);
+  // Does the refreshes that are due before a command at `cycle`; returns from when on the burst's commands
+  // can be issued, not before `from`.
+  DramCycle refresh_before(const DramRequest& request, DramCycle cycle, DramCycle from);
+  // Counts the first command of a burst.
+  void count_start(DramCommand command);
+  // Notes the cycle of a burst's read or write; `opened`: the burst has opened its row.
+  void end_burst(DramCycle column, bool opened);
   // Does the refreshes that are due up to `cycle`.
   void refresh(DramCycle cycle);
 
@@ -58,8 +63,7 @@ class DramInOrder {
   sim::Ticks burst_time_;
   std::uint32_t ranks_;
   std::uint32_t burst_bytes_;
-  DramCycle column_cycles_;    // that a read or write has its command bus
-  DramCycle activate_cycles_;  // that an activation has its bus
+  DramCycle column_cycles_;  // that a read or write has its command bus
   bool two_command_buses_;
   bool close_;
   DramDevice device_;
@@ -68,7 +72,8 @@ class DramInOrder {
   DramCycle last_column_ = -1;  // cycle of the last read or write
   DramCycle refresh_due_;
   DramCycle last_refresh_ = 0;
-  std::deque<DramCycle> columns_;  // cycles of reads and writes from `prepared_` on
+  // Cycles of reads and writes from `prepared_` on; empty where these have a command bus of their own.
+  std::vector<DramCycle> columns_;
 };
 
 }  // namespace marti::memory

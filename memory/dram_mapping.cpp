@@ -63,7 +63,12 @@ DramMapping::DramMapping(const DramConfig& config) : bank_groups_(config.bank_gr
     if (shift + bits > 63) {
       throw sim::KeyError("dram.mapping", "the memory is larger than 2^63 bytes");
     }
-    runs_[index].push_back({shift, up[index], (Address{1} << bits) - 1});
+    const Run run{shift, up[index], (Address{1} << bits) - 1};
+    if (up[index] == 0) {
+      fields_[index].first = run;
+    } else {
+      fields_[index].more.push_back(run);
+    }
     only_columns = only_columns && field == DramField::column;
     if (only_columns) {
       channel_interleave_ <<= bits;
@@ -71,16 +76,6 @@ DramMapping::DramMapping(const DramConfig& config) : bank_groups_(config.bank_gr
     shift += bits;
     up[index] += bits;
   }
-}
-
-DramPlace DramMapping::place(Address address) const {
-  DramPlace place;
-  place.channel = value(DramField::channel, address);
-  place.rank = value(DramField::rank, address);
-  place.group = place.rank * bank_groups_ + value(DramField::bank_group, address);
-  place.bank = place.group * banks_ + value(DramField::bank, address);
-  place.row = value(DramField::row, address);
-  return place;
 }
 
 DramFieldBits parse_dram_field(std::string_view text) {

@@ -26,7 +26,15 @@ class DramMapping {
   explicit DramMapping(const DramConfig& config);
 
   /// Addresses beyond the memory's capacity begin again at its start.
-  [[nodiscard]] DramPlace place(Address address) const;
+  [[nodiscard]] DramPlace place(Address address) const {
+    const std::uint32_t rank = value(DramField::rank, address);
+    const std::uint32_t group = rank * bank_groups_ + value(DramField::bank_group, address);
+    return {.channel = value(DramField::channel, address),
+            .rank = rank,
+            .group = group,
+            .bank = group * banks_ + value(DramField::bank, address),
+            .row = value(DramField::row, address)};
+  }
   [[nodiscard]] std::uint32_t channel(Address address) const { return value(DramField::channel, address); }
 
   /// Bytes in a row that are in the same row of the same channel.
@@ -38,16 +46,22 @@ class DramMapping {
     std::uint32_t up = 0;     // of that bit in the field
     Address mask = 0;
   };
+  // Nearly every field's bits are in one run.
+  struct Field {
+    Run first;
+    std::vector<Run> more;
+  };
 
   [[nodiscard]] std::uint32_t value(DramField field, Address address) const {
-    Address value = 0;
-    for (const Run& run : runs_[static_cast<std::size_t>(field)]) {
+    const Field& bits = fields_[static_cast<std::size_t>(field)];
+    Address value = address >> bits.first.shift & bits.first.mask;
+    for (const Run& run : bits.more) {
       value |= (address >> run.shift & run.mask) << run.up;
     }
     return static_cast<std::uint32_t>(value);
   }
 
-  std::array<std::vector<Run>, dram_field_names.size()> runs_;
+  std::array<Field, dram_field_names.size()> fields_;
   std::uint32_t bank_groups_;
   std::uint32_t banks_;
   std::uint32_t channel_interleave_ = 0;

@@ -86,8 +86,8 @@ DramConfig ddr5_4800() {
 }
 
 // HBM2_2000, 8 Gb: JEDEC JESD235D. The ranks are the two pseudo channels of a channel, 64 bits wide with
-// bursts of
-// 4. Rows are opened and closed over a command bus of their own, on which an activation takes two cycles.
+// bursts of four. Rows are opened and closed over a command bus of their own, on which an activation takes
+// two cycles.
 DramConfig hbm2_2000() {
   DramConfig config;
   config.period = 1000;

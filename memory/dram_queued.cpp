@@ -15,16 +15,20 @@ DramQueued::DramQueued(const DramConfig& config)
       queue_(config.queue),
       cap_(config.reorder_cap),
       two_command_buses_(config.two_command_buses),
-      activate_cycles_(config.activate_cycles),
-      column_cycles_(config.column_cycles),
       close_(config.page == DramPage::closed),
       device_(config),
       refresh_due_(config.timing.refi > 0 ? config.timing.refi : never) {}
 
-std::optional<DramDone> DramQueued::enter(const DramRequest& request, Address address, std::uint64_t tag) {
+std::optional<DramDone> DramQueued::enter(const DramRequest& request, Address address, std::uint64_t tag,
+                                          sim::Ticks known) {
   sim::ensure(request.arrival >= now_, "an access reaches a DRAM channel after a later command");
   if (idle()) {
     catch_up(request.arrival);
+    if (request.bursts == 1) {
+      if (const std::optional<DramDone> done = serve_alone(request, tag, known)) {
+        return done;
+      }
+    }
   }
   if (!request.write && waits_to_be_written(request, address)) {
     ++statistics_.forwarded;
@@ -59,6 +63,30 @@ std::optional<DramDone> DramQueued::enter(const DramRequest& request, Address ad
   fill();
   next_.reset();
   return std::nullopt;
+}
+
+std::optional<DramDone> DramQueued::serve_alone(const DramRequest& request, std::uint64_t tag,
+                                                sim::Ticks known) {
+  const DramCycle from = request.arrival + 1;
+  const DramDevice::Course course =
+      device_.course(request.place, request.write, std::max(next_row_, from), std::max(next_column_, from));
+  if (course.column >= refresh_due_ || sim::multiply_ticks(period_, course.column - 1) >= known) {
+    return std::nullopt;
+  }
+  device_.issue(course, request.place, request.write, close_);
+  const DramCommand moving = request.write ? DramCommand::write : DramCommand::read;
+  if (course.activate >= 0) {
+    use_slot(DramCommand::activate, course.activate);
+    ++statistics_.activations;
+  }
+  use_slot(moving, course.column);
+  count_start(request.arrival, course.first_command(request.write), course.first());
+  count_column(request.write);
+  count_queued(request.arrival, course.column);
+  now_ = course.column;
+  // As step() leaves it, which decides anew at each command by what waits before it.
+  writing_ = request.write || course.activate >= 0;
+  return DramDone{tag, {course.first(), device_.end_of_data(moving, course.column)}};
 }
 
 bool DramQueued::waits_to_be_written(const DramRequest& request, Address address) const {
@@ -132,16 +160,19 @@ void DramQueued::pick_refresh(Pick& best) const {
 DramQueued::Pick DramQueued::pick() const {
   Pick best;
   pick_among(active_, Kind::active, now_, best);
-  if (refresh_due_ != never) {
-    pick_refresh(best);
-  }
   Pick queued;
   pick_among(writing_ ? writes_ : reads_, Kind::queue, now_, queued);
   if (queued.cycle > now_ && write_mode() != writing_) {
     queued = {};
     pick_among(writing_ ? reads_ : writes_, Kind::queue, now_ + 1, queued);
   }
-  return queued.cycle < best.cycle && queued.cycle < refresh_due_ ? queued : best;
+  if (queued.cycle < best.cycle && queued.cycle < refresh_due_) {
+    return queued;
+  }
+  if (refresh_due_ < best.cycle) {
+    pick_refresh(best);
+  }
+  return best;
 }
 
 DramCycle DramQueued::next() {
@@ -180,39 +211,44 @@ std::optional<DramDone> DramQueued::step() {
   return done;
 }
 
-void DramQueued::use_slot(const Pick& pick) {
-  const bool column = is_column(pick.command);
-  const DramCycle free = pick.cycle + (column                                  ? column_cycles_
-                                       : pick.command == DramCommand::activate ? activate_cycles_
-                                                                               : 1);
+void DramQueued::use_slot(DramCommand command, DramCycle cycle) {
+  const DramCycle free = cycle + device_.bus_cycles(command);
   if (!two_command_buses_) {
     next_column_ = next_row_ = free;
   } else {
-    (column ? next_column_ : next_row_) = free;
+    (is_column(command) ? next_column_ : next_row_) = free;
   }
 }
 
-void DramQueued::count_start(const Burst& burst, const Pick& pick) {
-  Access& access = accesses_[burst.access];
-  if (access.service.first == 0) {
-    access.service.first = pick.cycle;
-  }
-  ++(is_column(pick.command)                 ? statistics_.row_hits
-     : pick.command == DramCommand::activate ? statistics_.row_misses
-                                             : statistics_.row_conflicts);
+void DramQueued::count_start(DramCycle arrival, DramCommand command, DramCycle cycle) {
+  ++(is_column(command)                 ? statistics_.row_hits
+     : command == DramCommand::activate ? statistics_.row_misses
+                                        : statistics_.row_conflicts);
   if (stall_begin_ != never) {
-    const DramCycle begin = std::max(stall_begin_, access.arrival);
-    statistics_.refresh_stall += period_ * std::max<DramCycle>(0, std::min(stall_end_, pick.cycle) - begin);
+    const DramCycle begin = std::max(stall_begin_, arrival);
+    statistics_.refresh_stall += period_ * std::max<DramCycle>(0, std::min(stall_end_, cycle) - begin);
     stall_begin_ = never;
   }
 }
 
+void DramQueued::count_column(bool write) {
+  ++(write ? statistics_.write_bursts : statistics_.read_bursts);
+  statistics_.bytes += burst_bytes_;
+  statistics_.data_busy = sim::add_ticks(statistics_.data_busy, burst_time_);
+}
+
+void DramQueued::count_queued(DramCycle arrival, DramCycle last) {
+  statistics_.queued = sim::add_ticks(statistics_.queued, period_ * (last - arrival));
+}
+
 std::optional<DramDone> DramQueued::issue(std::vector<Burst>& from, const Pick& pick) {
-  use_slot(pick);
+  use_slot(pick.command, pick.cycle);
   Burst& burst = from[pick.index];
   if (!burst.begun) {
     burst.begun = true;
-    count_start(burst, pick);
+    Access& access = accesses_[burst.access];
+    access.service.first = access.service.first == 0 ? pick.cycle : access.service.first;
+    count_start(access.arrival, pick.command, pick.cycle);
   }
   const bool column = is_column(pick.command);
   device_.issue(pick.command, burst.place, pick.cycle, column && close_ && burst.last);
@@ -235,21 +271,19 @@ std::optional<DramDone> DramQueued::issue(std::vector<Burst>& from, const Pick& 
   if (leaving.write) {
     unwritten_.erase(unwritten_.find(leaving.address));
   }
-  ++(leaving.write ? statistics_.write_bursts : statistics_.read_bursts);
-  statistics_.bytes += burst_bytes_;
-  statistics_.data_busy = sim::add_ticks(statistics_.data_busy, burst_time_);
+  count_column(leaving.write);
   Access& access = accesses_[leaving.access];
   access.service.end = std::max(access.service.end, device_.end_of_data(pick.command, pick.cycle));
   if (--access.left > 0) {
     return std::nullopt;
   }
-  statistics_.queued = sim::add_ticks(statistics_.queued, period_ * (pick.cycle - access.arrival));
+  count_queued(access.arrival, pick.cycle);
   unused_.push_back(leaving.access);
   return DramDone{access.tag, access.service};
 }
 
 void DramQueued::issue_refresh(const Pick& pick) {
-  use_slot(pick);
+  use_slot(pick.command, pick.cycle);
   if (pick.kind == Kind::precharge_all) {
     device_.precharge_all(refresh_rank_, pick.cycle);
     return;
@@ -268,8 +302,7 @@ void DramQueued::issue_refresh(const Pick& pick) {
 void DramQueued::catch_up(DramCycle cycle) {
   while (refresh_due_ <= cycle) {
     // While nothing is asked for, each refresh begins when it is due: only the last one matters.
-    const std::int64_t more = (cycle - refresh_due_) / timing_.refi;
-    const DramCycle last = refresh_due_ + more * timing_.refi;
+    const auto [more, last] = device_.due_refreshes(refresh_due_, cycle);
     const DramCycle before = std::max({now_, next_row_, last_refresh_});
     if (more > 0 && refresh_rank_ == 0 && last >= before + device_.settling()) {
       for (std::uint32_t rank = 0; rank < ranks_; ++rank) {

@@ -26,9 +26,9 @@ struct DramDone {
 /// allowed gets it. A burst that has opened its row leaves the queue and goes before all others until it has
 /// moved its data; its row is not closed before. With a cap, a burst that so many younger ones of its queue
 /// have overtaken goes before all younger ones. Writes are served when no read waits, or from the moment at
-/// which four fifths of their queue are full until less than one fifth is. A read of bytes that wait to be
-/// written gets them a cycle after its arrival. When a refresh is due, bursts whose rows they have opened
-/// end first, then all rows are closed and each rank is refreshed.
+/// which four fifths of their queue are full until less than one fifth is. A read whose bursts all
+/// wait to be written gets their data a cycle after its arrival. When a refresh is due, bursts whose rows
+/// they have opened end first, then all rows are closed and each rank is refreshed.
 ///
 /// The caller advances it command by command: step() while next() is not later than the next arrival.
 class DramQueued {
@@ -37,9 +37,11 @@ class DramQueued {
 
   explicit DramQueued(const DramConfig& config);
 
-  /// An access that arrives at request.arrival, not before any command issued so far. Nothing if it must
-  /// wait; a read of bytes that wait to be written is done at once.
-  std::optional<DramDone> enter(const DramRequest& request, Address address, std::uint64_t tag);
+  /// An access that arrives at request.arrival, not before any command issued so far. `known`: nothing else
+  /// arrives in cycles that begin before this time. Returns the access if it is done by what is known: a read
+  /// whose data wait to be written, or an access that meets no other.
+  std::optional<DramDone> enter(const DramRequest& request, Address address, std::uint64_t tag,
+                                sim::Ticks known);
   /// The cycle of the next command, if nothing arrives before; never without an access that waits.
   [[nodiscard]] DramCycle next();
   /// Issues the command of that cycle. Returns the access that is done by it, if there is one.
@@ -75,9 +77,6 @@ class DramQueued {
     std::size_t index = 0;  // of the burst
   };
 
-  static bool is_column(DramCommand command) {
-    return command == DramCommand::read || command == DramCommand::write;
-  }
   [[nodiscard]] DramCycle slot(DramCommand command) const {
     return is_column(command) ? next_column_ : next_row_;
   }
@@ -85,6 +84,9 @@ class DramQueued {
   void pick_among(const std::vector<Burst>& bursts, Kind kind, DramCycle from, Pick& best) const;
   void pick_refresh(Pick& best) const;
   [[nodiscard]] Pick pick() const;
+  // Issues all commands of an access of one burst to an idle channel, if the last one comes before the next
+  // refresh and is known to meet no other access.
+  std::optional<DramDone> serve_alone(const DramRequest& request, std::uint64_t tag, sim::Ticks known);
   // Whether all bytes of a read are those of writes that wait.
   [[nodiscard]] bool waits_to_be_written(const DramRequest& request, Address address) const;
   // Makes `cycle` the present; what is served was decided anew in each cycle up to it.
@@ -92,8 +94,13 @@ class DramQueued {
   // Whether writes are to be served, given what waits.
   [[nodiscard]] bool write_mode() const;
   std::optional<DramDone> issue(std::vector<Burst>& from, const Pick& pick);
-  void count_start(const Burst& burst, const Pick& pick);
-  void use_slot(const Pick& pick);
+  // Counts the first command of a burst of an access that arrived at `arrival`.
+  void count_start(DramCycle arrival, DramCommand command, DramCycle cycle);
+  // Counts a burst that has moved its data.
+  void count_column(bool write);
+  // Counts how long an access waited for its last command.
+  void count_queued(DramCycle arrival, DramCycle last);
+  void use_slot(DramCommand command, DramCycle cycle);
   void issue_refresh(const Pick& pick);
   // Moves what waits before the queues into them.
   void fill();
@@ -108,8 +115,6 @@ class DramQueued {
   std::size_t queue_;
   std::int64_t cap_;
   bool two_command_buses_;
-  DramCycle activate_cycles_;
-  DramCycle column_cycles_;
   bool close_;
   DramDevice device_;
   DramStatistics statistics_;

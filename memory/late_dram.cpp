@@ -17,10 +17,6 @@ LateDram::LateDram(const DramConfig& config, const InterconnectSite& site, sim::
       banks_(config.channels),
       writes_(site.ports) {}
 
-void LateDram::ask(const Transaction& transaction, bool write, sim::Ticks arrival) {
-  post(announce(transaction, write, arrival), clock_.cycle_at(arrival) + 1);
-}
-
 std::uint32_t LateDram::announce(const Transaction& transaction, bool write, sim::Ticks arrival) {
   std::uint64_t place = asked_.size();
   if (unused_.empty()) {
@@ -39,7 +35,7 @@ void LateDram::begin_event(std::uint32_t channel) {
   std::erase(channels_[channel].events, site_.engine.now());
 }
 
-std::optional<DramDone> LateDram::advance(std::uint32_t channel, sim::Ticks time) {
+std::optional<DramDone> LateDram::advance(std::uint32_t channel, sim::Ticks known) {
   Channel& c = channels_[channel];
   for (;;) {
     const DramCycle command = c.dram.next();
@@ -49,18 +45,19 @@ std::optional<DramDone> LateDram::advance(std::uint32_t channel, sim::Ticks time
       const DramCycle arrival = clock_.cycle_at(asked.arrival);
       if (arrival < command) {
         c.coming.pop_front();
+        const sim::Ticks next = c.coming.empty() ? known : std::min(known, asked_[c.coming.front()].arrival);
         const Transaction& transaction = asked.transaction;
         const DramRequest request = {mapping_.place(transaction.address),
                                      bursts_of(transaction.address, transaction.bytes, burst_bytes_),
                                      asked.write, arrival};
         if (std::optional<DramDone> done =
-                c.dram.enter(request, transaction.address / burst_bytes_ * burst_bytes_, place)) {
+                c.dram.enter(request, transaction.address & ~Address{burst_bytes_ - 1U}, place, next)) {
           return done;
         }
         continue;
       }
     }
-    if (command == DramQueued::never || decided_at(command) > time) {
+    if (command == DramQueued::never || clock_.ticks(command - 1) >= known) {
       return std::nullopt;
     }
     if (std::optional<DramDone> done = c.dram.step()) {

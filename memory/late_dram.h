@@ -42,17 +42,27 @@ struct LateAccess {
   sim::Ticks ready = 0;  ///< when all its data have moved
 };
 
-/// Posts events of the site's memory class, with the sequence number 1 + channel, at the latest time at which
-/// a channel's next command can be decided: when everything that arrives before it is known.
+/// A command is decided when every access is known that arrives before it. Where that is not yet so, an event
+/// of the site's memory class, with the sequence number 1 + channel, is posted for the time at which it is.
 class LateDram {
  public:
   /// `notice`: every access is announced so long before it arrives, or longer.
   LateDram(const DramConfig& config, const InterconnectSite& site, sim::Ticks notice);
 
-  /// Announces an access; arrivals must not decrease.
-  void ask(const Transaction& transaction, bool write, sim::Ticks arrival);
+  /// Announces an access; arrivals must not decrease. `known`: no access will be announced that arrives
+  /// before. Calls done(LateAccess) for each access that got its last command.
+  template <class Done>
+  void ask(const Transaction& transaction, bool write, sim::Ticks arrival, sim::Ticks known,
+           const Done& done) {
+    const std::uint32_t channel = announce(transaction, write, arrival);
+    if (clock_.ticks(clock_.cycle_at(arrival)) < known) {
+      proceed(channel, known, done);
+    } else {
+      post(channel, clock_.cycle_at(arrival) + 1);
+    }
+  }
   /// ask() for a read of the only port: nothing else arrives before its end, so all commands up to its last
-  /// are decided at once. Calls done(LateAccess) as proceed() does.
+  /// are decided at once.
   template <class Done>
   void ask_alone(const Transaction& transaction, sim::Ticks arrival, const Done& done) {
     const std::uint32_t channel = announce(transaction, false, arrival);
@@ -65,12 +75,9 @@ class LateDram {
   }
   /// Handles the event of a channel; calls done(LateAccess) for each access that got its last command.
   template <class Done>
-  void proceed(std::uint32_t channel, const Done& done) {
+  void handle(std::uint32_t channel, const Done& done) {
     begin_event(channel);
-    while (const std::optional<DramDone> ended = advance(channel, site_.engine.now())) {
-      done(finished(channel, *ended));
-    }
-    wake(channel);
+    proceed(channel, sim::add_ticks(site_.engine.now(), notice_), done);
   }
 
   [[nodiscard]] std::vector<DramStatistics> statistics() const;
@@ -91,11 +98,19 @@ class LateDram {
     std::vector<sim::Ticks> events;    // times of its events; few
   };
 
+  template <class Done>
+  void proceed(std::uint32_t channel, sim::Ticks known, const Done& done) {
+    while (const std::optional<DramDone> ended = advance(channel, known)) {
+      done(finished(channel, *ended));
+    }
+    wake(channel);
+  }
   void begin_event(std::uint32_t channel);
   // Notes an access that will arrive; returns its channel.
   std::uint32_t announce(const Transaction& transaction, bool write, sim::Ticks arrival);
-  // Lets accesses arrive and issues commands that can be decided up to `time`, up to the end of an access.
-  std::optional<DramDone> advance(std::uint32_t channel, sim::Ticks time);
+  // Lets accesses arrive and issues commands, up to the end of an access. `known`: all accesses that arrive
+  // before are announced.
+  std::optional<DramDone> advance(std::uint32_t channel, sim::Ticks known);
   LateAccess finished(std::uint32_t channel, const DramDone& done);
   // Posts the event of the channel's next command, if there is one and no earlier event.
   void wake(std::uint32_t channel);

@@ -34,6 +34,11 @@ struct LayoutConfig {
   std::uint32_t section_alignment = 4096;  ///< a power of two; every section starts on a multiple of it
   NodeOrder node_order = NodeOrder::breadth_first;
   std::uint32_t treelet_bytes = 4096;  ///< the node records of a treelet take at most so many
+
+  /// Bytes from one node record to the next; record_alignment must be valid.
+  [[nodiscard]] std::uint64_t node_stride() const {
+    return (std::uint64_t{node_bytes} + record_alignment - 1) / record_alignment * record_alignment;
+  }
 };
 
 /// Number of records in each section; primitives include quadrics.

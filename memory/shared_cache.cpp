@@ -10,33 +10,66 @@ SharedCache::SharedCache(const SharedCacheConfig& config)
       hit_ticks_(config.clock.cycles(config.hit_cycles)),
       tags_(config.cache, 1) {}
 
+bool SharedCache::holds(std::uint32_t line) {
+  const bool hit = tags_.access(0, line);
+  ++(hit ? statistics_.lookups.hits : statistics_.lookups.misses);
+  return hit;
+}
+
+SharedCache::Hit SharedCache::hit_at(sim::Ticks arrival, sim::Ticks there) {
+  const sim::Ticks start = std::max(arrival, there - hit_ticks_);
+  statistics_.waits.add(start - arrival);
+  return {start, sim::add_ticks(start, hit_ticks_)};
+}
+
 std::optional<SharedCache::Hit> SharedCache::read(Address address, sim::Ticks arrival) {
   const auto line = static_cast<std::uint32_t>(address >> line_shift_);
-  if (!tags_.access(0, line)) {
-    ++statistics_.lookups.misses;
+  if (!holds(line)) {
     missed_ = line;
     missed_at_ = arrival;
     return std::nullopt;
   }
-  ++statistics_.lookups.hits;
-  sim::Ticks start = arrival;
-  if (const auto coming = coming_.find(line); coming != coming_.end()) {
-    start = std::max(arrival, coming->second - hit_ticks_);
-  }
-  statistics_.waits.add(start - arrival);
-  return Hit{start, sim::add_ticks(start, hit_ticks_)};
+  const auto coming = coming_.find(line);
+  return hit_at(arrival, coming == coming_.end() ? arrival : coming->second.ready);
 }
 
-void SharedCache::fill(sim::Ticks ready) {
+void SharedCache::fill(sim::Ticks ready) { note_coming(missed_, {ready, no_port}, missed_at_); }
+
+SharedCache::LateLook SharedCache::read_late(std::uint32_t port, Address address, sim::Ticks arrival) {
+  const auto line = static_cast<std::uint32_t>(address >> line_shift_);
+  if (!holds(line)) {
+    note_coming(line, {not_told, port}, arrival);
+    return {.miss = true, .hit = std::nullopt};
+  }
+  const auto coming = coming_.find(line);
+  if (coming != coming_.end() && coming->second.port != no_port) {
+    waiting_[coming->second.port].push_back({port, arrival});
+    return {};
+  }
+  return {.miss = false, .hit = hit_at(arrival, coming == coming_.end() ? arrival : coming->second.ready)};
+}
+
+std::vector<SharedCache::LateHit> SharedCache::filled(std::uint32_t port, Address address, sim::Ticks ready) {
+  // The line may have been replaced and missed again: then it comes with a later miss.
+  const auto coming = coming_.find(static_cast<std::uint32_t>(address >> line_shift_));
+  if (coming != coming_.end() && coming->second.port == port) {
+    coming->second = {ready, no_port};
+  }
+  std::vector<LateHit> hits;
+  if (const auto waiting = waiting_.extract(port)) {
+    for (const Waiting& read : waiting.mapped()) {
+      hits.push_back({read.port, read.arrival, hit_at(read.arrival, ready)});
+    }
+  }
+  return hits;
+}
+
+void SharedCache::note_coming(std::uint32_t line, const Coming& coming, sim::Ticks now) {
   if (coming_.size() >= most_coming_) {
-    forget_arrived(missed_at_);
+    std::erase_if(coming_, [&](const auto& entry) { return entry.second.ready <= now; });
     most_coming_ = std::max<std::size_t>(64, 2 * coming_.size());
   }
-  coming_.insert_or_assign(missed_, ready);
-}
-
-void SharedCache::forget_arrived(sim::Ticks now) {
-  std::erase_if(coming_, [&](const auto& line) { return line.second <= now; });
+  coming_.insert_or_assign(line, coming);
 }
 
 }  // namespace marti::memory

@@ -3,14 +3,17 @@
 //
 // Reads look it up in the order in which they arrive. A hit is ready `hit_cycles` after its arrival and
 // delays no other access; but a line that its bank is still reading is not ready before the bank has it. A
-// miss costs no time here: it goes to its bank at once, and its line is brought in. Writes go through to
-// their banks and update a line that the cache holds, so no line is ever stale; they bring no line in and do
-// not count as a use of a line.
+// miss costs no time here: it goes to its bank at once, and its line is brought in. Where a bank tells the
+// end of a read later, hits of such a line wait until it is told. Writes go through to their banks and update
+// a line that the cache holds, so no line is ever stale; they bring no line in and do not count as a use of a
+// line.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <unordered_map>
+#include <vector>
 
 #include "memory/cache.h"
 #include "memory/tag_array.h"
@@ -44,20 +47,53 @@ class SharedCache {
   /// Says that the line of the last miss arrives at `ready`.
   void fill(sim::Ticks ready);
 
+  /// What a read finds whose bank tells later when a line arrives.
+  struct LateLook {
+    bool miss = false;
+    std::optional<Hit> hit;  ///< nothing after a miss, and for a line whose arrival has not been told
+  };
+  /// read() for the read of a port that has no other. After a miss call filled() when the arrival is known;
+  /// until then reads of the line wait there.
+  LateLook read_late(std::uint32_t port, Address address, sim::Ticks arrival);
+  /// A read that waited for a line, and its hit.
+  struct LateHit {
+    std::uint32_t port = 0;
+    sim::Ticks arrival = 0;
+    Hit hit;
+  };
+  /// Says that the line of the port's last miss, which read `address`, arrives at `ready`. Returns the reads
+  /// that waited for it, oldest first.
+  std::vector<LateHit> filled(std::uint32_t port, Address address, sim::Ticks ready);
+
   [[nodiscard]] const SharedCacheStatistics& statistics() const { return statistics_; }
 
  private:
-  void forget_arrived(sim::Ticks now);
+  static constexpr std::uint32_t no_port = std::numeric_limits<std::uint32_t>::max();
+  static constexpr sim::Ticks not_told = std::numeric_limits<sim::Ticks>::max();
+  struct Coming {
+    sim::Ticks ready = not_told;
+    std::uint32_t port = no_port;  // whose miss brings the line, until its arrival is told
+  };
+  struct Waiting {
+    std::uint32_t port = 0;
+    sim::Ticks arrival = 0;
+  };
 
+  // Whether a line is here or on its way.
+  bool holds(std::uint32_t line);
+  // A hit of a line that arrives at `there`.
+  Hit hit_at(sim::Ticks arrival, sim::Ticks there);
+  void note_coming(std::uint32_t line, const Coming& coming, sim::Ticks now);
   unsigned line_shift_;
   sim::Ticks hit_ticks_;
   TagArray tags_;
   SharedCacheStatistics statistics_;
   std::uint32_t missed_ = 0;
   sim::Ticks missed_at_ = 0;
-  /// The arrival times of lines brought in lately. Past ones are removed from time to time.
-  std::unordered_map<std::uint32_t, sim::Ticks> coming_;
+  // Lines brought in lately. Those that have arrived are removed from time to time.
+  std::unordered_map<std::uint32_t, Coming> coming_;
   std::size_t most_coming_ = 64;
+  std::unordered_map<std::uint32_t, std::vector<Waiting>> waiting_;  // for the line of a port's miss
 };
 
 }  // namespace marti::memory

@@ -290,8 +290,10 @@ MeasuredWalks measure_walks(const accel::Structure& structure, std::span<const a
 namespace {
 
 /// The mixes in which the traversals differ.
+using RayMixes = std::array<OperationMix, ray_kinds>;
+
 struct WalkMixes {
-  std::array<OperationMix, ray_kinds> ray;
+  RayMixes ray;
   OperationMix branch;
   OperationMix leaf;
   OperationMix test;
@@ -317,6 +319,12 @@ OperationMixes with_shading(const WalkMixes& walk) {
 }  // namespace
 
 const OperationMixes& operation_mixes(accel::Traversal traversal) {
+  // At a ray's start every width of a bounding volume hierarchy does the same work.
+  static constexpr RayMixes bvh_rays = {{{32207, 35790, 7000, 1000, 39305, 8166},
+                                         {36000, 34000, 6000, 0, 44000, 6473},
+                                         {44182, 55183, 7000, 1000, 50000, 7792},
+                                         {45000, 59000, 7000, 2000, 50000, 7003},
+                                         {52146, 66428, 8000, 3000, 51282, 40279}}};
   // Columns: add, multiply, divide, square root, compare, integer. Rows: camera, shadow, reflected,
   // refracted, scattered ray; branch; leaf; test.
   static const std::array<OperationMixes, accel::traversals> table = {
@@ -360,35 +368,19 @@ const OperationMixes& operation_mixes(accel::Traversal traversal) {
                     .branch = {},
                     .leaf = {},
                     .test = {18014, 12011, 0, 0, 3328, 0}}),
-      with_shading({.ray = {{{32207, 35790, 7000, 1000, 39305, 8166},
-                             {36000, 34000, 6000, 0, 44000, 6473},
-                             {44182, 55183, 7000, 1000, 50000, 7792},
-                             {45000, 59000, 7000, 2000, 50000, 7003},
-                             {52146, 66428, 8000, 3000, 51282, 40279}}},
+      with_shading({.ray = bvh_rays,
                     .branch = {12037, 12039, 0, 0, 15188, 1063},
                     .leaf = {},
                     .test = {21123, 14429, 347, 0, 9159, 0}}),
-      with_shading({.ray = {{{32207, 35790, 7000, 1000, 39305, 8166},
-                             {36000, 34000, 6000, 0, 44000, 6473},
-                             {44182, 55183, 7000, 1000, 50000, 7792},
-                             {45000, 59000, 7000, 2000, 50000, 7003},
-                             {52146, 66428, 8000, 3000, 51282, 40279}}},
+      with_shading({.ray = bvh_rays,
                     .branch = {24038, 24042, 0, 0, 29525, 1209},
                     .leaf = {},
                     .test = {21260, 14536, 362, 0, 9421, 0}}),
-      with_shading({.ray = {{{32207, 35790, 7000, 1000, 39305, 8166},
-                             {36000, 34000, 6000, 0, 44000, 6473},
-                             {44182, 55183, 7000, 1000, 50000, 7792},
-                             {45000, 59000, 7000, 2000, 50000, 7003},
-                             {52146, 66428, 8000, 3000, 51282, 40279}}},
+      with_shading({.ray = bvh_rays,
                     .branch = {46224, 46230, 0, 0, 55658, 1306},
                     .leaf = {},
                     .test = {21274, 14546, 364, 0, 9447, 0}}),
-      with_shading({.ray = {{{32207, 35790, 7000, 1000, 39305, 8166},
-                             {36000, 34000, 6000, 0, 44000, 6473},
-                             {44182, 55183, 7000, 1000, 50000, 7792},
-                             {45000, 59000, 7000, 2000, 50000, 7003},
-                             {52146, 66428, 8000, 3000, 51282, 40279}}},
+      with_shading({.ray = bvh_rays,
                     .branch = {52196, 52203, 0, 0, 55652, 52647},
                     .leaf = {},
                     .test = {21195, 14485, 355, 0, 9298, 0}}),

@@ -37,11 +37,6 @@ void check_dram(const MachineConfig& config) {
                         "\"frfcfs\" has nothing to choose from on a bus that each read keeps until its data "
                         "have come; use interconnect.mode = \"split\", or \"fcfs\"");
   }
-  if (config.l2.sharing == SecondLevel::shared) {
-    throw sim::KeyError("dram.policy",
-                        "a shared second level must know at a miss when its line will come, and with "
-                        "\"frfcfs\" that depends on later accesses; use \"fcfs\", or private second levels");
-  }
 }
 
 void check_distribution(const MachineConfig& config) {

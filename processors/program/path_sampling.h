@@ -43,7 +43,7 @@ class PathNumbers {
   /// A number of [0, 1) with 53 bits. `bounce`: surface points before this one. `further`: added to `draw`.
   [[nodiscard]] constexpr double at(std::uint32_t bounce, Draw draw, std::uint32_t further = 0) const {
     const std::uint64_t place = std::uint64_t{bounce} * a_point + static_cast<std::uint32_t>(draw) + further;
-    return unit_number(sim::mix(start_ + place * 0x9e3779b97f4a7c15U));
+    return unit_number(sim::mix(start_ + place * sim::mix_step));
   }
 
  private:

@@ -6,6 +6,8 @@
 
 #include <cstdint>
 
+#include "sim/mix.h"
+
 namespace marti::processors {
 
 /// A point of the image, in pixels from its upper left corner: pixel (x, y) is [x, x + 1) by [y, y + 1).
@@ -24,15 +26,9 @@ struct SamplePoint {
 /// neighbouring seeds share no sequence of numbers.
 [[nodiscard]] constexpr std::uint64_t counted_bits(std::uint32_t x, std::uint32_t y, std::uint32_t sample,
                                                    std::uint32_t dimension, std::uint64_t seed) {
-  const auto mixed = [](std::uint64_t h) {
-    h = (h ^ (h >> 30U)) * 0xbf58476d1ce4e5b9U;
-    h = (h ^ (h >> 27U)) * 0x94d049bb133111ebU;
-    return h ^ (h >> 31U);
-  };
   const std::uint64_t counter =
       std::uint64_t{y} << 32U | std::uint64_t{x} << 16U | std::uint64_t{sample} << 2U | dimension;
-  return mixed(mixed(counter + 0x9e3779b97f4a7c15U) ^
-               mixed(seed * 0x9e3779b97f4a7c15U + 0x632be59bd9b4e019U));
+  return sim::mixed_bits(sim::mix(counter) ^ sim::mixed_bits(seed * sim::mix_step + 0x632be59bd9b4e019U));
 }
 
 /// counted_bits() as a number of [0, 1).

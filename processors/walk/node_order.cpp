@@ -123,7 +123,8 @@ std::vector<std::uint32_t> node_rank(const accel::Topology& topology, bool leaf_
     case memory::NodeOrder::treelets:
       break;
   }
-  return treelet_rank(topology, leaf_records, std::max(1U, layout.treelet_bytes / layout.node_bytes));
+  const std::uint64_t most = layout.treelet_bytes / layout.node_stride();
+  return treelet_rank(topology, leaf_records, std::max(1U, static_cast<std::uint32_t>(most)));
 }
 
 }  // namespace marti::processors

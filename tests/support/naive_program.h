@@ -176,8 +176,11 @@ class NaiveProgram {
     }
   }
   void order_by_treelets(std::vector<std::uint32_t>& order) {
-    const std::size_t room =
-        std::max<std::size_t>(1, machine_.layout.treelet_bytes / machine_.layout.node_bytes);
+    std::uint32_t apart = machine_.layout.node_bytes;
+    while (apart % machine_.layout.record_alignment != 0) {
+      ++apart;
+    }
+    const std::size_t room = std::max<std::size_t>(1, machine_.layout.treelet_bytes / apart);
     std::vector<std::uint32_t> tops = {0};
     std::size_t filled = 1;
     while (!tops.empty()) {

@@ -307,6 +307,7 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
   machine.layout.quadric_bytes = static_cast<std::uint32_t>(pick(random, 1, 100));
   machine.layout.node_order = static_cast<memory::NodeOrder>(pick(random, 0, 2));
   machine.layout.treelet_bytes = static_cast<std::uint32_t>(pick(random, 1, 400));
+  machine.layout.record_alignment = 1U << pick(random, 0, 6);
   machine.cache.organisation = static_cast<processors::CacheOrganisation>(pick(random, 0, 2));
   machine.cache.hit_cycles = pick(random, 0, 2);
   machine.cache.cache.line = 1U << pick(random, 2, 6);
@@ -382,8 +383,7 @@ inline void add_random_dram(Random& random, processors::MachineConfig& machine) 
   dram.timing.refi = pick(random, 0, 1) == 0 ? 0 : dram.timing.refi;
   const bool held = machine.interconnect.kind == memory::InterconnectKind::bus &&
                     machine.interconnect.mode == memory::BusMode::held;
-  if (!held && machine.l2.sharing != processors::SecondLevel::shared &&
-      machine.build.sharing != processors::Sharing::shared) {
+  if (!held && machine.build.sharing != processors::Sharing::shared) {
     dram.policy = static_cast<memory::DramPolicy>(pick(random, 0, 1));
   }
   machine.banks.dram = dram;

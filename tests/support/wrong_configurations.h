@@ -118,8 +118,6 @@ inline const std::vector<WrongConfiguration>& wrong_configurations() {
       {"[memory]\nmodel = \"dram\"\n[dram]\ntrefi = 300\n", {"wrong.toml:4", "dram.trefi", "433"}},
       {"[memory]\nmodel = \"dram\"\n[dram]\npolicy = \"frfcfs\"\n[interconnect]\nmode = \"held\"\n",
        {"wrong.toml:4", "dram.policy", "interconnect.mode"}},
-      {"[memory]\nmodel = \"dram\"\n[dram]\npolicy = \"frfcfs\"\n[l2]\nsharing = \"shared\"\n",
-       {"wrong.toml:4", "dram.policy", "second level"}},
       {"[memory]\nmodel = \"dram\"\n[dram]\npolicy = \"frfcfs\"\n[build]\nsharing = \"shared\"\n",
        {"wrong.toml:6", "build.sharing", "dram.policy"}},
       {"[memory]\nmodel = \"dram\"\n[dram]\npolicy = \"frfcfs\"\n[record]\ncritical_path = true\n",

@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "memory/cache.h"
 #include "memory/dram_presets.h"
 #include "memory/interconnect.h"
 #include "tests/support/memory_ports.h"
@@ -97,6 +98,60 @@ TEST(DramInterconnect, EventsFindWhatTheChannelsAloneDo) {
     }
     EXPECT_EQ(bytes, 300 * std::int64_t{line});
   }
+}
+
+// A second level before channels that change the order: which reads hit is decided in the order of arrival,
+// the channels get the misses and the writes, and a hit waits for its line.
+TEST(DramInterconnect, HitsOfASharedCacheWaitForLinesThatAQueueBrings) {
+  std::int64_t waited = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    std::mt19937_64 random(seed);
+    BankConfig banks = dram_of(DramPolicy::frfcfs, 1U << random() % 3);
+    banks.cache = SharedCacheConfig{
+        {.size = line << random() % 6, .line = line, .ways = 1}, sim::Clock::from_period(1100), 3};
+    const sim::Ticks hit_ticks = 3300;
+    const InterconnectConfig config = crossbar(static_cast<std::int64_t>(random() % 40));
+    const sim::Ticks latency = config.clock.cycles(config.latency_cycles);
+    std::vector<IssuedTransaction> issues = random_issues(random, 300);
+    for (IssuedTransaction& issue : issues) {
+      // Few lines, so that some are missed again while they are on their way. Writes are to other addresses.
+      issue.transaction.address = (issue.write ? 1U << 30U : 0U) + random() % 48 * line * 33;
+    }
+    Cache tags(banks.cache->cache);
+    std::vector<IssuedTransaction> below;
+    std::vector<std::size_t> brought_by(issues.size());  // place in `below` of the access that has the data
+    std::vector<bool> hits(issues.size());
+    std::map<Address, std::size_t> last_miss;
+    for (std::size_t i = 0; i < issues.size(); ++i) {
+      const Address address = issues[i].transaction.address;
+      hits[i] = !issues[i].write && tags.read(address, 1) == 0;
+      if (!hits[i]) {
+        last_miss[address] = below.size();
+        below.push_back(issues[i]);
+      }
+      brought_by[i] = last_miss.at(address);
+    }
+    const std::vector<DramService> served = alone(*banks.dram, below, latency);
+    const Ports ports(config, banks, issues, 300);
+    for (std::size_t i = 0; i < issues.size(); ++i) {
+      const sim::Ticks there = served[brought_by[i]].end * banks.dram->period;
+      const sim::Ticks arrival = issues[i].at + latency;
+      const sim::Ticks ready = hits[i] ? std::max(arrival + hit_ticks, there) : there;
+      waited += hits[i] && there > arrival + hit_ticks ? 1 : 0;
+      if (issues[i].write) {
+        ASSERT_EQ(ports.written[i], std::vector<sim::Ticks>{ready}) << "seed " << seed << ", access " << i;
+        continue;
+      }
+      ASSERT_EQ(ports.services[i].size(), 1U) << "seed " << seed << ", access " << i;
+      const Service& service = ports.services[i].front();
+      ASSERT_EQ(service.done, ready + latency) << "seed " << seed << ", access " << i;
+      ASSERT_EQ(service.done - issues[i].at,
+                service.wait_bank + service.bank + service.transfer + service.wait_interconnect);
+    }
+    const SharedCacheStatistics& cache = *ports.interconnect->cache_statistics();
+    EXPECT_EQ(cache.lookups.hits, std::count(hits.begin(), hits.end(), true));
+  }
+  EXPECT_GT(waited, 500);
 }
 
 // An open row that is never left, whose commands need no time between each other, is a bank that takes as

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -120,13 +121,20 @@ inline StreamResult run_queued(const DramConfig& config, const std::vector<Strea
       result.services[done->tag] = done->service;
     }
   };
+  // When the next access of a channel arrives; of every fourth access the channel is not told.
+  std::vector<sim::Ticks> known(accesses.size());
+  std::vector<sim::Ticks> next(config.channels, std::numeric_limits<sim::Ticks>::max());
+  for (std::size_t i = accesses.size(); i-- > 0;) {
+    known[i] = i % 4 == 0 ? 0 : next[accesses[i].place.channel];
+    next[accesses[i].place.channel] = accesses[i].arrival * config.period;
+  }
   for (std::size_t i = 0; i < accesses.size(); ++i) {
     const StreamAccess& access = accesses[i];
     DramQueued& channel = channels[access.place.channel];
     while (channel.next() <= access.arrival) {
       note(channel.step());
     }
-    note(channel.enter({access.place, bursts, access.write, access.arrival}, access.address, i));
+    note(channel.enter({access.place, bursts, access.write, access.arrival}, access.address, i, known[i]));
   }
   for (DramQueued& channel : channels) {
     while (!channel.idle()) {

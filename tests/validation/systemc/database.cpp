@@ -26,7 +26,8 @@ Database::Database(const memory::LayoutConfig& config, const processors::WorkLog
       break;
     case memory::NodeOrder::treelets:
       // The first treelet has the root's record, too.
-      const std::uint64_t most = std::max(1U, config.treelet_bytes / config.node_bytes);
+      const std::uint64_t apart = round_up(config.node_bytes, config.record_alignment);
+      const std::uint64_t most = std::max<std::uint64_t>(1, config.treelet_bytes / apart);
       place_treelet(0, most, first);
       break;
   }
