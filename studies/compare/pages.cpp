@@ -204,6 +204,16 @@ ComparisonPage page_of(const TwoSweeps& found) {
   }
   points.tables.push_back(std::move(table));
   page.parts.push_back(std::move(points));
+  if (!found.times.empty()) {
+    SortedTable times;
+    times.title = "Mean change of a node's time by activity";
+    times.columns = {{"activity", false, "see docs/model.md, Accounting"},
+                     {"of A's frame", true, "B less A by the frame time of A, mean of the points"}};
+    for (const MeanChange& time : found.times) {
+      times.rows.push_back({{time.activity, {}}, {change_percent(time.of_frame), time.of_frame}});
+    }
+    page.parts.push_back({"time", "Where the time went", {}, {}, {std::move(times)}});
+  }
   SortedTable counters;
   counters.title = "Counters that differ, each where it differs most";
   counters.columns = {{"counter", false, "name in the catalogue: marti figures"},

@@ -10,6 +10,7 @@
 
 #include "studies/compare/alike.h"
 #include "studies/compare/compare_text.h"
+#include "studies/compare/cycles.h"
 #include "studies/compare/frames.h"
 #include "studies/keys/setting_value.h"
 #include "studies/sweep/store/sweep_reader.h"
@@ -143,9 +144,36 @@ void enter_counters(const Differences& differences, const JoinedPoint& point,
   std::for_each(differences.one_side.begin(), differences.one_side.end(), enter);
 }
 
+// Sums over the joined points.
+struct Sums {
+  std::map<std::string, CounterDifference> counters;
+  std::map<std::string, double> times;  // changes by A's frame time
+  std::size_t timed = 0;                // points that have the times
+};
+
+void enter_times(const ComparedResult& one, const ComparedResult& other, Sums& sums) {
+  const std::vector<ActivityTime> times = activity_times(one, other);
+  const auto end = static_cast<double>(frame_time(one));
+  for (const ActivityTime& time : times) {
+    sums.times[time.activity] += time.change / end;
+  }
+  sums.timed += times.empty() ? 0 : 1;
+}
+
+std::vector<MeanChange> mean_changes(const Sums& sums) {
+  std::vector<MeanChange> means;
+  for (const auto& [activity, sum] : sums.times) {
+    means.push_back({activity, sum / static_cast<double>(sums.timed)});
+  }
+  std::stable_sort(means.begin(), means.end(), [](const MeanChange& x, const MeanChange& y) {
+    return std::abs(x.of_frame) > std::abs(y.of_frame);
+  });
+  return means;
+}
+
 // One pair of timed points.
 void join(const Sweep& a, const Sweep& b, const StoredPoint& from, const StoredPoint& to, TwoSweeps& found,
-          std::map<std::string, CounterDifference>& counters) {
+          Sums& sums) {
   ComparedResult one = result_of(a, from);
   ComparedResult other = result_of(b, to);
   JoinedPoint point;
@@ -158,7 +186,7 @@ void join(const Sweep& a, const Sweep& b, const StoredPoint& from, const StoredP
   point.end_b = frame_time(other);
   const Differences differences = differences_of(one, other);
   found.equal += differences.numbers.empty() && differences.one_side.empty() ? 1 : 0;
-  enter_counters(differences, point, counters);
+  enter_counters(differences, point, sums.counters);
   keep_what_sweeps_have(one);
   keep_what_sweeps_have(other);
   point.settings = differences_of(one, other).settings;
@@ -168,6 +196,9 @@ void join(const Sweep& a, const Sweep& b, const StoredPoint& from, const StoredP
     }
   }
   point.same_frame = same_frame(one, other);
+  if (point.same_frame) {
+    enter_times(one, other, sums);
+  }
   found.points.push_back(std::move(point));
 }
 
@@ -221,7 +252,7 @@ TwoSweeps two_sweeps(const std::filesystem::path& file_a, const std::filesystem:
                   std::set<std::string>(other_axes.begin(), other_axes.end());
   const Index from = index_of(a, found.by_axes ? &axes : nullptr);
   const Index to = index_of(b, found.by_axes ? &axes : nullptr);
-  std::map<std::string, CounterDifference> counters;
+  Sums sums;
   for (const auto& [key, point] : from) {
     const auto other = to.find(key);
     if (other == to.end()) {
@@ -230,7 +261,7 @@ TwoSweeps two_sweeps(const std::filesystem::path& file_a, const std::filesystem:
     }
     ++found.both;
     if (point->done && other->second->done) {
-      join(a, b, *point, *other->second, found, counters);
+      join(a, b, *point, *other->second, found, sums);
     }
   }
   for (const auto& [key, point] : to) {
@@ -243,7 +274,8 @@ TwoSweeps two_sweeps(const std::filesystem::path& file_a, const std::filesystem:
   sort_points(found);
   take_settings(found);
   found.counters = counted_figures().size();
-  for (auto& [name, counter] : counters) {
+  found.times = mean_changes(sums);
+  for (auto& [name, counter] : sums.counters) {
     found.differing.push_back(std::move(counter));
   }
   std::stable_sort(found.differing.begin(), found.differing.end(), [](const auto& x, const auto& y) {

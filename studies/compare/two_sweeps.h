@@ -37,6 +37,13 @@ struct CounterDifference {
   std::size_t points = 0;  ///< that differ in it
 };
 
+/// How much of A's frame time an activity's change is, as the mean of the points: all activities together are
+/// the mean of B / A - 1.
+struct MeanChange {
+  std::string activity;
+  double of_frame = 0.0;
+};
+
 struct TwoSweeps {
   std::string a;  ///< names
   std::string b;
@@ -53,7 +60,9 @@ struct TwoSweeps {
   std::size_t equal = 0;          ///< of these, equal in every counter
   std::vector<Difference> frame;  ///< settings in which the frames of joined points differ
   std::vector<Difference> alike;  ///< settings that differ at every joined point by the same values
-  std::size_t counters = 0;       ///< that are compared
+  /// Of the comparable points that have the times; the largest change first, then by name.
+  std::vector<MeanChange> times;
+  std::size_t counters = 0;                  ///< that are compared
   std::vector<CounterDifference> differing;  ///< the largest relative difference first
 
   /// Joined points of equal frames; they are the first ones of `points`.

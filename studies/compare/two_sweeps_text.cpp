@@ -45,6 +45,14 @@ std::string point_lines(const TwoSweeps& found, bool all) {
   return text + and_more(shown, found.points.size());
 }
 
+std::string time_lines(const TwoSweeps& found) {
+  std::string text = "\n  mean change of a node's time, of A's frame\n";
+  for (const MeanChange& time : found.times) {
+    text += fmt::format("  {:<20}{:>12}\n", time.activity, change_percent(time.of_frame));
+  }
+  return text;
+}
+
 std::string counter_lines(const TwoSweeps& found, bool all) {
   std::string text =
       fmt::format("\n  {:<32}{:>9}  the largest difference, at points of A and B\n", "counter", "points");
@@ -146,7 +154,11 @@ std::string text_of(const TwoSweeps& found, bool all) {
   if (found.differing.empty()) {
     return text;
   }
-  return text + "\n" + point_lines(found, all) + counter_lines(found, all);
+  text += "\n" + point_lines(found, all);
+  if (!found.times.empty()) {
+    text += time_lines(found);
+  }
+  return text + counter_lines(found, all);
 }
 
 std::string json_of(const TwoSweeps& found) {
@@ -171,6 +183,10 @@ std::string json_of(const TwoSweeps& found) {
                       {"ratio", point.same_frame ? Json(point.ratio()) : Json()},
                       {"settings", settings_json(point.settings)}});
   }
+  Json times = Json::array();
+  for (const MeanChange& time : found.times) {
+    times.push_back({{"name", "time_" + time.activity}, {"change_of_frame", time.of_frame}});
+  }
   const std::optional<double> mean = mean_ratio(found);
   return json_text(Json{{"a", {{"name", found.a}, {"version", found.version_a}}},
                         {"b", {{"name", found.b}, {"version", found.version_b}}},
@@ -182,6 +198,7 @@ std::string json_of(const TwoSweeps& found) {
                         {"points_only_in_a", found.only_a},
                         {"points_only_in_b", found.only_b},
                         {"mean_ratio", mean ? Json(*mean) : Json()},
+                        {"times", times},
                         {"frame_settings", settings_json(found.frame)},
                         {"settings", settings_json(found.alike)},
                         {"points", points},

@@ -97,14 +97,6 @@ Table table_of(std::string name, std::string title, std::span<const std::string>
   return table;
 }
 
-std::string text_of(const Cell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) {
-    return *text;
-  }
-  const std::optional<double> number = number_of(cell);
-  return number ? fmt::format("{:.6g}", *number) : "-";
-}
-
 }  // namespace
 
 Table points_table(const SweepReader& reader) {
@@ -142,9 +134,7 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
   marked_names.emplace_back("best");
   // Times that differ in their fourth digit must not look alike.
   const bool time = figure.unit == "ps";
-  const auto shown = [time](const Cell& cell) {
-    return time ? seconds(static_cast<sim::Ticks>(*number_of(cell))) : text_of(cell);
-  };
+  const auto shown = [&figure](const Cell& cell) { return figure_text(cell, figure.unit, "-"); };
   std::string text = fmt::format("best {}{}: {} at a cost of {:g}:", metric,
                                  budget ? fmt::format(" within {:g}", *budget) : std::string(),
                                  shown(rows[*best].figures.back()), offers[*best].cost);

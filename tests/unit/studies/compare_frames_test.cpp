@@ -236,6 +236,47 @@ TEST(CompareFrames, SweepsWithTheSameAxesAreJoinedByThem) {
   EXPECT_EQ(found["settings"][0]["b"], 4);
 }
 
+// Where the time of two sweeps went: the changes of all activities are that of the frame times.
+TEST(CompareFrames, TheTimesOfTwoSweepsAddUp) {
+  const TemporaryDirectory directory;
+  const auto fill = [&](const char* name, const std::vector<std::string>& more) {
+    SweepPlan plan;
+    SettingsPool pool;
+    std::vector<RunResult> runs;
+    for (const char* nodes : {"1", "3", "8"}) {
+      std::vector<std::string> assignments = more;
+      assignments.push_back(std::string("machine.nodes=") + nodes);
+      sim::Config config = sim::Config::from_text(run_schema(), small_scene, "test", assignments);
+      runs.push_back(run(config));
+      const std::size_t i = plan.machines.size();
+      plan.machines.push_back({test::made_key(i), 0, runs[i].machine, pool.share(runs[i].values)});
+      plan.points.push_back({{static_cast<std::int64_t>(std::stoi(nodes))}, i, 0, 1.0});
+    }
+    plan.axes = {"machine.nodes"};
+    plan.frames.push_back({test::made_key(100), runs[0].frame_config, {}});
+    fs::create_directories(directory.path() / name);
+    SweepStore store(directory.path() / name / "results.sqlite", plan);
+    store.add_frame(0, frame_row(runs[0].functional, 0), 1);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      store.add_result(i, sweep_row(runs[i].machine, runs[i].timed), 1);
+    }
+    store.close();
+    return directory.path() / name;
+  };
+  const json found = compared(fill("a", {}), fill("b", {"cache.size=512B", "node.clock=50MHz"}));
+  ASSERT_EQ(found["points"].size(), 3U);
+  double expected = 0.0;
+  for (const json& point : found["points"]) {
+    expected += (point["ratio"].get<double>() - 1.0) / 3.0;
+  }
+  double sum = 0.0;
+  for (const json& time : found["times"]) {
+    sum += time["change_of_frame"].get<double>();
+  }
+  EXPECT_NEAR(sum, expected, 1e-9);
+  EXPECT_NE(expected, 0.0);
+}
+
 std::string page_of_files(const fs::path& a, const fs::path& b) {
   ComparisonPage page;
   (void)compare_results(a.string(), b.string(), {}, &page);
