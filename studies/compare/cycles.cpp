@@ -36,7 +36,9 @@ std::int64_t rounded_mean(std::int64_t sum, std::int64_t nodes) {
 }
 
 double mean(std::int64_t sum, std::int64_t nodes) {
-  return static_cast<double>(sum / nodes) + static_cast<double>(sum % nodes) / static_cast<double>(nodes);
+  const std::int64_t whole = sum / nodes;
+  const std::int64_t rest = sum % nodes;
+  return static_cast<double>(whole) + static_cast<double>(rest) / static_cast<double>(nodes);
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ Json value_of(sim::ValueType type, const Json& json) {
 
 nlohmann::ordered_json setting_value(const sim::Schema& schema, std::string_view key,
                                      const std::string& toml) {
-  const Json json = parsed(toml);
+  Json json = parsed(toml);
   const std::optional<std::size_t> index = schema.find(key);
   if (!index) {
     return json;
