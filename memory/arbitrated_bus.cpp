@@ -79,8 +79,7 @@ void ArbitratedBus::late_read(const LateAccess& read) {
   Port& port = ports_[read.transaction.port];
   port.service.wait_bank = read.start - read.arrival;
   port.service.bank = read.ready - read.start;
-  site_.engine.post(
-      sim::Event::make(read.ready, site_.reply_class, site_.first_component + read.transaction.port));
+  post_reply(read.transaction.port, read.ready);
 }
 
 void ArbitratedBus::grant() {
@@ -142,7 +141,7 @@ void ArbitratedBus::grant_read(const Request& request) {
     take(request.asked, address_);
     ports_[port].service = service;
     ports_[port].bytes = bytes;
-    site_.engine.post(sim::Event::make(access.ready, site_.reply_class, site_.first_component + port));
+    post_reply(port, access.ready);
     return;
   }
   const Ticks data = beats_(bytes);

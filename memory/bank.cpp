@@ -47,7 +47,7 @@ BankAccess Banks::read_otherwise(Address address, std::uint32_t bytes, sim::Tick
   const BankAccess read =
       dram_ ? access_dram(address, bytes, false, arrival) : access(bank_of(address), arrival);
   if (cache_) {
-    cache_->fill(read.ready);
+    cache_->fill(address, arrival, read.ready);
   }
   return read;
 }

@@ -58,7 +58,7 @@ void Banked::finish(const LateAccess& access) {
   late_read(access);
   if (SharedCache* const cache = banks_.cache()) {
     for (const SharedCache::LateHit& read :
-         cache->filled(transaction.port, transaction.address, access.ready)) {
+         cache->tell(transaction.port, transaction.address, access.ready)) {
       late_read({{.port = read.port}, false, read.arrival, read.hit.start, read.hit.ready});
     }
   }

@@ -11,7 +11,8 @@ class LateDram;
 struct LateAccess;
 
 /// Banks, or DRAM channels in their place. Where the end of an access is known when it arrives, banks() tells
-/// it at once. Else late() is true: an access is asked for, and its end is told later.
+/// it at once. Else late() is true: an access is asked for, and its end is told as soon as no later arrival
+/// can change it, which may be at once.
 class Banked : public Interconnect {
  public:
   void proceed(std::uint32_t port, std::uint32_t sequence) override;
@@ -27,17 +28,21 @@ class Banked : public Interconnect {
   ~Banked() override;
 
  protected:
-  /// `notice`: every access is asked for so long before it arrives, or longer. `one_at_a_time`: accesses
-  /// arrive at distances of at least `notice`.
+  /// `notice`: every access is asked for so long before it arrives, or longer. `one_at_a_time`: between two
+  /// arrivals there is at least that time, as on a bus that sends one address after the other.
   Banked(const BankConfig& banks, const InterconnectSite& site, sim::Ticks notice, bool one_at_a_time);
 
   [[nodiscard]] bool late() const { return late_ != nullptr; }
   /// Where accesses end late: an access that arrives at `arrival`, in order of arrival. A write is reported
   /// to the client when its data have been written.
   void ask_late(const Transaction& transaction, bool write, sim::Ticks arrival);
-  /// A read's data will be ready at read.ready, which is not in the past. Of the transaction only the port is
-  /// given.
+  /// A read's data will be ready at read.ready, which is not in the past. Uses only the port of the
+  /// transaction: of a read that waited for another port's line the rest is not set.
   virtual void late_read(const LateAccess& read) = 0;
+  /// Posts the event of the site's reply class for a port's read whose data are ready at `ready`.
+  void post_reply(std::uint32_t port, sim::Ticks ready) {
+    site_.engine.post_in_order(sim::Event::make(ready, site_.reply_class, site_.first_component + port));
+  }
   /// When a write is done, given when its bank has served it.
   [[nodiscard]] virtual sim::Ticks end_of_write(const LateAccess& write) const;
 
@@ -52,7 +57,7 @@ class Banked : public Interconnect {
   void finish(const LateAccess& access);
 
   std::unique_ptr<LateDram> late_;
-  // How long after an arrival the next access may arrive.
+  // The least time from one arrival to the next.
   sim::Ticks distance_;
 };
 

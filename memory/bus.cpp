@@ -28,7 +28,7 @@ void Bus::late_read(const LateAccess& read) {
   const std::uint32_t port = read.transaction.port;
   pending_[port].service.wait_bank = read.start - read.arrival;
   pending_[port].service.bank = read.ready - read.start;
-  site_.engine.post_in_order(sim::Event::make(read.ready, site_.reply_class, site_.first_component + port));
+  post_reply(port, read.ready);
 }
 
 }  // namespace marti::memory

@@ -83,8 +83,7 @@ void Bus::read_for(Client& client, const Transaction& transaction) {
       // The one port asks for nothing before its data have come, so nothing can take the bus until then.
       send_data(client, transaction.port, access.ready);
     } else {
-      site_.engine.post_in_order(
-          sim::Event::make(access.ready, site_.reply_class, site_.first_component + transaction.port));
+      post_reply(transaction.port, access.ready);
     }
     return;
   }

@@ -36,8 +36,7 @@ void Crossbar::late_read(const LateAccess& read) {
   Pending& pending = pending_[read.transaction.port];
   pending.arrival = read.arrival;
   pending.access = {read.start, read.ready};
-  site_.engine.post(
-      sim::Event::make(read.ready, site_.reply_class, site_.first_component + read.transaction.port));
+  post_reply(read.transaction.port, read.ready);
 }
 
 void Crossbar::reply(std::uint32_t port) {

@@ -27,7 +27,7 @@ class DramClock {
   [[nodiscard]] sim::Ticks ticks(DramCycle cycle) const { return sim::multiply_ticks(period_, cycle); }
 
  private:
-  // Leaves so much room that no sum of times of commands overflows.
+  // Leaves room for sums of times of commands, and keeps numbers below the 2^62 that a Divider takes.
   static constexpr sim::Ticks latest = std::numeric_limits<sim::Ticks>::max() / 4;
 
   sim::Ticks period_;

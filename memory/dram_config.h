@@ -77,8 +77,8 @@ struct DramConfig {
   std::int64_t column_cycles = 1;    ///< that a read or write has it
   DramPolicy policy = DramPolicy::fcfs;
   DramPage page = DramPage::open;
-  std::uint32_t queue = 32;        ///< frfcfs: reads, and as many writes, that a channel chooses from
-  std::uint32_t reorder_cap = 16;  ///< frfcfs: younger accesses that may go before one; 0: any number
+  std::uint32_t queue = 32;        ///< frfcfs: bursts read, and as many written, that a channel chooses from
+  std::uint32_t reorder_cap = 16;  ///< frfcfs: younger bursts that may go before one; 0: any number
   /// From the least significant bit above a burst upwards.
   std::vector<DramFieldBits> mapping = {{DramField::column, 0}, {DramField::channel, 0},
                                         {DramField::rank, 0},   {DramField::bank_group, 0},

@@ -8,6 +8,7 @@
 
 #include "memory/dram_config.h"
 #include "memory/dram_mapping.h"
+#include "memory/dram_statistics.h"
 
 namespace marti::memory {
 
@@ -19,6 +20,13 @@ enum class DramCommand : std::uint8_t { activate, precharge, read, write };
 /// Whether a command moves data.
 [[nodiscard]] constexpr bool is_column(DramCommand command) {
   return command == DramCommand::read || command == DramCommand::write;
+}
+
+/// Counts what a burst finds whose first command this is.
+inline void count_first(DramStatistics& statistics, DramCommand command) {
+  ++(is_column(command)                 ? statistics.row_hits
+     : command == DramCommand::activate ? statistics.row_misses
+                                        : statistics.row_conflicts);
 }
 
 /// Knows times and states, but no requests: a controller decides which command comes next. Times are those of
@@ -59,8 +67,8 @@ class DramDevice {
       return precharge >= 0 ? precharge : activate >= 0 ? activate : column;
     }
   };
-  /// Those of a burst whose rows are opened and closed from cycle `row` on, and its data moved from `column`
-  /// on.
+  /// The course of a burst whose precharge and activation are issued from cycle `row` on, and whose read or
+  /// write is issued from cycle `column` on.
   [[nodiscard]] Course course(const DramPlace& place, bool write, DramCycle row, DramCycle column) const;
 
   /// Issues all commands of a course.

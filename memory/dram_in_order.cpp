@@ -6,7 +6,7 @@
 namespace marti::memory {
 
 DramInOrder::DramInOrder(const DramConfig& config)
-    : timing_(config.timing),
+    : refi_(config.timing.refi),
       period_(config.period),
       burst_time_(config.burst_time()),
       ranks_(config.ranks),
@@ -26,10 +26,7 @@ DramService DramInOrder::serve(const DramRequest& request) {
     }
   }
   service.end = device_.end_of_data(request.write ? DramCommand::write : DramCommand::read, last_column_);
-  (request.write ? statistics_.write_bursts : statistics_.read_bursts) += request.bursts;
-  statistics_.bytes += request.bursts * burst_bytes_;
-  statistics_.data_busy =
-      sim::add_ticks(statistics_.data_busy, sim::multiply_ticks(burst_time_, request.bursts));
+  statistics_.count_moved(request.write, request.bursts, burst_bytes_, burst_time_);
   statistics_.queued = sim::add_ticks(statistics_.queued, period_ * (last_column_ - request.arrival));
   return service;
 }
@@ -44,7 +41,7 @@ DramCycle DramInOrder::burst(const DramRequest& request, bool last) {
     const DramDevice::Course course = device_.course(request.place, request.write, from, column);
     if (course.column < refresh_due_) {
       device_.issue(course, request.place, request.write, close_ && last);
-      count_start(course.first_command(request.write));
+      count_first(statistics_, course.first_command(request.write));
       if (course.activate >= 0) {
         ++statistics_.activations;
         prepared_ = course.activate + device_.bus_cycles(DramCommand::activate);
@@ -76,7 +73,7 @@ DramCycle DramInOrder::burst_by_commands(const DramRequest& request, bool last, 
     if (!begun) {
       begun = true;
       first = cycle;
-      count_start(command);
+      count_first(statistics_, command);
     }
     device_.issue(command, request.place, cycle, column && close_ && last);
     if (column) {
@@ -88,6 +85,8 @@ DramCycle DramInOrder::burst_by_commands(const DramRequest& request, bool last, 
       ++statistics_.activations;
       opened = true;
       prepared_ = from;
+      // Where reads and writes have a command bus of their own, only the device holds them back.
+      from = two_command_buses_ ? cycle : from;
     }
   }
 }
@@ -98,12 +97,6 @@ DramCycle DramInOrder::refresh_before(const DramRequest& request, DramCycle cycl
   const DramCycle again = device_.earliest(DramCommand::activate, request.place);
   statistics_.refresh_stall += period_ * std::max<DramCycle>(0, again - cycle);
   return std::max(from, prepared_);
-}
-
-void DramInOrder::count_start(DramCommand command) {
-  ++(is_column(command)                 ? statistics_.row_hits
-     : command == DramCommand::activate ? statistics_.row_misses
-                                        : statistics_.row_conflicts);
 }
 
 void DramInOrder::end_burst(DramCycle column, bool opened) {
@@ -158,7 +151,7 @@ void DramInOrder::refresh(DramCycle cycle) {
   prepared_ = end;
   const std::int64_t done = idle ? more + 1 : 1;
   statistics_.refreshes += done * ranks_;
-  refresh_due_ += done * timing_.refi;
+  refresh_due_ += done * refi_;
 }
 
 }  // namespace marti::memory

@@ -46,19 +46,18 @@ class DramInOrder {
   DramCycle burst(const DramRequest& request, bool last);
   // The first cycle from `cycle` on in which a command of `length` keeps the bus from no older access.
   [[nodiscard]] DramCycle free_slot(DramCycle cycle, DramCycle length) const;
-  // burst() where refreshes or older accesses may come between its commands, the first at `from` or later.
+  // burst(), command by command: for bursts between whose commands a refresh or an older access's read or
+  // write may come. No command comes before `from`.
   DramCycle burst_by_commands(const DramRequest& request, bool last, DramCycle from);
   // Does the refreshes that are due before a command at `cycle`; returns from when on the burst's commands
   // can be issued, not before `from`.
   DramCycle refresh_before(const DramRequest& request, DramCycle cycle, DramCycle from);
-  // Counts the first command of a burst.
-  void count_start(DramCommand command);
   // Notes the cycle of a burst's read or write; `opened`: the burst has opened its row.
   void end_burst(DramCycle column, bool opened);
   // Does the refreshes that are due up to `cycle`.
   void refresh(DramCycle cycle);
 
-  DramTiming timing_;
+  DramCycle refi_;
   sim::Ticks period_;
   sim::Ticks burst_time_;
   std::uint32_t ranks_;

@@ -7,7 +7,8 @@
 namespace marti::memory {
 
 DramQueued::DramQueued(const DramConfig& config)
-    : timing_(config.timing),
+    : refi_(config.timing.refi),
+      rfc_(config.timing_of_commands().rfc),
       period_(config.period),
       burst_time_(config.burst_time()),
       ranks_(config.ranks),
@@ -81,11 +82,11 @@ std::optional<DramDone> DramQueued::serve_alone(const DramRequest& request, std:
   }
   use_slot(moving, course.column);
   count_start(request.arrival, course.first_command(request.write), course.first());
-  count_column(request.write);
+  statistics_.count_moved(request.write, 1, burst_bytes_, burst_time_);
   count_queued(request.arrival, course.column);
   now_ = course.column;
   // As step() leaves it, which decides anew at each command by what waits before it.
-  writing_ = request.write || course.activate >= 0;
+  writing_ = request.write || (course.activate >= 0 && course.activate < course.column);
   return DramDone{tag, {course.first(), device_.end_of_data(moving, course.column)}};
 }
 
@@ -221,20 +222,12 @@ void DramQueued::use_slot(DramCommand command, DramCycle cycle) {
 }
 
 void DramQueued::count_start(DramCycle arrival, DramCommand command, DramCycle cycle) {
-  ++(is_column(command)                 ? statistics_.row_hits
-     : command == DramCommand::activate ? statistics_.row_misses
-                                        : statistics_.row_conflicts);
+  count_first(statistics_, command);
   if (stall_begin_ != never) {
     const DramCycle begin = std::max(stall_begin_, arrival);
     statistics_.refresh_stall += period_ * std::max<DramCycle>(0, std::min(stall_end_, cycle) - begin);
     stall_begin_ = never;
   }
-}
-
-void DramQueued::count_column(bool write) {
-  ++(write ? statistics_.write_bursts : statistics_.read_bursts);
-  statistics_.bytes += burst_bytes_;
-  statistics_.data_busy = sim::add_ticks(statistics_.data_busy, burst_time_);
 }
 
 void DramQueued::count_queued(DramCycle arrival, DramCycle last) {
@@ -271,7 +264,7 @@ std::optional<DramDone> DramQueued::issue(std::vector<Burst>& from, const Pick& 
   if (leaving.write) {
     unwritten_.erase(unwritten_.find(leaving.address));
   }
-  count_column(leaving.write);
+  statistics_.count_moved(leaving.write, 1, burst_bytes_, burst_time_);
   Access& access = accesses_[leaving.access];
   access.service.end = std::max(access.service.end, device_.end_of_data(pick.command, pick.cycle));
   if (--access.left > 0) {
@@ -293,9 +286,9 @@ void DramQueued::issue_refresh(const Pick& pick) {
   ++statistics_.refreshes;
   if (++refresh_rank_ == ranks_) {
     stall_begin_ = refresh_due_;
-    stall_end_ = pick.cycle + timing_.rfc;
+    stall_end_ = pick.cycle + rfc_;
     refresh_rank_ = 0;
-    refresh_due_ += timing_.refi;
+    refresh_due_ += refi_;
   }
 }
 
@@ -312,8 +305,8 @@ void DramQueued::catch_up(DramCycle cycle) {
       next_column_ = two_command_buses_ ? next_column_ : next_row_;
       statistics_.refreshes += (more + 1) * ranks_;
       stall_begin_ = last;
-      stall_end_ = last_refresh_ + timing_.rfc;
-      refresh_due_ = last + timing_.refi;
+      stall_end_ = last_refresh_ + rfc_;
+      refresh_due_ = last + refi_;
       return;
     }
     Pick refresh;

@@ -37,8 +37,8 @@ class DramQueued {
 
   explicit DramQueued(const DramConfig& config);
 
-  /// An access that arrives at request.arrival, not before any command issued so far. `known`: nothing else
-  /// arrives in cycles that begin before this time. Returns the access if it is done by what is known: a read
+  /// An access that arrives at request.arrival, not before any command issued so far. `known`, in ticks: no
+  /// further access arrives earlier. Returns the access if no further one can change when it is done: a read
   /// whose data wait to be written, or an access that meets no other.
   std::optional<DramDone> enter(const DramRequest& request, Address address, std::uint64_t tag,
                                 sim::Ticks known);
@@ -96,8 +96,6 @@ class DramQueued {
   std::optional<DramDone> issue(std::vector<Burst>& from, const Pick& pick);
   // Counts the first command of a burst of an access that arrived at `arrival`.
   void count_start(DramCycle arrival, DramCommand command, DramCycle cycle);
-  // Counts a burst that has moved its data.
-  void count_column(bool write);
   // Counts how long an access waited for its last command.
   void count_queued(DramCycle arrival, DramCycle last);
   void use_slot(DramCommand command, DramCycle cycle);
@@ -107,7 +105,8 @@ class DramQueued {
   // Issues the refreshes that were due up to `cycle` while nothing waited.
   void catch_up(DramCycle cycle);
 
-  DramTiming timing_;
+  DramCycle refi_;
+  DramCycle rfc_;
   sim::Ticks period_;
   sim::Ticks burst_time_;
   std::uint32_t ranks_;

@@ -24,6 +24,13 @@ struct DramStatistics {
   sim::Ticks refresh_stall = 0;
   sim::Ticks queued = 0;
 
+  /// Counts bursts that move their data, each so many bytes in so much time of the data bus.
+  void count_moved(bool write, std::int64_t bursts, std::uint32_t burst_bytes, sim::Ticks burst_time) {
+    (write ? write_bursts : read_bursts) += bursts;
+    bytes += bursts * burst_bytes;
+    data_busy = sim::add_ticks(data_busy, sim::multiply_ticks(burst_time, bursts));
+  }
+
   static constexpr auto counters() {
     using S = DramStatistics;
     using C = sim::Counter<S>;

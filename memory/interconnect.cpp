@@ -31,6 +31,11 @@ std::unique_ptr<Interconnect> make_interconnect(const InterconnectConfig& config
     throw sim::UserError(
         "an ideal interconnect has no memory behind it that a shared cache could stand before");
   }
+  if (config.kind == InterconnectKind::bus && config.mode == BusMode::held && banks.dram &&
+      banks.dram->policy == DramPolicy::frfcfs) {
+    throw sim::UserError(
+        "a DRAM has nothing to choose from on a bus that each read keeps until its data have come");
+  }
   switch (config.kind) {
     case InterconnectKind::ideal:
       return std::make_unique<Ideal>(config, site);

@@ -59,8 +59,8 @@ struct Service {
   sim::Ticks bank = 0;
 };
 
-/// The issuer of transactions. Both calls may come during the request itself, with a future time, or they
-/// come later.
+/// The issuer of transactions. Both calls may come during the request itself, with a future time, or later;
+/// write_done also during a request of another port. A client must not make requests in them.
 class InterconnectClient {
  public:
   virtual ~InterconnectClient() = default;

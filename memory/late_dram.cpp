@@ -68,11 +68,12 @@ std::optional<DramDone> LateDram::advance(std::uint32_t channel, sim::Ticks know
 
 LateAccess LateDram::finished(std::uint32_t channel, const DramDone& done) {
   const Asked& asked = asked_[done.tag];
+  // A read that is served from the queue of writes has no command: it begins and ends in one cycle.
   const bool forwarded = done.service.first == done.service.end;
   const std::int64_t bursts =
       forwarded ? 0 : bursts_of(asked.transaction.address, asked.transaction.bytes, burst_bytes_);
   unused_.push_back(done.tag);
-  const sim::Ticks start = std::max(asked.arrival, clock_.ticks(done.service.first - 1));
+  const sim::Ticks start = clock_.ticks(done.service.first - 1);
   banks_[channel].add(sim::multiply_ticks(burst_ticks_, bursts), start - asked.arrival);
   return {asked.transaction, asked.write, asked.arrival, start, clock_.ticks(done.service.end)};
 }

@@ -49,8 +49,8 @@ class LateDram {
   /// `notice`: every access is announced so long before it arrives, or longer.
   LateDram(const DramConfig& config, const InterconnectSite& site, sim::Ticks notice);
 
-  /// Announces an access; arrivals must not decrease. `known`: no access will be announced that arrives
-  /// before. Calls done(LateAccess) for each access that got its last command.
+  /// Announces an access; arrivals must not decrease. `known`: every access announced later arrives at this
+  /// time or after it. Calls done(LateAccess) for each access that got its last command.
   template <class Done>
   void ask(const Transaction& transaction, bool write, sim::Ticks arrival, sim::Ticks known,
            const Done& done) {
@@ -108,8 +108,8 @@ class LateDram {
   void begin_event(std::uint32_t channel);
   // Notes an access that will arrive; returns its channel.
   std::uint32_t announce(const Transaction& transaction, bool write, sim::Ticks arrival);
-  // Lets accesses arrive and issues commands, up to the end of an access. `known`: all accesses that arrive
-  // before are announced.
+  // Lets accesses arrive and issues commands, up to the end of an access. `known`: every access announced
+  // later arrives at this time or after it.
   std::optional<DramDone> advance(std::uint32_t channel, sim::Ticks known);
   LateAccess finished(std::uint32_t channel, const DramDone& done);
   // Posts the event of the channel's next command, if there is one and no earlier event.

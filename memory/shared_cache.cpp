@@ -10,7 +10,7 @@ SharedCache::SharedCache(const SharedCacheConfig& config)
       hit_ticks_(config.clock.cycles(config.hit_cycles)),
       tags_(config.cache, 1) {}
 
-bool SharedCache::holds(std::uint32_t line) {
+bool SharedCache::look_up(std::uint32_t line) {
   const bool hit = tags_.access(0, line);
   ++(hit ? statistics_.lookups.hits : statistics_.lookups.misses);
   return hit;
@@ -23,21 +23,21 @@ SharedCache::Hit SharedCache::hit_at(sim::Ticks arrival, sim::Ticks there) {
 }
 
 std::optional<SharedCache::Hit> SharedCache::read(Address address, sim::Ticks arrival) {
-  const auto line = static_cast<std::uint32_t>(address >> line_shift_);
-  if (!holds(line)) {
-    missed_ = line;
-    missed_at_ = arrival;
+  const std::uint32_t line = line_of(address);
+  if (!look_up(line)) {
     return std::nullopt;
   }
   const auto coming = coming_.find(line);
   return hit_at(arrival, coming == coming_.end() ? arrival : coming->second.ready);
 }
 
-void SharedCache::fill(sim::Ticks ready) { note_coming(missed_, {ready, no_port}, missed_at_); }
+void SharedCache::fill(Address address, sim::Ticks arrival, sim::Ticks ready) {
+  note_coming(line_of(address), {ready, no_port}, arrival);
+}
 
 SharedCache::LateLook SharedCache::read_late(std::uint32_t port, Address address, sim::Ticks arrival) {
-  const auto line = static_cast<std::uint32_t>(address >> line_shift_);
-  if (!holds(line)) {
+  const std::uint32_t line = line_of(address);
+  if (!look_up(line)) {
     note_coming(line, {not_told, port}, arrival);
     return {.miss = true, .hit = std::nullopt};
   }
@@ -49,9 +49,9 @@ SharedCache::LateLook SharedCache::read_late(std::uint32_t port, Address address
   return {.miss = false, .hit = hit_at(arrival, coming == coming_.end() ? arrival : coming->second.ready)};
 }
 
-std::vector<SharedCache::LateHit> SharedCache::filled(std::uint32_t port, Address address, sim::Ticks ready) {
+std::vector<SharedCache::LateHit> SharedCache::tell(std::uint32_t port, Address address, sim::Ticks ready) {
   // The line may have been replaced and missed again: then it comes with a later miss.
-  const auto coming = coming_.find(static_cast<std::uint32_t>(address >> line_shift_));
+  const auto coming = coming_.find(line_of(address));
   if (coming != coming_.end() && coming->second.port == port) {
     coming->second = {ready, no_port};
   }

@@ -44,15 +44,15 @@ class SharedCache {
   };
   /// Looks up a read that arrives at `arrival`, in order of arrival. After a miss (std::nullopt) call fill().
   std::optional<Hit> read(Address address, sim::Ticks arrival);
-  /// Says that the line of the last miss arrives at `ready`.
-  void fill(sim::Ticks ready);
+  /// Says that the line of a miss of this address at `arrival` comes at `ready`.
+  void fill(Address address, sim::Ticks arrival, sim::Ticks ready);
 
   /// What a read finds whose bank tells later when a line arrives.
   struct LateLook {
     bool miss = false;
     std::optional<Hit> hit;  ///< nothing after a miss, and for a line whose arrival has not been told
   };
-  /// read() for the read of a port that has no other. After a miss call filled() when the arrival is known;
+  /// read() for the read of a port that has no other. After a miss call tell() when the arrival is known;
   /// until then reads of the line wait there.
   LateLook read_late(std::uint32_t port, Address address, sim::Ticks arrival);
   /// A read that waited for a line, and its hit.
@@ -63,7 +63,7 @@ class SharedCache {
   };
   /// Says that the line of the port's last miss, which read `address`, arrives at `ready`. Returns the reads
   /// that waited for it, oldest first.
-  std::vector<LateHit> filled(std::uint32_t port, Address address, sim::Ticks ready);
+  std::vector<LateHit> tell(std::uint32_t port, Address address, sim::Ticks ready);
 
   [[nodiscard]] const SharedCacheStatistics& statistics() const { return statistics_; }
 
@@ -72,24 +72,27 @@ class SharedCache {
   static constexpr sim::Ticks not_told = std::numeric_limits<sim::Ticks>::max();
   struct Coming {
     sim::Ticks ready = not_told;
-    std::uint32_t port = no_port;  // whose miss brings the line, until its arrival is told
+    std::uint32_t port = no_port;  // whose miss brings the line; no_port once `ready` is known
   };
   struct Waiting {
     std::uint32_t port = 0;
     sim::Ticks arrival = 0;
   };
 
-  // Whether a line is here or on its way.
-  bool holds(std::uint32_t line);
+  // Looks a line up and counts it; brings a missing one in. True if it was here or on its way.
+  bool look_up(std::uint32_t line);
   // A hit of a line that arrives at `there`.
   Hit hit_at(sim::Ticks arrival, sim::Ticks there);
+  // Notes when a line comes, and forgets lines that have come before `now`.
   void note_coming(std::uint32_t line, const Coming& coming, sim::Ticks now);
+  [[nodiscard]] std::uint32_t line_of(Address address) const {
+    return static_cast<std::uint32_t>(address >> line_shift_);
+  }
+
   unsigned line_shift_;
   sim::Ticks hit_ticks_;
   TagArray tags_;
   SharedCacheStatistics statistics_;
-  std::uint32_t missed_ = 0;
-  sim::Ticks missed_at_ = 0;
   // Lines brought in lately. Those that have arrived are removed from time to time.
   std::unordered_map<std::uint32_t, Coming> coming_;
   std::size_t most_coming_ = 64;

@@ -73,7 +73,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
     }
   }
 
-  // Only a bus posts events in order: those of its data.
+  // Only the events of data that are ready are posted in order.
   void handle_in_order(const sim::Event& event) {
     sim::ensure(event.event_class() == static_cast<std::uint8_t>(EventClass::reply),
                 "an event that is no reply was posted in order");

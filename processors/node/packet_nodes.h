@@ -301,7 +301,8 @@ class PacketNodes : public NodeArray {
     cursor.writes = cursor.writes + 1 == depth ? 0 : cursor.writes + 1;
   }
 
-  // Called during the write by first-come-first-served memories; by others later, oldest write first.
+  // Called when the end of the node's oldest write not reported yet is known: during the write, during a
+  // transaction of another node, or in an event of the memory.
   void write_done(std::uint32_t node, sim::Ticks done) {
     last_write_done_ = done;
     end_ = std::max(end_, done);

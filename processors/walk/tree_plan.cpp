@@ -24,7 +24,7 @@ TreePlan::TreePlan(const accel::Topology& topology, std::vector<BranchStart> sta
       places_(topology.nodes.size()),
       written_(topology.nodes.size()),
       section_alignment_(config.layout.section_alignment) {
-  stride_ = round_up(config.layout.node_bytes, config.layout.record_alignment);
+  stride_ = config.layout.node_stride();
   for (std::uint32_t node = 0; node < places_.size(); ++node) {
     const accel::TopologyNode& branch = topology_.nodes[node];
     if (branch.leaf) {

@@ -36,9 +36,9 @@ std::uint64_t memory_of(const processors::WorkLog& log) {
   return bytes;
 }
 
-class LogCache::Book : public std::enable_shared_from_this<Book> {
+class LogCache::Entries : public std::enable_shared_from_this<Entries> {
  public:
-  explicit Book(std::uint64_t limit) : limit_(limit) {}
+  explicit Entries(std::uint64_t limit) : limit_(limit) {}
 
   void put(std::size_t frame, FrameLog log) {
     const std::lock_guard lock(mutex_);
@@ -63,7 +63,7 @@ class LogCache::Book : public std::enable_shared_from_this<Book> {
     }
     entry->last_used = ++clock_;
     return {entry->log.get(),
-            [book = shared_from_this(), entry](const FrameLog*) { book->give_back(*entry); }};
+            [table = shared_from_this(), entry](const FrameLog*) { table->give_back(*entry); }};
   }
 
   void drop(std::size_t frame) {
@@ -181,14 +181,14 @@ class LogCache::Book : public std::enable_shared_from_this<Book> {
   std::uint64_t clock_ = 0;
 };
 
-LogCache::LogCache(std::uint64_t memory_limit) : book_(std::make_shared<Book>(memory_limit)) {}
+LogCache::LogCache(std::uint64_t memory_limit) : table_(std::make_shared<Entries>(memory_limit)) {}
 LogCache::~LogCache() = default;
 
-void LogCache::put(std::size_t frame, FrameLog log) { book_->put(frame, std::move(log)); }
+void LogCache::put(std::size_t frame, FrameLog log) { table_->put(frame, std::move(log)); }
 std::shared_ptr<const FrameLog> LogCache::take(std::size_t frame, const Trace& trace) {
-  return book_->take(frame, trace);
+  return table_->take(frame, trace);
 }
-void LogCache::drop(std::size_t frame) { book_->drop(frame); }
-std::uint64_t LogCache::in_memory() const { return book_->in_memory(); }
+void LogCache::drop(std::size_t frame) { table_->drop(frame); }
+std::uint64_t LogCache::in_memory() const { return table_->in_memory(); }
 
 }  // namespace marti::studies

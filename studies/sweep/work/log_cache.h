@@ -49,8 +49,8 @@ class LogCache {
   [[nodiscard]] std::uint64_t in_memory() const;
 
  private:
-  class Book;
-  std::shared_ptr<Book> book_;  ///< shared with what is in use
+  class Entries;
+  std::shared_ptr<Entries> table_;  ///< shared with what is in use
 };
 
 }  // namespace marti::studies

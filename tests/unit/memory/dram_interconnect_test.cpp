@@ -154,6 +154,40 @@ TEST(DramInterconnect, HitsOfASharedCacheWaitForLinesThatAQueueBrings) {
   EXPECT_GT(waited, 500);
 }
 
+// On a bus that sends one address at a time, commands are decided before the next address can come. What the
+// channels do is what they do alone with the arrivals that the bus gives them.
+TEST(DramInterconnect, ABusDecidesEarlyWhatTheChannelsAloneDo) {
+  for (std::uint64_t seed = 300; seed < 360; ++seed) {
+    std::mt19937_64 random(seed);
+    BankConfig banks = dram_of(DramPolicy::frfcfs, 1U << random() % 3);
+    banks.dram->page = random() % 2 == 0 ? DramPage::open : DramPage::closed;
+    InterconnectConfig config = crossbar(0);
+    config.kind = InterconnectKind::bus;
+    config.address_cycles = static_cast<std::int64_t>(random() % 60);
+    const std::vector<IssuedTransaction> issues = random_issues(random, 300);
+    const sim::Ticks address = config.clock.cycles(config.address_cycles);
+    std::vector<IssuedTransaction> sent = issues;  // when the bus takes each
+    sim::Ticks free = 0;
+    for (IssuedTransaction& issue : sent) {
+      issue.at = std::max(issue.at, free);
+      free = issue.at + address;
+    }
+    const std::vector<DramService> expected = alone(*banks.dram, sent, address);
+    const Ports ports(config, banks, issues, 300);
+    for (std::uint32_t i = 0; i < issues.size(); ++i) {
+      const sim::Ticks ready = expected[i].end * banks.dram->period;
+      if (issues[i].write) {
+        ASSERT_EQ(ports.written[i], std::vector<sim::Ticks>{ready}) << "seed " << seed << ", access " << i;
+        continue;
+      }
+      const Service& service = ports.services[i].front();
+      const sim::Ticks start = (expected[i].first - 1) * banks.dram->period;
+      ASSERT_EQ(service.bank, ready - start) << "seed " << seed << ", access " << i;
+      ASSERT_EQ(service.wait_bank, start - sent[i].at - address) << "seed " << seed << ", access " << i;
+    }
+  }
+}
+
 // An open row that is never left, whose commands need no time between each other, is a bank that takes as
 // long for every access and can begin one in each cycle.
 TEST(DramInterconnect, AMemoryOfOneRowIsABankOfFixedTime) {

@@ -111,8 +111,9 @@ inline StreamResult run_in_order(const DramConfig& config, const std::vector<Str
   return result;
 }
 
+/// `foresight`: channels are told when their next access arrives, and may serve what meets no other at once.
 inline StreamResult run_queued(const DramConfig& config, const std::vector<StreamAccess>& accesses,
-                               std::int64_t bursts) {
+                               std::int64_t bursts, bool foresight = true) {
   StreamResult result;
   result.services.resize(accesses.size());
   std::vector<DramQueued> channels(config.channels, DramQueued(config));
@@ -121,11 +122,11 @@ inline StreamResult run_queued(const DramConfig& config, const std::vector<Strea
       result.services[done->tag] = done->service;
     }
   };
-  // When the next access of a channel arrives; of every fourth access the channel is not told.
+  // When the next access of a channel arrives.
   std::vector<sim::Ticks> known(accesses.size());
   std::vector<sim::Ticks> next(config.channels, std::numeric_limits<sim::Ticks>::max());
   for (std::size_t i = accesses.size(); i-- > 0;) {
-    known[i] = i % 4 == 0 ? 0 : next[accesses[i].place.channel];
+    known[i] = foresight ? next[accesses[i].place.channel] : 0;
     next[accesses[i].place.channel] = accesses[i].arrival * config.period;
   }
   for (std::size_t i = 0; i < accesses.size(); ++i) {
