@@ -143,6 +143,21 @@ Value convert(const Key& key, const DocumentValue& node, std::string_view place)
 
 }  // namespace
 
+std::string unit_of(const Key& key) {
+  switch (key.type) {
+    case ValueType::size:
+      return "byte";
+    case ValueType::frequency:
+      return "Hz";
+    case ValueType::duration:
+      return "ps";
+    case ValueType::percentage:
+      return "1";
+    default:
+      return key.unit;
+  }
+}
+
 std::string expected_of(const Key& key) {
   return key.is_list ? "a list in brackets, each " + expectation(key) : expectation(key);
 }

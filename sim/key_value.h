@@ -13,6 +13,10 @@ namespace marti::sim {
 /// The values that a key accepts, in words: "a size such as \"16 KiB\"".
 [[nodiscard]] std::string expected_of(const Key& key);
 
+/// The unit in which a value of the key is a number: "byte", "Hz", "ps", of a percentage "1", else the key's
+/// own unit.
+[[nodiscard]] std::string unit_of(const Key& key);
+
 /// The values of `key`: one, or those of a list. Throws the UserError "place: message" for another type and
 /// for a value out of range.
 [[nodiscard]] std::vector<Value> read_values(const Key& key, const DocumentValue& value,

@@ -31,6 +31,7 @@
 #include "studies/cli/shell_completion.h"
 #include "studies/cli/sweep_command.h"
 #include "studies/compare/compare.h"
+#include "studies/compare/comparison_page.h"
 #include "studies/error/error.h"
 #include "studies/error/error_keys.h"
 #include "studies/estimate/within.h"
@@ -54,6 +55,7 @@
 #include "studies/stability/stability.h"
 #include "studies/stability/stability_keys.h"
 #include "studies/sweep/ranks/ranks.h"
+#include "studies/tables/page_file.h"
 #include "studies/version.h"
 
 namespace {
@@ -159,6 +161,10 @@ struct StudyArguments {
 
 std::string no_empty_directory(const std::string& name) {
   return name.empty() ? "the name of a directory must not be empty" : "";
+}
+
+std::string no_empty_file(const std::string& name) {
+  return name.empty() ? "the name of a file must not be empty" : "";
 }
 
 // Runs a study; without an output directory it only prints. A fault of the program that the study finds is
@@ -318,8 +324,21 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
 struct CompareArguments {
   std::string a;
   std::string b;
+  std::string page;
   studies::CompareOptions options;
 };
+
+void compare_command(const CompareArguments& arguments) {
+  if (arguments.page.empty()) {
+    print(studies::compare_results(arguments.a, arguments.b, arguments.options));
+    return;
+  }
+  studies::check_page_target(arguments.page);
+  studies::ComparisonPage page;
+  std::string text = studies::compare_results(arguments.a, arguments.b, arguments.options, &page);
+  studies::write_page(arguments.page, studies::html_of(page));
+  print(arguments.options.json ? text : text + "\nwrote " + arguments.page + "\n");
+}
 
 void add_compare_command(CLI::App& app, CompareArguments& arguments) {
   CLI::App* compare = app.add_subcommand(
@@ -330,7 +349,10 @@ void add_compare_command(CLI::App& app, CompareArguments& arguments) {
   compare->add_option("B", arguments.b, "what A is compared with, likewise")->type_name("RESULT")->required();
   compare->add_flag("--json", arguments.options.json, "print the differences as JSON");
   compare->add_flag("--all", arguments.options.all, "everything, what is equal too");
-  compare->callback([&] { print(studies::compare_results(arguments.a, arguments.b, arguments.options)); });
+  compare->add_option("-o,--output", arguments.page, "also one HTML page: the verdict, charts, tables")
+      ->type_name("FILE.html")
+      ->check(no_empty_file);
+  compare->callback([&] { compare_command(arguments); });
 }
 
 void add_report_command(CLI::App& app, studies::ReportArguments& arguments) {
@@ -345,9 +367,7 @@ void add_report_command(CLI::App& app, studies::ReportArguments& arguments) {
       ->add_option("-o,--output", arguments.output,
                    "the page; DIR/report.html or DIR/point-N.html if not given")
       ->type_name("FILE.html")
-      ->check([](const std::string& name) {
-        return name.empty() ? std::string("the name of a file must not be empty") : std::string();
-      });
+      ->check(no_empty_file);
   report->add_option("--plots", arguments.plots, "directory for every chart as SVG and CSV")
       ->type_name("DIR")
       ->check(no_empty_directory);

@@ -3,13 +3,15 @@
 #include <filesystem>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "sim/error.h"
-#include "studies/compare/compare_sweeps.h"
 #include "studies/compare/compare_text.h"
-#include "studies/compare/compare_with_sweep.h"
-#include "studies/compare/differences.h"
+#include "studies/compare/comparison_page.h"
 #include "studies/compare/figures.h"
+#include "studies/compare/result_and_sweep.h"
+#include "studies/compare/two_sweeps.h"
+#include "studies/compare/verdict.h"
 #include "studies/tables/result_directory.h"
 
 namespace marti::studies {
@@ -52,19 +54,27 @@ ComparedResult read(const Target& target, const std::string& name) {
 
 }  // namespace
 
-std::string compare_results(const std::string& a, const std::string& b, const CompareOptions& options) {
+std::string compare_results(const std::string& a, const std::string& b, const CompareOptions& options,
+                            ComparisonPage* page) {
   const Target from = target_of(a);
   const Target to = target_of(b);
   const bool sweep_a = from.kind == Target::Kind::sweep;
   const bool sweep_b = to.kind == Target::Kind::sweep;
+  const auto show = [&page](const auto& found) {
+    if (page != nullptr) {
+      *page = page_of(found);
+    }
+  };
   if (sweep_a && sweep_b) {
-    return compare_sweeps(from.file, to.file, options);
+    const TwoSweeps found = two_sweeps(from.file, to.file);
+    show(found);
+    return options.json ? json_of(found) : text_of(found, options.all);
   }
-  if (sweep_b) {
-    return compare_with_sweep(read(from, a), to.file, SweepSide::b, options);
-  }
-  if (sweep_a) {
-    return compare_with_sweep(read(to, b), from.file, SweepSide::a, options);
+  if (sweep_a || sweep_b) {
+    const ResultAndSweep found = sweep_b ? result_and_sweep(read(from, a), to.file, SweepSide::b)
+                                         : result_and_sweep(read(to, b), from.file, SweepSide::a);
+    show(found);
+    return options.json ? json_of(found) : text_of(found, options.all);
   }
   ComparedResult one = read(from, a);
   ComparedResult other = read(to, b);
@@ -72,9 +82,9 @@ std::string compare_results(const std::string& a, const std::string& b, const Co
     keep_what_sweeps_have(one);
     keep_what_sweeps_have(other);
   }
-  const Differences found = differences_of(one, other);
-  return options.json ? differences_json(one, other, found, options.all)
-                      : differences_text(one, other, found, options.all);
+  const ComparedPair pair = compared_pair(std::move(one), std::move(other));
+  show(pair);
+  return options.json ? differences_json(pair, options.all) : differences_text(pair, options.all);
 }
 
 }  // namespace marti::studies

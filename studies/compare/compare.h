@@ -11,10 +11,13 @@ struct CompareOptions {
   bool all = false;   ///< everything: all differences, and what is equal too
 };
 
+struct ComparisonPage;
+
 /// Each of `a` and `b` is a directory that `marti run` has written or its result.json, `DIR:N`, which is
 /// point N of the sweep in that directory, or the directory of a sweep. The text ends in a line break; equal
-/// files give equal texts. Throws UserError for what cannot be read or compared.
+/// files give equal texts. `page`, if given, gets what a page of the comparison shows. Throws UserError for
+/// what cannot be read or compared.
 [[nodiscard]] std::string compare_results(const std::string& a, const std::string& b,
-                                          const CompareOptions& options = {});
+                                          const CompareOptions& options = {}, ComparisonPage* page = nullptr);
 
 }  // namespace marti::studies

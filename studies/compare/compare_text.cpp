@@ -3,10 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "sim/schema.h"
+#include "studies/compare/verdict.h"
+#include "studies/keys/setting_value.h"
+#include "studies/sweep/plan/sweep_keys.h"
 #include "studies/tables/json_table.h"
+#include "studies/tables/text_table.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies {
@@ -15,12 +21,67 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string time_of(const Cell& ticks) {
-  const auto* whole = std::get_if<std::int64_t>(&ticks);
-  return whole != nullptr ? seconds(*whole) : short_text(ticks, "-");
+// The value of a setting as JSON has it; null where the machine does not use the setting.
+Json typed(const std::string& key, const Cell& value) {
+  static const sim::Schema schema = sweep_schema();
+  const auto* text = std::get_if<std::string>(&value);
+  return text == nullptr ? Json() : setting_value(schema, key, *text);
 }
 
 Json side_json(const ComparedResult& result) { return {{"name", result.name}, {"version", result.version}}; }
+
+// Aligned columns, the first to the left, the others to the right.
+std::string lines_of(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const std::vector<std::string>& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], width_of(row[i]));
+    }
+  }
+  std::string text;
+  for (const std::vector<std::string>& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string padding(widths[i] - width_of(row[i]), ' ');
+      line += "  " + (i == 0 ? row[i] + padding : padding + row[i]);
+    }
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
+// Figures with their units, the first `shown` of them.
+std::string figure_lines(const std::vector<Difference>& figures, bool all) {
+  const std::size_t shown = all ? figures.size() : std::min(figures.size(), most_lines);
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 0; i < shown; ++i) {
+    const Difference& figure = figures[i];
+    const std::string unit = unit_of_figure(figure.name);
+    rows.push_back({printable(figure.name), printable(figure_text(figure.a, unit, "-")),
+                    printable(figure_text(figure.b, unit, "-")), change_of(figure)});
+  }
+  return lines_of(rows) + and_more(shown, figures.size());
+}
+
+std::string time_lines(const ComparedPair& pair) {
+  std::vector<std::vector<std::string>> rows = {{"mean of a node", "A", "B", "change", "of A's frame"}};
+  const auto end = static_cast<double>(frame_time(pair.a));
+  for (const ActivityTime& time : pair.times) {
+    rows.push_back({time.activity, seconds(time.mean_a), seconds(time.mean_b),
+                    signed_seconds(std::llround(time.change)), change_percent(time.change / end)});
+  }
+  return lines_of(rows);
+}
+
+Json times_json(const std::vector<ActivityTime>& times) {
+  Json list = Json::array();
+  for (const ActivityTime& time : times) {
+    list.push_back(
+        {{"name", "time_" + time.activity}, {"a", time.a}, {"b", time.b}, {"change_a_node", time.change}});
+  }
+  return list;
+}
 
 }  // namespace
 
@@ -31,88 +92,123 @@ std::string printable(std::string text) {
   return text;
 }
 
-std::string count(std::size_t number, const char* what) {
-  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+std::string count(std::size_t number, std::string_view what) {
+  return fmt::format("{} {}{}", grouped(static_cast<std::int64_t>(number)), what, number == 1 ? "" : "s");
 }
 
-std::string lines_of(const std::vector<Difference>& differences, bool all) {
-  const std::size_t shown = all ? differences.size() : std::min(differences.size(), most_lines);
-  std::size_t name = 0;
-  std::size_t a = 1;
-  std::size_t b = 1;
-  for (std::size_t i = 0; i < shown; ++i) {
-    name = std::max(name, printable(differences[i].name).size());
-    a = std::max(a, short_text(differences[i].a, "-").size());
-    b = std::max(b, short_text(differences[i].b, "-").size());
-  }
+std::string setting_text(const Cell& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  return printable(text == nullptr ? short_text(value, "-") : plain_setting(*text));
+}
+
+std::optional<double> setting_number(const std::string& key, const Cell& value) {
+  const Json json = typed(key, value);
+  return json.is_number() && std::isfinite(json.get<double>()) ? std::optional(json.get<double>())
+                                                               : std::nullopt;
+}
+
+std::string values_text(const std::vector<Difference>& settings, Cell Difference::*side, bool all) {
   std::string text;
-  const auto out = std::back_inserter(text);
-  for (std::size_t i = 0; i < shown; ++i) {
-    const Difference& difference = differences[i];
-    const std::string change = change_of(difference);
-    fmt::format_to(out, "  {:<{}}  {:>{}}  {:>{}}", printable(difference.name), name,
-                   printable(short_text(difference.a, "-")), a, printable(short_text(difference.b, "-")), b);
-    text += change.empty() ? "\n" : fmt::format("  {:>12}\n", change);
+  for (const Difference& setting : settings) {
+    if (all || (setting.a != Cell() && setting.b != Cell())) {
+      text += (text.empty() ? "" : ", ") + printable(setting.name) + " " + setting_text(setting.*side);
+    }
   }
-  if (shown < differences.size()) {
-    fmt::format_to(out, "  and {} more: --all lists them\n", differences.size() - shown);
+  return text.empty() ? "-" : text;
+}
+
+std::string and_more(std::size_t shown, std::size_t of) {
+  return shown < of ? fmt::format("  and {} more: --all lists them\n",
+                                  grouped(static_cast<std::int64_t>(of - shown)))
+                    : std::string();
+}
+
+std::string verdict_lines(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) {
+    text += fmt::format("{:<15}{}\n", text.empty() ? "verdict" : "", printable(sentence));
   }
   return text;
 }
 
-std::string differences_text(const ComparedResult& a, const ComparedResult& b, const Differences& found,
-                             bool all) {
-  std::string text = fmt::format("A  {}\nB  {}\n", printable(a.name), printable(b.name));
+std::string settings_lines(const std::vector<Difference>& settings) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Difference& setting : settings) {
+    rows.push_back({printable(setting.name), setting_text(setting.a), setting_text(setting.b)});
+  }
+  return lines_of(rows);
+}
+
+std::string differences_text(const ComparedPair& pair, bool all) {
+  const Differences& found = pair.differences;
+  std::string text = fmt::format("A  {}\nB  {}\n\n", printable(pair.a.name), printable(pair.b.name));
   const auto out = std::back_inserter(text);
+  text += verdict_lines(verdict_of(pair));
+  for (const std::string& sentence : helps_of(pair)) {
+    fmt::format_to(out, "{:<15}{}\n", "", printable(sentence));
+  }
   fmt::format_to(out, "\nconfiguration  {} differ{}, {} equal\n", count(found.settings.size(), "setting"),
                  found.settings.size() == 1 ? "s" : "", found.equal_settings);
   // What differs in the configuration is never cut off.
-  text += lines_of(found.settings, true);
+  text += settings_lines(found.settings);
+  if (!pair.times.empty() && !found.numbers.empty()) {
+    fmt::format_to(out, "\nwhere the time went\n{}", time_lines(pair));
+  }
   const std::size_t differ = found.numbers.size() + found.texts.size();
   fmt::format_to(out, "\nresults        {} differ{}, {} equal\n", count(differ, "figure"),
                  differ == 1 ? "s" : "", found.equal.size());
-  // The frame time comes first, whatever its place in the order.
-  for (const Difference& difference : found.numbers) {
-    if (difference.name == "end") {
-      fmt::format_to(out, "frame time     {} in A, {} in B: {}\n", time_of(difference.a),
-                     time_of(difference.b), change_of(difference));
-    }
-  }
-  text += lines_of(found.texts, true);
-  text += lines_of(found.numbers, all);
+  text += figure_lines(found.texts, true);
+  text += figure_lines(found.numbers, all);
   if (!found.one_side.empty()) {
     fmt::format_to(out, "\nof one only    {}\n", count(found.one_side.size(), "figure"));
-    text += lines_of(found.one_side, all);
+    text += figure_lines(found.one_side, all);
   }
   if (all && !found.equal.empty()) {
     fmt::format_to(out, "\nequal          {}\n", count(found.equal.size(), "figure"));
-    text += lines_of(found.equal, true);
+    text += figure_lines(found.equal, true);
   }
   return text;
 }
 
-nlohmann::ordered_json json_of(const Difference& difference) {
-  Json object = {{"name", difference.name}, {"a", json_of(difference.a)}, {"b", json_of(difference.b)}};
-  if (const std::optional<double> relative = difference.relative()) {
+nlohmann::ordered_json json_of(const Difference& figure) {
+  Json object = {{"name", figure.name}, {"a", json_of(figure.a)}, {"b", json_of(figure.b)}};
+  if (const std::string unit = unit_of_figure(figure.name); !unit.empty()) {
+    object["unit"] = unit;
+  }
+  if (const std::optional<double> relative = figure.relative()) {
     object["relative"] = *relative;
   }
   return object;
 }
 
-nlohmann::ordered_json json_of(const std::vector<Difference>& differences) {
+nlohmann::ordered_json json_of(const std::vector<Difference>& figures) {
   Json list = Json::array();
-  for (const Difference& difference : differences) {
-    list.push_back(json_of(difference));
+  for (const Difference& figure : figures) {
+    list.push_back(json_of(figure));
   }
   return list;
 }
 
-std::string differences_json(const ComparedResult& a, const ComparedResult& b, const Differences& found,
-                             bool all) {
-  Json object = {{"a", side_json(a)},
-                 {"b", side_json(b)},
-                 {"settings", json_of(found.settings)},
+nlohmann::ordered_json settings_json(const std::vector<Difference>& settings) {
+  Json list = Json::array();
+  for (const Difference& setting : settings) {
+    list.push_back({{"name", setting.name},
+                    {"a", typed(setting.name, setting.a)},
+                    {"b", typed(setting.name, setting.b)}});
+  }
+  return list;
+}
+
+std::string differences_json(const ComparedPair& pair, bool all) {
+  const Differences& found = pair.differences;
+  Json object = {{"a", side_json(pair.a)},
+                 {"b", side_json(pair.b)},
+                 {"verdict", verdict_of(pair)},
+                 {"what_helps", helps_of(pair)},
+                 {"same_frame", pair.same_frame},
+                 {"settings", settings_json(found.settings)},
                  {"equal_settings", found.equal_settings},
+                 {"times", times_json(pair.times)},
                  {"texts", json_of(found.texts)},
                  {"numbers", json_of(found.numbers)},
                  {"one_side", json_of(found.one_side)},

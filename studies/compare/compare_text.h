@@ -2,12 +2,16 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "studies/compare/differences.h"
 
 namespace marti::studies {
+
+struct ComparedPair;
 
 /// Without `all`, no list is longer than this.
 inline constexpr std::size_t most_lines = 20;
@@ -16,18 +20,37 @@ inline constexpr std::size_t most_lines = 20;
 [[nodiscard]] std::string printable(std::string text);
 
 /// "1 setting", "2 settings".
-[[nodiscard]] std::string count(std::size_t number, const char* what);
+[[nodiscard]] std::string count(std::size_t number, std::string_view what);
 
-/// Two results, settings first.
-[[nodiscard]] std::string differences_text(const ComparedResult& a, const ComparedResult& b,
-                                           const Differences& found, bool all);
-[[nodiscard]] std::string differences_json(const ComparedResult& a, const ComparedResult& b,
-                                           const Differences& found, bool all);
+/// A setting's value as people write it, a text without the quotation marks that it has in a TOML file; "-"
+/// where the machine does not use the setting.
+[[nodiscard]] std::string setting_text(const Cell& value);
 
-/// A table of what differs, at most most_lines of it unless `all`. Texts beside numbers have no change.
-[[nodiscard]] std::string lines_of(const std::vector<Difference>& differences, bool all);
+/// A setting that has a number: a size in bytes, a frequency in Hz and so on.
+[[nodiscard]] std::optional<double> setting_number(const std::string& key, const Cell& value);
 
-[[nodiscard]] nlohmann::ordered_json json_of(const Difference& difference);
-[[nodiscard]] nlohmann::ordered_json json_of(const std::vector<Difference>& differences);
+/// "cache.size 4 KiB, machine.nodes 8": the values of one side. A setting that only one side has is listed if
+/// `all`; it follows from another one, as the ways of a cache from its being there.
+[[nodiscard]] std::string values_text(const std::vector<Difference>& settings, Cell Difference::*side,
+                                      bool all);
+
+/// "and 5 more: --all lists them", or nothing.
+[[nodiscard]] std::string and_more(std::size_t shown, std::size_t of);
+
+/// A sentence a line, the first behind the word "verdict".
+[[nodiscard]] std::string verdict_lines(const std::vector<std::string>& sentences);
+
+/// Lines of settings with both values.
+[[nodiscard]] std::string settings_lines(const std::vector<Difference>& settings);
+
+/// Two results: the verdict, the settings, where the nodes' time went, the figures.
+[[nodiscard]] std::string differences_text(const ComparedPair& pair, bool all);
+[[nodiscard]] std::string differences_json(const ComparedPair& pair, bool all);
+
+/// Settings have the values that their keys have: sizes in bytes, frequencies in Hz, times in ps, shares,
+/// booleans and lists.
+[[nodiscard]] nlohmann::ordered_json settings_json(const std::vector<Difference>& settings);
+[[nodiscard]] nlohmann::ordered_json json_of(const Difference& figure);
+[[nodiscard]] nlohmann::ordered_json json_of(const std::vector<Difference>& figures);
 
 }  // namespace marti::studies

@@ -1,11 +1,10 @@
 #include "studies/compare/differences.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "studies/tables/cell_number.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
@@ -61,8 +60,7 @@ std::string change_of(const Difference& difference) {
   if (*from == 0.0) {
     return *to == 0.0 ? "" : "from 0";
   }
-  const double percent = 100.0 * (*to - *from) / std::abs(*from);
-  return std::abs(percent) < 0.005 ? fmt::format("{:+.1e} %", percent) : fmt::format("{:+.2f} %", percent);
+  return change_percent((*to - *from) / std::abs(*from));
 }
 
 Differences differences_of(const ComparedResult& a, const ComparedResult& b) {

@@ -1,9 +1,13 @@
 #include "studies/compare/figures.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 
+#include "sim/error.h"
 #include "studies/figures/derived_figures.h"
+#include "studies/run/frame_figures.h"
 #include "studies/sweep/store/point_result.h"
 #include "studies/tables/json_table.h"
 #include "studies/tables/run_json.h"
@@ -42,7 +46,22 @@ ComparedResult compared(const RunJson& run, const std::string& name) {
   result.settings = settings_of(run);
   add(run, "figures.frame", "frame.", result.figures);
   add(run, "figures.machine", "", result.figures);
+  result.helps = run.text("machine.what_helps.sentence");
   return result;
+}
+
+const FigureEntry* entry_of(std::string_view name) {
+  constexpr std::string_view of_frame = "frame.";
+  const auto found = [](std::span<const FigureEntry> entries, std::string_view wanted) {
+    const auto at = std::find_if(entries.begin(), entries.end(),
+                                 [&](const FigureEntry& entry) { return entry.name == wanted; });
+    return at == entries.end() ? nullptr : &*at;
+  };
+  if (name.starts_with(of_frame)) {
+    return found(frame_figures(), name.substr(of_frame.size()));
+  }
+  const FigureEntry* const counted = found(counted_figures(), name);
+  return counted != nullptr ? counted : found(derived_figures(), name);
 }
 
 }  // namespace
@@ -58,6 +77,34 @@ ComparedResult read_point(const SweepReader& sweep, std::int64_t ordinal, const 
 void add_counters(const SweepRow& row, Figures& figures) {
   for_each_count(counted_figures(), row.counters,
                  [&figures](const std::string& name, std::int64_t value) { figures[name] = value; });
+}
+
+void add_frame(const FrameRow& row, Figures& figures) {
+  figures["frame.scene"] = row.scene;
+  figures["frame.image_hash"] = row.image_hash;
+  figures["frame.hit_hash"] = row.hit_hash;
+  for_each_count(frame_figures(), row.counters, [&figures](const std::string& name, std::int64_t value) {
+    figures["frame." + name] = value;
+  });
+}
+
+std::int64_t frame_time(const ComparedResult& result) {
+  const auto end = result.figures.find("end");
+  const auto* ticks = end == result.figures.end() ? nullptr : std::get_if<std::int64_t>(&end->second);
+  if (ticks == nullptr || *ticks <= 0) {
+    throw sim::UserError(result.name + ": has no frame time (a figure \"end\" above 0)");
+  }
+  return *ticks;
+}
+
+std::string unit_of_figure(std::string_view name) {
+  const FigureEntry* const entry = entry_of(name);
+  return entry == nullptr ? std::string() : entry->unit;
+}
+
+std::string meaning_of_figure(std::string_view name) {
+  const FigureEntry* const entry = entry_of(name);
+  return entry == nullptr ? std::string() : entry->description;
 }
 
 void keep_what_sweeps_have(ComparedResult& result) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/table.h"
@@ -20,6 +21,7 @@ struct ComparedResult {
   std::string version;                          ///< of the program that made it
   std::map<std::string, std::string> settings;  ///< values as in a TOML file
   Figures figures;
+  std::string helps;  ///< what would make its frame shorter, in a sentence; empty where it is not recorded
 };
 
 /// A `result.json`. Throws UserError for a file that cannot be read, is not a result, or is one of another
@@ -33,9 +35,20 @@ struct ComparedResult {
 /// The counted figures of a row.
 void add_counters(const SweepRow& row, Figures& figures);
 
+/// The name of the scene and the hashes of what was rendered, as those of a result are named.
+void add_frame(const FrameRow& row, Figures& figures);
+
 /// Removes what cannot be compared with a sweep: figures that are measured against another machine, which a
 /// run and a sweep do not choose alike, and settings that a sweep does not keep, because no result depends on
 /// them.
 void keep_what_sweeps_have(ComparedResult& result);
+
+/// The frame time in ps. Throws UserError when the result has none above 0.
+[[nodiscard]] std::int64_t frame_time(const ComparedResult& result);
+
+/// The unit of a compared figure by the catalogue; empty for a text and for a figure that it does not have.
+[[nodiscard]] std::string unit_of_figure(std::string_view name);
+/// What the catalogue says of it.
+[[nodiscard]] std::string meaning_of_figure(std::string_view name);
 
 }  // namespace marti::studies

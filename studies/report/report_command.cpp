@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "sim/error.h"
@@ -15,6 +13,7 @@
 #include "studies/report/plots/plots.h"
 #include "studies/report/plots/vega_bundle.h"
 #include "studies/report/read/read_report.h"
+#include "studies/tables/page_file.h"
 #include "studies/tables/pending_files.h"
 #include "studies/tables/result_directory.h"
 
@@ -24,8 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path directory_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : "."; }
-
 // DIR/report.html, or DIR/point-N.html.
 fs::path page_of(const std::string& results) {
   std::error_code ignored;
@@ -33,40 +30,6 @@ fs::path page_of(const std::string& results) {
       fs::is_directory(results, ignored) ? std::nullopt : point_named(results);
   return point ? directory_of(point->store) / ("point-" + std::to_string(point->ordinal) + ".html")
                : fs::path(results) / "report.html";
-}
-
-bool is_page(const fs::path& file) {
-  constexpr std::string_view begin = "<!doctype html";
-  std::string text(begin.size(), '\0');
-  std::ifstream(file, std::ios::binary).read(text.data(), static_cast<std::streamsize>(text.size()));
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return text == begin;
-}
-
-// Whatever is wrong with the name of the page is said before anything is drawn. A page may replace an older
-// page, but not results.
-void check_target(const fs::path& file) {
-  std::error_code error;
-  if (!fs::is_directory(directory_of(file), error)) {
-    throw sim::UserError(file.string() + ": cannot be written: " + directory_of(file).string() +
-                         (error ? ": " + error.message() : " is no directory"));
-  }
-  if (fs::symlink_status(file, error).type() == fs::file_type::not_found) {
-    return;
-  }
-  if (!fs::is_regular_file(file, error)) {
-    const bool unknown = error && error != std::errc::no_such_file_or_directory;  // a link to nothing
-    throw sim::UserError(file.string() +
-                         (unknown ? ": cannot be written: " + error.message()
-                                  : ": is no regular file; choose another name for the page with -o"));
-  }
-  if (!is_page(file)) {
-    throw sim::UserError(
-        file.string() +
-        ": exists and is not an HTML page, so it is not replaced by a report; choose another name with -o, "
-        "or remove it");
-  }
 }
 
 void check_apart(const fs::path& file, const fs::path& directory, std::span<const Plot> plots) {
@@ -113,7 +76,7 @@ void report_command(const ReportArguments& arguments, void (*print)(const std::s
   if (!have_vega_scripts()) {
     throw sim::UserError(no_vega_scripts);
   }
-  check_target(file);
+  check_page_target(file);
   const std::string page = report_page(report, vega_scripts());
   std::vector<Plot> plots;
   if (!arguments.plots.empty()) {

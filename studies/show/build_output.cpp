@@ -9,6 +9,7 @@
 #include "sim/statistics.h"
 #include "studies/show/json_parts.h"
 #include "studies/show/text_columns.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
@@ -25,12 +26,12 @@ std::string build_lines(const RunResult& r) {
     return text;
   }
   fmt::format_to(std::back_inserter(text),
-                 "\nbuilding      {} before the frame, {:.2f} % of its time; {} during it, {} lock waits",
-                 r.count("build_start_up_splits"),
-                 100.0 * sim::ratio(r.count("build_start_up"), r.count("end")).value_or(0.0),
-                 r.count("build_splits"), r.count("build_waits"));
+                 "\nbuilding      {} before the frame, {} of its time; {} during it, {} lock waits",
+                 grouped(r.count("build_start_up_splits")),
+                 percent(sim::ratio(r.count("build_start_up"), r.count("end")).value_or(0.0)),
+                 grouped(r.count("build_splits")), grouped(r.count("build_waits")));
   if (const std::int64_t wasted = r.count("build_wasted_splits"); wasted != 0) {
-    text += fmt::format(", {} made more than once", wasted);
+    text += fmt::format(", {} made more than once", grouped(wasted));
   }
   const TextColumns table = {8, {10, 10, 10, 12, 12, 12, 14}};
   text += "\n" + table.row("  level", {"branches", "leaves", "partial", "node bytes", "list bytes",

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "studies/show/json_parts.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
@@ -43,8 +44,8 @@ std::string second_level_line(const RunResult& r) {
   const std::optional<double> hit_ratio = r.figure("l2_hit_ratio");
   return fmt::format("second level  {}: {} look-ups, {} misses, {}\n",
                      sharing == SecondLevel::shared ? "one a cluster" : "one a node",
-                     r.count("l2_hits") + r.count("l2_misses"), r.count("l2_misses"),
-                     hit_ratio ? fmt::format("hit ratio {:.2f} %", 100.0 * *hit_ratio) : "never asked");
+                     grouped(r.count("l2_hits") + r.count("l2_misses")), grouped(r.count("l2_misses")),
+                     hit_ratio ? "hit ratio " + percent(*hit_ratio) : "never asked");
 }
 
 }  // namespace marti::studies

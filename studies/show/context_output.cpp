@@ -8,6 +8,7 @@
 
 #include "sim/statistics.h"
 #include "studies/show/json_parts.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
@@ -24,13 +25,14 @@ std::string context_lines(const RunResult& r) {
   const auto out = std::back_inserter(text);
   if (r.machine.contexts > 1) {
     fmt::format_to(out, "contexts      {} a node, {} switches, {} waits for a line that another fetched\n",
-                   r.machine.contexts, r.count("contexts_switches"), r.count("contexts_joined"));
+                   r.machine.contexts, grouped(r.count("contexts_switches")),
+                   grouped(r.count("contexts_joined")));
   }
   if (r.machine.prefetch.on()) {
     const std::optional<double> useful = sim::ratio(r.count("contexts_useful"), r.count("contexts_issued"));
     fmt::format_to(out, "prefetch      {} lines, {} of them useful, {} waits for one under way, {} dropped\n",
-                   r.count("contexts_issued"), useful ? fmt::format("{:.2f} %", 100.0 * *useful) : "-",
-                   r.count("contexts_late"), r.count("contexts_dropped"));
+                   grouped(r.count("contexts_issued")), useful ? percent(*useful) : "-",
+                   grouped(r.count("contexts_late")), grouped(r.count("contexts_dropped")));
   }
   return text;
 }

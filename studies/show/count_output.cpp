@@ -11,6 +11,7 @@
 #include "sim/statistics.h"
 #include "studies/show/json_parts.h"
 #include "studies/show/text_columns.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
@@ -27,8 +28,8 @@ std::string_view name_of(memory::RecordKind kind) {
 
 std::string_view work_of(const AttributionRow& row) { return row.splitting ? "split" : "trace"; }
 
-std::string percent(std::int64_t part, std::int64_t whole) {
-  return fmt::format("{:.2f} %", 100.0 * sim::ratio(part, whole).value_or(0.0));
+std::string percent_of(std::int64_t part, std::int64_t whole) {
+  return percent(sim::ratio(part, whole).value_or(0.0));
 }
 
 // Sums of the rows by what `key` makes of them.
@@ -55,10 +56,10 @@ void attribution_lines(std::string& text, const RunResult& r) {
   text += "\nwhere misses and waits come from\n" +
           table.row("", {"references", "misses", "miss ratio", "of misses", "of waits"});
   const auto line = [&](const std::string& name, const AttributionCounts& counts) {
-    text +=
-        table.row("  " + name, {std::to_string(counts.references), std::to_string(counts.misses),
-                                percent(counts.misses, counts.references), percent(counts.misses, all.misses),
-                                percent(counts.waited(), all.waited())});
+    text += table.row("  " + name,
+                      {std::to_string(counts.references), std::to_string(counts.misses),
+                       percent_of(counts.misses, counts.references), percent_of(counts.misses, all.misses),
+                       percent_of(counts.waited(), all.waited())});
   };
   for (const auto& [level, counts] : sums_by(rows, [](const AttributionRow& row) { return row.level; })) {
     line(level == 0 ? "materials, texels" : "level " + std::to_string(level), counts);
@@ -131,7 +132,7 @@ std::string counts_lines(const RunResult& r) {
         "\nsharing       {} fetches of {} lines, {} of lines fetched before; {} lines by one node only, {} "
         "by "
         "all {}\n",
-        fetches, lines, percent(fetches - lines, fetches), r.count("sharing_lines_of_one"),
+        fetches, lines, percent_of(fetches - lines, fetches), r.count("sharing_lines_of_one"),
         r.count("sharing_lines_of_all"), r.machine.nodes);
   }
   if (r.timed.counts.attribution) {

@@ -18,8 +18,7 @@ using Json = nlohmann::ordered_json;
 using processors::CriticalPath;
 
 std::string share(sim::Ticks part, sim::Ticks whole) {
-  return whole == 0 ? "-"
-                    : fmt::format("{:.2f} %", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
+  return whole == 0 ? "-" : percent(static_cast<double>(part) / static_cast<double>(whole));
 }
 
 sim::Ticks own_work(const CriticalPath& path) {

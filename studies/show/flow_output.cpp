@@ -41,11 +41,6 @@ Json networks_json(const processors::FlowResult& flow) {
   return networks;
 }
 
-std::string short_time(double ticks) {
-  const double s = ticks / static_cast<double>(sim::ticks_per_second);
-  return s >= 1e-3 ? fmt::format("{:.3f} ms", s * 1e3) : fmt::format("{:.3f} us", s * 1e6);
-}
-
 double ratio(const RunResult& r, std::string_view part, std::string_view whole) {
   return sim::ratio(r.count(part), r.count(whole)).value_or(0.0);
 }
@@ -55,12 +50,12 @@ std::string bytes_of(const RunResult& r, std::string_view figure) {
 }
 
 void load_line(std::back_insert_iterator<std::string> out, const StageLoad& load) {
-  fmt::format_to(out, "  {:<12}{} node{}, {:.1f} % busy (the busiest {:.1f} %", load.name, load.nodes,
-                 load.nodes == 1 ? "" : "s", 100.0 * load.busy, 100.0 * load.busiest);
+  fmt::format_to(out, "  {:<12}{} node{}, {} busy (the busiest {}", load.name, load.nodes,
+                 load.nodes == 1 ? "" : "s", rough_percent(load.busy), rough_percent(load.busiest));
   if (const std::optional<double> imbalance = load.imbalance()) {
     fmt::format_to(out, ", imbalance {:.2f}", *imbalance);
   }
-  fmt::format_to(out, "), {:.1f} % before full queues, longest queue {}\n", 100.0 * load.queue_full,
+  fmt::format_to(out, "), {} before full queues, longest queue {}\n", rough_percent(load.queue_full),
                  load.longest_queue);
 }
 
@@ -96,11 +91,13 @@ std::string flow_lines(const RunResult& r) {
   const auto out = std::back_inserter(text);
   const FlowFigures figures = flow_figures(machine, r.timed);
   fmt::format_to(out, "\nrays          {}, at most {} in flight, at most {} set aside at a node\n",
-                 r.count("flow_rays"), r.count("flow_most_in_flight"), r.count("flow_most_set_aside"));
-  fmt::format_to(out, "  messages    {}, {:.1f} a ray, {} ({:.0f} B a ray)\n", r.count("network_messages"),
-                 ratio(r, "network_messages", "flow_rays"), bytes_of(r, "network_bytes"),
-                 ratio(r, "network_bytes", "flow_rays"));
-  fmt::format_to(out, "  queues      mean wait {}\n", short_time(ratio(r, "flow_queued", "flow_taken")));
+                 grouped(r.count("flow_rays")), grouped(r.count("flow_most_in_flight")),
+                 grouped(r.count("flow_most_set_aside")));
+  fmt::format_to(out, "  messages    {}, {:.1f} a ray, {} ({:.0f} B a ray)\n",
+                 grouped(r.count("network_messages")), ratio(r, "network_messages", "flow_rays"),
+                 bytes_of(r, "network_bytes"), ratio(r, "network_bytes", "flow_rays"));
+  fmt::format_to(out, "  queues      mean wait {}\n",
+                 seconds(static_cast<sim::Ticks>(ratio(r, "flow_queued", "flow_taken"))));
   for (const StageLoad& stage : figures.stages) {
     load_line(out, stage);
   }
@@ -113,19 +110,20 @@ std::string flow_lines(const RunResult& r) {
   }
   if (machine.scheme == Scheme::space) {
     fmt::format_to(out, "  regions     {}, below {} nodes that all have; {} primitives more than once\n",
-                   r.count("regions"), r.count("top_nodes"), r.count("duplicated_primitives"));
+                   grouped(r.count("regions")), grouped(r.count("top_nodes")),
+                   grouped(r.count("duplicated_primitives")));
     if (machine.space.policy == processors::RegionPolicy::sampled) {
       fmt::format_to(out, "  pre-pass    {} of one node's computing before the frame\n",
-                     short_time(static_cast<double>(r.count("sampling_work"))));
+                     seconds(r.count("sampling_work")));
     }
   }
   fmt::format_to(out, "network       {}",
                  memory::network_kind_names[static_cast<std::size_t>(machine.network.kind)]);
   if (const std::optional<double> busy = r.figure("network_utilisation")) {
-    fmt::format_to(out, ", links {:.1f} % busy, {:.1f} hops a message, mean wait {}, longest {}",
-                   100.0 * *busy, r.figure("hops_a_message").value_or(0.0),
-                   short_time(r.figure("mean_network_wait").value_or(0.0)),
-                   short_time(static_cast<double>(r.count("network_wait_max"))));
+    fmt::format_to(out, ", links {} busy, {:.1f} hops a message, mean wait {}, longest {}",
+                   rough_percent(*busy), r.figure("hops_a_message").value_or(0.0),
+                   seconds(static_cast<sim::Ticks>(r.figure("mean_network_wait").value_or(0.0))),
+                   seconds(r.count("network_wait_max")));
   }
   text += "\n";
   return text;

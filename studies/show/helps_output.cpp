@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "studies/show/json_parts.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
@@ -87,8 +88,8 @@ std::string helps_lines(const WhatHelps& what) {
   label = "not tried";
   const Unreplayed left = unreplayed(what);
   if (left.needless > 0) {
-    fmt::format_to(out, "  {:<12}{} that can save {:.1f} % at most\n", label, other_steps(left.needless),
-                   100.0 * left.most_saved);
+    fmt::format_to(out, "  {:<12}{} that can save {} at most\n", label, other_steps(left.needless),
+                   rough_percent(left.most_saved));
     label = "";
   }
   if (left.work > 0) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/error.h"
+#include "sim/key_value.h"
 #include "sim/nearest.h"
 #include "sim/shown.h"
 
@@ -30,21 +31,6 @@ Json json_of_value(const sim::Value& value) {
 
 Json json_of_bound(const std::optional<sim::Value>& bound) { return bound ? json_of_value(*bound) : Json(); }
 
-std::string unit_of(const sim::Key& key) {
-  switch (key.type) {
-    case sim::ValueType::size:
-      return "byte";
-    case sim::ValueType::frequency:
-      return "Hz";
-    case sim::ValueType::duration:
-      return "ps";
-    case sim::ValueType::percentage:
-      return "1";
-    default:
-      return key.unit;
-  }
-}
-
 Json json_of_key(const sim::Key& key) {
   Json value;
   if (key.is_list) {
@@ -62,7 +48,7 @@ Json json_of_key(const sim::Key& key) {
           {"minimum", json_of_bound(key.minimum)},
           {"maximum", json_of_bound(key.maximum)},
           {"choices", key.choices},
-          {"unit", unit_of(key)},
+          {"unit", sim::unit_of(key)},
           {"meaning", key.meaning}};
 }
 

@@ -69,7 +69,7 @@ std::string loss_lines(const RunResult& r) {
     std::string name(loss);
     std::replace(name.begin(), name.end(), '_', ' ');
     const double part = r.figure("lost_" + std::string(loss)).value_or(0.0);
-    text += fmt::format("  {:<14}{:>12.2f} {:>9.2f} %\n", name, part, 100.0 * part / n);
+    text += fmt::format("  {:<14}{:>12.2f} {:>11}\n", name, part, percent(part / n));
   }
   return text;
 }
@@ -79,9 +79,9 @@ std::string bound_lines(const RunResult& r) {
   if (r.timed.end == 0) {
     return "";
   }
-  std::string text =
-      fmt::format("\nbounds        at least {} ({:.1f} % of the frame time): a node's own work {}",
-                  seconds(b.least()), 100.0 * ticks(b.least()) / ticks(r.timed.end), seconds(b.node_work));
+  std::string text = fmt::format("\nbounds        at least {} ({} of the frame time): a node's own work {}",
+                                 seconds(b.least()), rough_percent(ticks(b.least()) / ticks(r.timed.end)),
+                                 seconds(b.node_work));
   if (b.interconnect > 0) {
     const bool bus = r.machine.interconnect.kind == memory::InterconnectKind::bus &&
                      r.machine.placement != processors::Placement::distributed;

@@ -36,9 +36,7 @@ std::string ratio(std::optional<double> value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : "-";
 }
 
-std::string percent(std::optional<double> share) {
-  return share ? fmt::format("{:.2f} %", 100.0 * *share) : "-";
-}
+std::string percent(std::optional<double> share) { return share ? studies::percent(*share) : "-"; }
 
 std::string percent(std::uint64_t part, std::uint64_t whole) {
   return percent(sim::ratio(static_cast<std::int64_t>(part), static_cast<std::int64_t>(whole)));
@@ -178,9 +176,9 @@ void distribution_lines(Lines out, const RunResult& r) {
       "network", grouped(r.count("network_messages")), bytes(static_cast<double>(r.count("network_bytes"))),
       r.figure("hops_a_message").value_or(0.0), percent(sim::ratio(remote, all)));
   if (const std::optional<double> used = r.figure("interconnect_utilisation")) {
-    fmt::format_to(out, "  {:<12}{:.1f} % of its links busy, {}\n",
+    fmt::format_to(out, "  {:<12}{} of its links busy, {}\n",
                    memory::network_kind_names[static_cast<std::size_t>(r.machine.network.kind)],
-                   100.0 * *used, waiting(r, "network", r.totals.network_waits));
+                   rough_percent(*used), waiting(r, "network", r.totals.network_waits));
   }
 }
 
@@ -225,17 +223,18 @@ void memory_lines(Lines out, const RunResult& r) {
   if (distributed) {
     distribution_lines(out, r);
   } else {
-    fmt::format_to(out, "\n{:<14}{:.1f} % busy, {}, {} moved\n", interconnect_name(r.machine),
-                   100.0 * r.figure("interconnect_utilisation").value_or(0.0),
+    fmt::format_to(out, "\n{:<14}{} busy, {}, {} moved\n", interconnect_name(r.machine),
+                   rough_percent(r.figure("interconnect_utilisation").value_or(0.0)),
                    waiting(r, "interconnect", r.totals.interconnect_waits), bytes(moved));
   }
   const bool dram = r.machine.banks.dram.has_value() && !distributed;
-  fmt::format_to(out, "{:<14}{:.1f} % busy (the busiest {:.1f} %), {}\n",
+  fmt::format_to(out, "{:<14}{} busy (the busiest {}), {}\n",
                  distributed ? "memories"
                  : dram      ? "DRAM channels"
                              : "banks",
-                 100.0 * r.figure("mean_bank_utilisation").value_or(0.0),
-                 100.0 * r.figure("bank_utilisation").value_or(0.0), waiting(r, "bank", r.totals.bank_waits));
+                 rough_percent(r.figure("mean_bank_utilisation").value_or(0.0)),
+                 rough_percent(r.figure("bank_utilisation").value_or(0.0)),
+                 waiting(r, "bank", r.totals.bank_waits));
   if (dram) {
     dram_lines(out, r);
   }

@@ -1,4 +1,4 @@
-// A cell's value as a number, and as the type that its column declares.
+// A cell's value as a number, as the type that its column declares, and in words.
 #pragma once
 
 #include <optional>
@@ -22,11 +22,21 @@ namespace marti::studies {
   if (type == ColumnType::text) {
     return std::holds_alternative<std::string>(cell) ? cell : Cell();
   }
+  if (type == ColumnType::boolean) {
+    return cell == Cell(std::int64_t{0}) || cell == Cell(std::int64_t{1}) ? cell : Cell();
+  }
   if (type == ColumnType::integer) {
     return std::holds_alternative<std::int64_t>(cell) ? cell : Cell();
   }
   const std::optional<double> number = number_of(cell);
   return number ? Cell(*number) : Cell();
+}
+
+/// The cell as a text has it: of a boolean "true" or "false".
+[[nodiscard]] inline Cell in_words(const Cell& cell, ColumnType type) {
+  const auto* flag = std::get_if<std::int64_t>(&cell);
+  return flag != nullptr && type == ColumnType::boolean ? Cell(std::string(*flag != 0 ? "true" : "false"))
+                                                        : cell;
 }
 
 }  // namespace marti::studies

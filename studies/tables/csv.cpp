@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/units.h"
+#include "studies/tables/cell_number.h"
 #include "studies/tables/json_table.h"
 
 namespace marti::studies {
@@ -59,7 +60,11 @@ std::string csv_of(const Table& table) {
   std::string out;
   append_record(out, names);
   for (const std::vector<Cell>& row : table.rows()) {
-    append_record(out, row);
+    std::vector<Cell> cells;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      cells.push_back(in_words(row[i], table.columns()[i].type));
+    }
+    append_record(out, cells);
   }
   return out;
 }

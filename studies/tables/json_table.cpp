@@ -48,7 +48,9 @@ Json rows_json(const Table& table) {
   for (const std::vector<Cell>& row : table.rows()) {
     Json object = Json::object();
     for (std::size_t i = 0; i < row.size(); ++i) {
-      object[table.columns()[i].name] = json_of(row[i]);
+      const auto* flag = std::get_if<std::int64_t>(&row[i]);
+      const bool boolean = flag != nullptr && table.columns()[i].type == ColumnType::boolean;
+      object[table.columns()[i].name] = boolean ? Json(*flag != 0) : json_of(row[i]);
     }
     rows.push_back(std::move(object));
   }

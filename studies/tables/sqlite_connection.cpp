@@ -200,6 +200,8 @@ std::string_view sql_type(ColumnType type) {
       return "REAL";
     case ColumnType::text:
       return "TEXT";
+    case ColumnType::boolean:
+      return "BOOLEAN";
   }
   throw sim::InternalError("a column of an unknown type");
 }

@@ -10,9 +10,9 @@ namespace marti::studies {
 
 namespace {
 
-bool is_plain(std::string_view name) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+bool is_plain(std::string_view name, bool key = false) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [key](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || (key && c == '.');
   });
 }
 
@@ -27,6 +27,10 @@ bool fits(const Cell& cell, ColumnType type) {
       return std::holds_alternative<double>(cell);
     case ColumnType::text:
       return std::holds_alternative<std::string>(cell);
+    case ColumnType::boolean: {
+      const auto* flag = std::get_if<std::int64_t>(&cell);
+      return flag != nullptr && (*flag == 0 || *flag == 1);
+    }
   }
   return false;
 }
@@ -37,7 +41,7 @@ Table::Table(std::string name, std::string title, std::vector<Column> columns)
     : name_(std::move(name)), title_(std::move(title)), columns_(std::move(columns)) {
   sim::ensure(is_plain(name_) && !columns_.empty(), "a table needs a plain name and a column");
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    sim::ensure(is_plain(columns_[i].name), "the name of a table's column is not plain");
+    sim::ensure(is_plain(columns_[i].name, true), "the name of a table's column is not plain");
     for (std::size_t j = 0; j < i; ++j) {
       sim::ensure(columns_[i].name != columns_[j].name, "two columns of a table have one name");
     }

@@ -11,10 +11,12 @@
 
 namespace marti::studies {
 
-enum class ColumnType : std::uint8_t { integer, real, text };
+/// A boolean is 0 or 1 in SQLite and in a cell, false or true in JSON, CSV and texts.
+enum class ColumnType : std::uint8_t { integer, real, text, boolean };
 
 struct Column {
-  std::string name;  ///< lower-case letters, digits and '_'; unique in the table
+  /// Lower-case letters, digits and '_'; of a key of the configuration also '.'. Unique in the table.
+  std::string name;
   ColumnType type = ColumnType::integer;
   /// "1" for a count, else "ps", "byte", "fraction", "s", ...; empty for a text.
   std::string unit;
@@ -26,8 +28,8 @@ using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
 
 class Table {
  public:
-  /// Throws InternalError for a name that is not made of lower-case letters, digits and '_', for two columns
-  /// of one name, and for no column.
+  /// Throws InternalError for a name that is not made of the characters that it may have, for two columns of
+  /// one name, and for no column.
   Table(std::string name, std::string title, std::vector<Column> columns);
 
   /// Throws InternalError when the number of cells or a cell's type is not that of the columns.

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "studies/tables/cell_number.h"
 #include "studies/tables/wide_table.h"
 
 namespace marti::studies {
@@ -64,13 +65,12 @@ std::string text_of(const Cell& cell, const Shown& how) {
   return "-";
 }
 
-/// Characters, not bytes: bytes of UTF-8 that continue a character do not count.
+}  // namespace
+
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
 }
-
-}  // namespace
 
 std::string text_of(const Table& table) {
   std::vector<std::vector<std::string>> lines(2);
@@ -81,7 +81,7 @@ std::string text_of(const Table& table) {
   for (const std::vector<Cell>& row : table.rows()) {
     std::vector<std::string>& line = lines.emplace_back();
     for (std::size_t i = 0; i < row.size(); ++i) {
-      line.push_back(text_of(row[i], shown(table.columns()[i])));
+      line.push_back(text_of(in_words(row[i], table.columns()[i].type), shown(table.columns()[i])));
     }
   }
   std::vector<std::size_t> widths(table.columns().size(), 0);

@@ -1,11 +1,15 @@
 // Tables as aligned text for people.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "studies/tables/table.h"
 
 namespace marti::studies {
+
+/// Characters, not bytes: bytes of UTF-8 that continue a character do not count.
+[[nodiscard]] std::size_t width_of(const std::string& text);
 
 /// The title, a line of column names, a line of units, and the rows; numbers to the right. Times in ps are
 /// shown in seconds, bytes in KiB, fractions in percent; integers with thousands separators; a cell without

@@ -2,11 +2,26 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "studies/tables/cell_number.h"
 
 namespace marti::studies {
 
+namespace {
+
+constexpr sim::Ticks ticks_per_nanosecond = sim::ticks_per_second / 1'000'000'000;
+
+}  // namespace
+
 std::string seconds(sim::Ticks ticks) {
+  if (ticks == 0) {
+    return "0 s";
+  }
+  if (ticks > 0 && ticks < ticks_per_nanosecond) {
+    return fmt::format("{} ps", ticks);
+  }
   const double s = static_cast<double>(ticks) / static_cast<double>(sim::ticks_per_second);
   if (s >= 1.0) {
     return fmt::format("{:.3f} s", s);
@@ -16,6 +31,29 @@ std::string seconds(sim::Ticks ticks) {
   }
   return fmt::format("{:.3f} us", s * 1e6);
 }
+
+std::string signed_seconds(sim::Ticks ticks) {
+  if (ticks == 0) {
+    return seconds(ticks);
+  }
+  return (ticks < 0 ? "-" : "+") + seconds(ticks < 0 ? -ticks : ticks);
+}
+
+std::string percent(double share) { return fmt::format("{:.2f} %", 100.0 * share); }
+
+std::string rough_percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
+
+std::string change_percent(double share) {
+  const double percents = 100.0 * share;
+  if (percents >= 999.995) {
+    return share + 1.0 < 1000.0 ? times(share + 1.0) + " times"
+                                : grouped(std::llround(std::min(share + 1.0, 0x1p62))) + " times";
+  }
+  return percents != 0.0 && std::abs(percents) < 0.005 ? fmt::format("{:+.1e} %", percents)
+                                                       : fmt::format("{:+.2f} %", percents);
+}
+
+std::string times(double ratio) { return fmt::format("{:.2f}", ratio); }
 
 std::string joules(double j) {
   if (j >= 1.0) {
@@ -55,6 +93,32 @@ std::string grouped(std::int64_t value) {
     digits.insert(at, ",");
   }
   return digits;
+}
+
+std::string figure_text(const Cell& cell, std::string_view unit, std::string_view missing) {
+  const std::optional<double> number = number_of(cell);
+  if (!number || !std::isfinite(*number)) {
+    return short_text(cell, missing);
+  }
+  constexpr double longest = 0x1p62;  // beyond it a time is none that a machine took
+  if (unit == "ps" && std::abs(*number) <= longest) {
+    const auto* ticks = std::get_if<std::int64_t>(&cell);
+    const std::string text = signed_seconds(ticks != nullptr ? *ticks : std::llround(*number));
+    return text.starts_with('+') ? text.substr(1) : text;
+  }
+  if (unit == "byte") {
+    return bytes(*number);
+  }
+  if (unit == "fJ" || unit == "mJ") {
+    return joules(*number * (unit == "fJ" ? 1e-15 : 1e-3));
+  }
+  const auto* count = std::get_if<std::int64_t>(&cell);
+  std::string text = count != nullptr ? grouped(*count) : fmt::format("{:.4g}", *number);
+  if (!unit.empty() && unit != "1") {
+    text += " ";
+    text += unit;
+  }
+  return text;
 }
 
 std::string short_text(const Cell& cell, std::string_view missing) {

@@ -1,4 +1,5 @@
-// Times and sizes as people read them.
+// Numbers as people read them: every text for people takes them from here, so that a time, a size or a share
+// looks alike wherever it stands (docs/commands.md, "How numbers are written").
 #pragma once
 
 #include <cstdint>
@@ -10,8 +11,24 @@
 
 namespace marti::studies {
 
-/// "1.234 s", "1.234 ms", "1.234 us".
+/// "1.234 s", "1.234 ms", "1.234 us", below 1 ns "123 ps"; "0 s".
 [[nodiscard]] std::string seconds(sim::Ticks ticks);
+
+/// A change of a time: "+1.234 ms", "-1.234 us"; "0 s".
+[[nodiscard]] std::string signed_seconds(sim::Ticks ticks);
+
+/// A share in a table, with two decimals: "24.90 %".
+[[nodiscard]] std::string percent(double share);
+
+/// A share in a sentence, with one decimal: "24.9 %".
+[[nodiscard]] std::string rough_percent(double share);
+
+/// A relative change: "+69.02 %"; from +1000 % on "20.07 times"; one that two decimals do not
+/// show "+1.2e-05 %".
+[[nodiscard]] std::string change_percent(double share);
+
+/// How many times as much: "1.69" in a sentence, with two decimals.
+[[nodiscard]] std::string times(double ratio);
 
 /// "1.234 J", "1.234 mJ", "1.234 uJ", "1.234 nJ".
 [[nodiscard]] std::string joules(double j);
@@ -24,6 +41,10 @@ namespace marti::studies {
 
 /// "1.2 MiB", "1.2 KiB", "12 B".
 [[nodiscard]] std::string bytes(double count);
+
+/// A figure in its unit (studies/figures): ps as seconds(), byte as bytes(), fJ and mJ as joules(), counts as
+/// grouped(), other numbers with four digits and their unit; `missing` for what has no value.
+[[nodiscard]] std::string figure_text(const Cell& cell, std::string_view unit, std::string_view missing);
 
 /// A cell in short: reals with six digits, `missing` for what has no value or is not finite.
 [[nodiscard]] std::string short_text(const Cell& cell, std::string_view missing);

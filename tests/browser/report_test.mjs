@@ -195,10 +195,10 @@ const machineOf = (page) =>
 
 /** The exact points that the explorer shows are those of the store with this machine. */
 function assertLine(rows, machine) {
-  const expected = points.filter(({ cache_size, point }) => cache_size === machine.cache_size && point === machine.point);
+  const expected = points.filter((row) => row["cache.size"] === machine.cache_size && row.point === machine.point);
   const exact = rows.filter(({ kind }) => kind === "exact").sort((a, b) => a.x - b.x);
-  expected.sort((a, b) => a.machine_nodes - b.machine_nodes);
-  const shown = expected.map(({ machine_nodes, end, speed_up }) => ({ x: machine_nodes, ms: end * 1e-9, speed_up }));
+  expected.sort((a, b) => a["machine.nodes"] - b["machine.nodes"]);
+  const shown = expected.map((row) => ({ x: row["machine.nodes"], ms: row.end * 1e-9, speed_up: row.speed_up }));
   assertRows(exact, shown, JSON.stringify(machine), 1e-5);
 }
 
@@ -247,7 +247,7 @@ describe("the explorer", () => {
       assert.ok(exact.length > 1);
       for (const { x, speed_up } of exact) {
         assert.ok(
-          points.some((row) => row.cache_size === x && Math.abs(row.speed_up / speed_up - 1) < 1e-5),
+          points.some((row) => row["cache.size"] === x && Math.abs(row.speed_up / speed_up - 1) < 1e-5),
           `cache.size ${x}, speed-up ${speed_up}`,
         );
       }

@@ -53,6 +53,74 @@ TEST(CompareCommand, ListsWhatDiffersBetweenTwoRuns) {
   EXPECT_NE(all.output.find("image_hash"), std::string::npos) << all.output;
 }
 
+// A run and the same with a smaller cache.
+class ComparePage : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(marti("run " + small_run + " -o " + quoted(a_)).status, 0);
+    ASSERT_EQ(marti("run " + small_run + " --set cache.size=1KiB -o " + quoted(b_)).status, 0);
+    if (says(marti(command("probe.html")), "built without the scripts")) {
+      GTEST_SKIP() << "built without the scripts of pages";
+    }
+  }
+  [[nodiscard]] std::string command(const std::string& page) const {
+    return "compare " + quoted(a_) + " " + quoted(b_) + " -o " + quoted(directory_.path() / page);
+  }
+
+  TemporaryDirectory directory_;
+  fs::path a_ = directory_.path() / "\"a\" <b>";
+  fs::path b_ = directory_.path() / "b";
+};
+
+TEST_F(ComparePage, IsOneFileThatLoadsNothing) {
+  a_ = b_;
+  const Outcome made = marti(command("page.html"));
+  EXPECT_EQ(made.status, 0) << made.output;
+  EXPECT_TRUE(says(made, "wrote " + (directory_.path() / "page.html").string())) << made.output;
+  const std::string page = read(directory_.path() / "page.html");
+  EXPECT_TRUE(page.starts_with("<!DOCTYPE html>"));
+  EXPECT_NE(page.find("Content-Security-Policy"), std::string::npos);
+  EXPECT_EQ(page.find("src=\"http"), std::string::npos);
+  EXPECT_EQ(page.find("<link rel=\"stylesheet"), std::string::npos);
+  // Again over the page that is there, and as JSON, which stays JSON.
+  const Outcome json = marti(command("page.html") + " --json");
+  EXPECT_EQ(json.status, 0) << json.output;
+  EXPECT_FALSE(nlohmann::json::parse(json.output, nullptr, false).is_discarded());
+  EXPECT_EQ(read(directory_.path() / "page.html"), page) << "equal files give equal bytes";
+}
+
+TEST_F(ComparePage, IsNotWrittenWhereItCannotBe) {
+  expect_refused(command("none/page.html"), "none");
+  write(directory_.path() / "notes.txt", "mine");
+  expect_refused(command("notes.txt"), "is not an HTML page");
+  EXPECT_EQ(read(directory_.path() / "notes.txt"), "mine");
+  expect_refused("compare " + quoted(b_) + " " + quoted(b_) + " -o /dev/full",
+                 "/dev/full: is no regular file");
+  EXPECT_EQ(marti("compare " + quoted(b_) + " " + quoted(b_) + " -o ''").status, 2);
+  const std::string page = "<!DOCTYPE html>older";
+  write(directory_.path() / "page.html", page);
+  a_ = directory_.path() / "missing";
+  EXPECT_EQ(marti(command("page.html")).status, 2);
+  EXPECT_EQ(read(directory_.path() / "page.html"), page) << "nothing to compare: the page stays";
+}
+
+TEST_F(ComparePage, AFailingWriteLeavesAnOlderPage) {
+  a_ = b_;
+  const std::string page = "<!DOCTYPE html>older";
+  write(directory_.path() / "page.html", page);
+  // A file may have 64 blocks of 1 KiB; the page is larger.
+  const Outcome limited =
+      shell("trap '' XFSZ; ulimit -f 64; " + quoted(MARTI_PROGRAM) + " " + command("page.html"));
+  EXPECT_EQ(limited.status, 2) << limited.output;
+  EXPECT_TRUE(says(limited, "page.html")) << limited.output;
+  EXPECT_EQ(read(directory_.path() / "page.html"), page);
+  std::size_t files = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory_.path())) {
+    files += entry.is_regular_file() ? 1 : 0;
+  }
+  EXPECT_LE(files, 2U) << "no temporary file is left beside page.html and probe.html";
+}
+
 TEST(CompareCommand, RefusesWhatItCannotCompare) {
   const TemporaryDirectory directory;
   const std::string place = quoted(directory.path());

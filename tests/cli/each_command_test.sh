@@ -29,6 +29,7 @@ marti trace -- "$source/configs/marti.toml" "${small[@]}" --set machine.nodes=2 
 marti sweep -- "$source/configs/sweep-small.toml" "${small[@]}" -o sweep
 marti sweep -- "$source/configs/sweep-small.toml" "${small[@]}" -o sweep --plan
 marti compare -- run sweep
+marti compare -- sweep sweep -o compared.html
 marti explore -- "$source/configs/marti.toml" "${small[@]}" --for 0.1 --no-browser
 marti report -- sweep:3
 marti report -- run

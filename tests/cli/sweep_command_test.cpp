@@ -84,10 +84,8 @@ TEST_F(SweepCommand, EachPointIsWhatRunSays) {
   for (int i = 0; i < 5; ++i) {
     const json& point = points.at(random() % points.size());
     std::string settings;
-    for (const auto& [key, name] :
-         {std::pair("image.max_depth", "image_max_depth"), std::pair("machine.nodes", "machine_nodes"),
-          std::pair("cache.size", "cache_size"), std::pair("cache.line", "cache_line")}) {
-      settings += std::string(" --set ") + key + "=" + point.at(name).dump();
+    for (const char* key : {"image.max_depth", "machine.nodes", "cache.size", "cache.line"}) {
+      settings += std::string(" --set ") + key + "=" + point.at(key).dump();
     }
     const Outcome run = marti("run " + quoted(config) + settings + " --json");
     ASSERT_EQ(run.status, 0) << run.output;

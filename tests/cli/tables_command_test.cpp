@@ -86,7 +86,7 @@ int check(const fs::path& directory) {
     const Row header = rows.empty() ? Row() : rows[0];
     EXPECT_EQ(std::set<std::string>(header.begin(), header.end()).size(), header.size()) << name;
     for (std::size_t k = 0; k < header.size(); ++k) {
-      EXPECT_EQ(header[k].find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_"), std::string::npos)
+      EXPECT_EQ(header[k].find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_."), std::string::npos)
           << name << ": " << header[k];
       for (std::size_t i = 1; i < rows.size(); ++i) {
         if (k == 0) {

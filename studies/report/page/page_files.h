@@ -19,6 +19,7 @@ namespace marti::studies {
 [[nodiscard]] Script report_chosen_point_js();
 [[nodiscard]] Script report_controls_js();
 [[nodiscard]] Script report_explorer_js();
+[[nodiscard]] Script report_sort_tables_js();
 [[nodiscard]] Script report_main_js();
 
 }  // namespace marti::studies

@@ -79,20 +79,6 @@ std::string answer_html(const ReportData& report) {
   return html + "</ul>\n";
 }
 
-std::string chart_html(const ReportChart& chart, bool wide) {
-  const std::string name = html_text(chart.name);
-  return fmt::format(
-      "<figure{0} role=\"group\" aria-labelledby=\"title-{1}\"><h3 id=\"title-{1}\">{2}</h3>\n"
-      "<div id=\"chart-{1}\" class=\"chart\" tabindex=\"0\"></div>\n"
-      "<figcaption><p class=\"note\" id=\"note-{1}\">{3}</p><p class=\"saves\">"
-      "<a href=\"#chart-{1}\" data-save=\"csv\" data-chart=\"{1}\" aria-label=\"{2}: save the data as "
-      "CSV\">CSV</a>"
-      "<a href=\"#chart-{1}\" data-save=\"svg\" data-chart=\"{1}\" aria-label=\"{2}: save the chart as "
-      "SVG\">SVG</a>"
-      "</p></figcaption></figure>\n",
-      wide ? " class=\"wide\"" : "", name, html_text(chart.title), html_text(chart.note));
-}
-
 bool is_explored(const ReportChart& chart) {
   return chart.live.is_object() && chart.live.value("rows", "") == "explorer";
 }
@@ -101,8 +87,7 @@ std::string charts_html(const ReportData& report, bool explored) {
   std::string html;
   for (const ReportChart& chart : report.charts) {
     if (is_explored(chart) == explored) {
-      const bool wide = !chart.spec.contains("width") && !chart.spec.contains("layer");
-      html += chart_html(chart, wide);
+      html += chart_html(chart);
     }
   }
   return html.empty() ? html : "<div class=\"charts\">\n" + html + "</div>\n";
@@ -173,6 +158,21 @@ std::string provenance_html(const ReportData& report) {
 }
 
 }  // namespace
+
+std::string chart_html(const ReportChart& chart) {
+  const bool wide = !chart.spec.contains("width") && !chart.spec.contains("layer");
+  const std::string name = html_text(chart.name);
+  return fmt::format(
+      "<figure{0} role=\"group\" aria-labelledby=\"title-{1}\"><h3 id=\"title-{1}\">{2}</h3>\n"
+      "<div id=\"chart-{1}\" class=\"chart\" tabindex=\"0\"></div>\n"
+      "<figcaption><p class=\"note\" id=\"note-{1}\">{3}</p><p class=\"saves\">"
+      "<a href=\"#chart-{1}\" data-save=\"csv\" data-chart=\"{1}\" aria-label=\"{2}: save the data as "
+      "CSV\">CSV</a>"
+      "<a href=\"#chart-{1}\" data-save=\"svg\" data-chart=\"{1}\" aria-label=\"{2}: save the chart as "
+      "SVG\">SVG</a>"
+      "</p></figcaption></figure>\n",
+      wide ? " class=\"wide\"" : "", name, html_text(chart.title), html_text(chart.note));
+}
 
 std::vector<PageSection> page_sections(const ReportData& report) {
   std::vector<PageSection> sections;

@@ -14,6 +14,9 @@ struct PageSection {
   std::string html;   ///< what it holds
 };
 
+/// A chart's place on the page, with its note and the links that save it.
+[[nodiscard]] std::string chart_html(const ReportChart& chart);
+
 /// In the order of the page; parts for which the report has no data are left out.
 [[nodiscard]] std::vector<PageSection> page_sections(const ReportData& report);
 

@@ -57,6 +57,11 @@ std::string fill(std::string_view page, const std::map<std::string_view, std::st
 }  // namespace
 
 std::string report_page(const ReportData& report, std::span<const Script> scripts) {
+  return report_page(report, page_sections(report), scripts);
+}
+
+std::string report_page(const ReportData& report, std::span<const PageSection> parts,
+                        std::span<const Script> scripts) {
   std::string policy = "default-src 'none'; img-src data:; base-uri 'none'; form-action 'none'; style-src" +
                        source_of(report_page_css()) + "; script-src";
   std::vector<Script> all(scripts.begin(), scripts.end());
@@ -67,7 +72,7 @@ std::string report_page(const ReportData& report, std::span<const Script> script
                            report_points_filter_js(), report_points_table_js(), report_chosen_point_js(),
                            report_controls_js(), report_explorer_js()});
   }
-  all.push_back(report_main_js());
+  all.insert(all.end(), {report_sort_tables_js(), report_main_js()});
   std::string script_elements;
   for (const Script& script : all) {
     policy += source_of(script);
@@ -75,7 +80,7 @@ std::string report_page(const ReportData& report, std::span<const Script> script
   }
   std::string contents;
   std::string sections;
-  for (const PageSection& section : page_sections(report)) {
+  for (const PageSection& section : parts) {
     contents += "<li><a href=\"#" + section.id + "\">" + section.title + "</a></li>\n";
     sections += "<section id=\"" + section.id + "\" aria-labelledby=\"title-of-" + section.id +
                 "\"><h2 id=\"title-of-" + section.id + "\">" + section.title + "</h2>\n" + section.html +

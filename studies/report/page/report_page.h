@@ -5,6 +5,7 @@
 #include <string>
 
 #include "studies/report/model/report_data.h"
+#include "studies/report/page/page_sections.h"
 #include "studies/report/plots/vega_bundle.h"
 
 namespace marti::studies {
@@ -13,5 +14,9 @@ namespace marti::studies {
 /// it and nothing else: scripts and style by their SHA-256, images as data: addresses. Equal data give equal
 /// bytes. `scripts` are loaded before the page's own, in this order.
 [[nodiscard]] std::string report_page(const ReportData& report, std::span<const Script> scripts);
+
+/// The same with other sections than those of the report; of `report` only the title and the charts are used.
+[[nodiscard]] std::string report_page(const ReportData& report, std::span<const PageSection> parts,
+                                      std::span<const Script> scripts);
 
 }  // namespace marti::studies

@@ -8,12 +8,11 @@
 
 #include "processors/cost/accounting.h"
 #include "sim/error.h"
-#include "sim/schema.h"
 #include "studies/limits/stored_limits.h"
 #include "studies/report/model/cycle_groups.h"
 #include "studies/report/model/sweep_answer.h"
 #include "studies/report/read/axis_order.h"
-#include "studies/sweep/plan/sweep_keys.h"
+#include "studies/sweep/plan/axis_text.h"
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/cell_number.h"
 
@@ -236,63 +235,17 @@ class Settings {
   bool begun_ = false;
 };
 
-bool is_boolean(const sim::Key* key) { return key != nullptr && key->type == sim::ValueType::boolean; }
-
-// A value as its key would have it in a file.
-std::string text_of(const Cell& cell, const sim::Key* key) {
-  if (const auto* text = std::get_if<std::string>(&cell)) {
-    return *text;
-  }
-  const std::optional<double> number = number_of(cell);
-  if (!number) {
-    return "none";
-  }
-  const auto* integer = std::get_if<std::int64_t>(&cell);
-  if (integer != nullptr && is_boolean(key)) {
-    return *integer != 0 ? "true" : "false";
-  }
-  const bool real =
-      key != nullptr && (key->type == sim::ValueType::real || key->type == sim::ValueType::frequency ||
-                         key->type == sim::ValueType::percentage);
-  std::string text;
-  if (key == nullptr || (integer == nullptr && !real)) {
-    text = integer != nullptr ? std::to_string(*integer) : fmt::format("{}", *number);
-  } else {
-    text = sim::print_value(key->type, real ? sim::Value(*number) : sim::Value(*integer));
-  }
-  std::erase(text, '"');
-  return text;
-}
-
-std::string unit_of(const sim::Key* key) {
-  if (key == nullptr) {
-    return {};
-  }
-  switch (key->type) {
-    case sim::ValueType::size:
-      return "byte";
-    case sim::ValueType::frequency:
-      return "Hz";
-    case sim::ValueType::duration:
-      return "ps";
-    default:
-      return key->unit;
-  }
-}
-
-ReportAxis make_axis(const AxisColumn& column, const sim::Schema& schema) {
+ReportAxis make_axis(const AxisColumn& column) {
   ReportAxis axis;
   axis.name = column.name;
   axis.followers = column.followers;
   axis.values = column.values;
-  const std::optional<std::size_t> at = schema.find(column.name);
-  const sim::Key* key = at ? &schema.keys()[*at] : nullptr;
-  axis.unit = unit_of(key);
-  axis.numeric =
-      !is_boolean(key) && std::all_of(axis.values.begin(), axis.values.end(),
-                                      [](const Cell& cell) { return number_of(cell).has_value(); });
+  axis.unit = axis_unit(column.name);
+  axis.numeric = !is_boolean_axis(column.name) &&
+                 std::all_of(axis.values.begin(), axis.values.end(),
+                             [](const Cell& cell) { return number_of(cell).has_value(); });
   for (const Cell& value : axis.values) {
-    axis.texts.push_back(text_of(value, key));
+    axis.texts.push_back(axis_text(column.name, value));
   }
   if (axis.numeric) {
     std::vector<double> numbers;
@@ -360,12 +313,11 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
     point.frame = frames.number_of(point.machine);
   }
   sweep.frames = frames.count();
-  const sim::Schema schema = sweep_schema();
   for (const AxisColumn& column : order_axes(reader.axes(), values)) {
     for (std::size_t i = 0; i < sweep.points.size(); ++i) {
       sweep.points[i].place.push_back(column.index[i]);
     }
-    sweep.axes.push_back(make_axis(column, schema));
+    sweep.axes.push_back(make_axis(column));
   }
   check_places(store, sweep);
   sweep.settings = settings.shared();

@@ -21,7 +21,8 @@ std::string saving_text(const PlanEntry& entry) {
     text = bytes(static_cast<double>(cost.bytes));
   }
   if (cost.operations > 0) {
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", cost.operations, entry.unit);
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ",
+                        grouped(static_cast<std::int64_t>(cost.operations)), entry.unit);
   }
   return text.empty() ? text : ": saves " + text;
 }

@@ -31,6 +31,8 @@ std::string shorten(const std::vector<std::string>& steps) {
          fmt::format(" ({} values)", steps.size());
 }
 
+std::string number(std::uint64_t count) { return grouped(static_cast<std::int64_t>(count)); }
+
 }  // namespace
 
 std::string describe(const SweepPlan& plan, const SweepOutlook& outlook) {
@@ -42,31 +44,31 @@ std::string describe(const SweepPlan& plan, const SweepOutlook& outlook) {
     line(&direction == plan.directions.data() ? "axes" : "",
          join(direction.keys, " and ") + ": " + shorten(direction.steps));
   }
-  std::string points = std::to_string(plan.points.size());
+  std::string points = number(plan.points.size());
   if (plan.filtered_out > 0) {
-    points += fmt::format(", {} more do not pass the filter", plan.filtered_out);
+    points += fmt::format(", {} more do not pass the filter", number(plan.filtered_out));
   }
   if (!plan.skipped.empty()) {
-    points += fmt::format(", {} more cannot be built", plan.skipped.size());
+    points += fmt::format(", {} more cannot be built", number(plan.skipped.size()));
   }
   line("points", points);
   for (std::size_t i = 0; i < std::min(most_skipped_shown, plan.skipped.size()); ++i) {
     line("", "left out: " + plan.skipped[i].point + ": " + plan.skipped[i].reason);
   }
-  line("frames", fmt::format("{} functional run{}, {} done", plan.frames.size(),
-                             plan.frames.size() == 1 ? "" : "s", outlook.frames_done));
+  line("frames", fmt::format("{} functional run{}, {} done", number(plan.frames.size()),
+                             plan.frames.size() == 1 ? "" : "s", number(outlook.frames_done)));
 
   std::vector<bool> asked_for(plan.machines.size());
   for (const SweepPoint& point : plan.points) {
     asked_for[point.machine] = true;
   }
   const auto of_points = static_cast<std::size_t>(std::count(asked_for.begin(), asked_for.end(), true));
-  std::string machines = std::to_string(plan.machines.size());
+  std::string machines = number(plan.machines.size());
   if (of_points < plan.machines.size()) {
-    machines += fmt::format(" ({} of points, {} to measure them against)", of_points,
-                            plan.machines.size() - of_points);
+    machines += fmt::format(" ({} of points, {} to measure them against)", number(of_points),
+                            number(plan.machines.size() - of_points));
   }
-  line("machines", machines + fmt::format(", {} done", outlook.machines_done));
+  line("machines", machines + fmt::format(", {} done", number(outlook.machines_done)));
 
   const auto by_cost = [](const SweepPoint& a, const SweepPoint& b) { return a.cost < b.cost; };
   const auto [cheapest, dearest] = std::minmax_element(plan.points.begin(), plan.points.end(), by_cost);

@@ -11,6 +11,7 @@
 #include "sim/error.h"
 #include "studies/figures/best_offer.h"
 #include "studies/figures/derived_figures.h"
+#include "studies/sweep/plan/axis_text.h"
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_table.h"
 #include "studies/tables/text_units.h"
@@ -34,11 +35,6 @@ std::vector<Row> rows_of(const SweepReader& reader, std::span<const std::string>
   return rows;
 }
 
-std::string plain(std::string name) {
-  std::replace(name.begin(), name.end(), '.', '_');
-  return name;
-}
-
 // The type of a figure: text, if its first value is one; integer, if all its values are; else real.
 ColumnType type_of(std::span<const Row> rows, std::size_t index) {
   bool real = false;
@@ -57,12 +53,12 @@ ColumnType type_of(std::span<const Row> rows, std::size_t index) {
 Column column_of(const std::string& name) {
   static const std::map<std::string, std::pair<std::string, std::string>> own = {
       {"cost", {"1", "price of the machine, by [prices]"}},
-      {"ordinal", {"", "number of the point in the sweep, from 0"}},
+      {"ordinal", {"1", "number of the point in the sweep, from 0"}},
       {"machine", {"", "id of its machine in the store"}},
       {"base", {"", "id of the machine that its speed-up is measured against"}},
       {"point", {"", "name in [sweep.points]"}},
       {"best", {"1", "1 for the best within the budget, 0 for the others"}}};
-  Column column{plain(name), ColumnType::real, "", "the key " + name};
+  Column column{name, ColumnType::real, axis_unit(name), "the key " + name};
   const auto describe = [&](const std::string& unit, const std::string& description) {
     column.unit = unit;
     column.description = description;
@@ -85,7 +81,7 @@ Table table_of(std::string name, std::string title, std::span<const std::string>
   std::vector<Column> columns;
   for (std::size_t i = 0; i < names.size(); ++i) {
     columns.push_back(column_of(names[i]));
-    columns.back().type = type_of(rows, i);
+    columns.back().type = is_boolean_axis(names[i]) ? ColumnType::boolean : type_of(rows, i);
     if (columns.back().type == ColumnType::text) {
       columns.back().unit.clear();  // its text holds the unit
     }
@@ -99,14 +95,6 @@ Table table_of(std::string name, std::string title, std::span<const std::string>
     table.add_row(std::move(cells));
   }
   return table;
-}
-
-std::string text_of(const Cell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) {
-    return *text;
-  }
-  const std::optional<double> number = number_of(cell);
-  return number ? fmt::format("{:.6g}", *number) : "-";
 }
 
 }  // namespace
@@ -146,17 +134,19 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
   marked_names.emplace_back("best");
   // Times that differ in their fourth digit must not look alike.
   const bool time = figure.unit == "ps";
-  const auto shown = [time](const Cell& cell) {
-    return time ? seconds(static_cast<sim::Ticks>(*number_of(cell))) : text_of(cell);
-  };
+  const auto shown = [&figure](const Cell& cell) { return figure_text(cell, figure.unit, "-"); };
   std::string text = fmt::format("best {}{}: {} at a cost of {:g}:", metric,
                                  budget ? fmt::format(" within {:g}", *budget) : std::string(),
                                  shown(rows[*best].figures.back()), offers[*best].cost);
   for (std::size_t axis = 0; axis < axes; ++axis) {
-    text += (axis == 0 ? " " : ", ") + names[axis] + " = " + text_of(rows[*best].figures[axis]);
+    text +=
+        (axis == 0 ? " " : ", ") + names[axis] + " = " + axis_text(names[axis], rows[*best].figures[axis]);
   }
   Table table = table_of("best", "Points that no other beats in cost and " + metric, marked_names, marked);
   for (Row& row : front) {
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+      row.figures[axis] = axis_text(names[axis], row.figures[axis]);
+    }
     if (time) {
       row.figures.back() = shown(row.figures.back());
     }

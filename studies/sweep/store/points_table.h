@@ -10,7 +10,8 @@
 namespace marti::studies {
 
 /// "points": a row for each point of the present plan whose machine has been timed: its axes, its cost, the
-/// derived figures, and all counters. A dot in a key becomes '_' in its column's name.
+/// derived figures, and all counters. Its columns have the names and units of the store's; a key that is true
+/// or false is a boolean.
 [[nodiscard]] Table points_table(const SweepReader& reader);
 
 /// Which points are worth their price.

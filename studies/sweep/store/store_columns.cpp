@@ -2,6 +2,7 @@
 
 #include "studies/figures/derived_figures.h"
 #include "studies/run/frame_figures.h"
+#include "studies/sweep/plan/axis_text.h"
 #include "studies/tables/sqlite_connection.h"
 
 namespace marti::studies {
@@ -32,7 +33,7 @@ std::vector<StoreColumn> point_columns(const std::string& table, std::span<const
       {table, "base", "", "id of the machine its speed-up is measured against"},
       {table, "cost", "1", "cost by the prices of the configuration"}};
   for (const std::string& axis : axes) {
-    columns.push_back({table, axis, "", "the point's value of this key"});
+    columns.push_back({table, axis, axis_unit(axis), "the point's value of this key"});
   }
   return columns;
 }

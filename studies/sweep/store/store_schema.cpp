@@ -90,7 +90,7 @@ std::string counters_sql(std::span<const FigureEntry> columns) {
 
 // An axis has the type of its values, if they all have the same.
 std::string axis_type(const SweepPlan& plan, std::size_t axis) {
-  constexpr std::array<std::string_view, 4> types = {"INTEGER", "INTEGER", "REAL", "TEXT"};
+  constexpr std::array<std::string_view, 4> types = {"BOOLEAN", "INTEGER", "REAL", "TEXT"};
   std::string_view type;
   for (const SweepPoint& point : plan.points) {
     const std::string_view here = types.at(point.values.at(axis).index());

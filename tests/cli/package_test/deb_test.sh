@@ -17,7 +17,7 @@ done
 dpkg-deb -x "$package" "$work/root"
 for file in bin/marti share/man/man1/marti.1 share/bash-completion/completions/marti \
   share/fish/vendor_completions.d/marti.fish share/zsh/site-functions/_marti share/marti/configs/marti.toml \
-  share/doc/marti/tutorial.md share/doc/marti/examples/read_store.py share/doc/marti/copyright; do
+  share/doc/marti/tutorial.md share/doc/marti/examples/marti_sweep.py share/doc/marti/copyright; do
   [ -s "$work/root/usr/$file" ] || [ -s "$work/root/usr/$file.gz" ] || { echo "$file is missing" >&2 && exit 1; }
 done
 [ ! -e "$work/root/usr/include" ] || { echo "headers are in the program's package" >&2 && exit 1; }

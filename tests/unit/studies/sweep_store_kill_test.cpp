@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "sim/files.h"
-#include "studies/compare/compare_sweeps.h"
+#include "studies/compare/two_sweeps.h"
 #include "studies/report/read/read_report.h"
 #include "studies/sweep/store/points_table.h"
 #include "studies/sweep/store/sweep_reader.h"
@@ -179,7 +179,7 @@ std::string shown(const fs::path& file, std::size_t& done) {
   std::string text;
   const std::string message = user_error_of([&] {
     done = is_begun(file) ? SweepReader(file).machines_done().size() : 0;  // as --plan does
-    text = csv_of(points_table(SweepReader(file))) + compare_sweeps(file, file, {});
+    text = csv_of(points_table(SweepReader(file))) + text_of(two_sweeps(file, file), false);
     text += read_report(file.parent_path()).title;
   });
   return message == "no UserError" ? text : message;
@@ -219,7 +219,7 @@ class KilledStore : public testing::Test {
       const bool nothing_yet = text.find("holds nothing: the sweep was ended") != std::string::npos ||
                                text.find("there is no such file") != std::string::npos ||
                                text.find("has been timed yet") != std::string::npos;
-      EXPECT_TRUE(done == 0 ? nothing_yet : text.find("point,machine_nodes") != std::string::npos) << where;
+      EXPECT_TRUE(done == 0 ? nothing_yet : text.find("point,machine.nodes") != std::string::npos) << where;
       EXPECT_EQ(user_error_of([&] { finish(file); }), "no UserError") << where;
       EXPECT_EQ(test::dump(file), expected_) << where;
       EXPECT_EQ(std::distance(fs::directory_iterator(directory), fs::directory_iterator()), 1) << where;

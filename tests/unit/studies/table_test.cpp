@@ -3,11 +3,14 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "sim/error.h"
+#include "studies/tables/csv.h"
+#include "studies/tables/json_table.h"
 #include "studies/tables/table.h"
 #include "studies/tables/text_table.h"
 #include "studies/tables/wide_table.h"
@@ -63,6 +66,23 @@ TEST(Table, TextIsAlignedAndInUnitsForPeople) {
             "                                s   KiB       %\n"
             "  a             -1,234,567  1.500   1.5   12.50\n"
             "  two\\x0alines         999      -   0.0  100.00\n");
+}
+
+// A column of a key has the key's name; a boolean is one in JSON, and a word in texts.
+TEST(Table, KeysAndBooleansStayWhatTheyAre) {
+  Table table("t", "title",
+              {{"machine.nodes", ColumnType::integer, "1", ""}, {"l2.on", ColumnType::boolean, "", ""}});
+  EXPECT_THROW(Table("t.u", "", {{"a", ColumnType::text, "", ""}}), sim::InternalError);
+  EXPECT_THROW(table.add_row({std::int64_t{1}, std::int64_t{2}}), sim::InternalError);
+  EXPECT_THROW(table.add_row({std::int64_t{1}, "true"}), sim::InternalError);
+  table.add_row({std::int64_t{1}, std::int64_t{1}});
+  table.add_row({std::int64_t{0}, std::int64_t{0}});
+  table.add_row({std::int64_t{2}, {}});
+  EXPECT_EQ(
+      studies::rows_json(table).dump(),
+      R"([{"machine.nodes":1,"l2.on":true},{"machine.nodes":0,"l2.on":false},{"machine.nodes":2,"l2.on":null}])");
+  EXPECT_EQ(studies::csv_of(table), "machine.nodes,l2.on\r\n1,true\r\n0,false\r\n2,\r\n");
+  EXPECT_NE(text_of(table).find("1   true\n"), std::string::npos) << text_of(table);
 }
 
 TEST(Table, WideningKeepsEveryCell) {

@@ -1,0 +1,37 @@
+#include "studies/compare/alike.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+namespace marti::studies {
+
+SharedDifferences take_alike(std::span<std::vector<Difference>* const> lists) {
+  std::map<std::string, std::vector<const Difference*>> by_name;
+  for (const std::vector<Difference>* list : lists) {
+    for (const Difference& difference : *list) {
+      by_name[difference.name].push_back(&difference);
+    }
+  }
+  SharedDifferences found;
+  for (const auto& [name, differences] : by_name) {
+    const Difference& first = *differences.front();
+    const bool alike = differences.size() == lists.size() &&
+                       std::all_of(differences.begin(), differences.end(), [&first](const Difference* other) {
+                         return other->a == first.a && other->b == first.b;
+                       });
+    const auto both = std::find_if(differences.begin(), differences.end(), [](const Difference* difference) {
+      return difference->a != Cell() && difference->b != Cell();
+    });
+    (alike ? found.alike : found.varied).push_back(both == differences.end() ? first : **both);
+  }
+  for (std::vector<Difference>* list : lists) {
+    std::erase_if(*list, [&found](const Difference& difference) {
+      return std::any_of(found.alike.begin(), found.alike.end(),
+                         [&](const Difference& alike) { return alike.name == difference.name; });
+    });
+  }
+  return found;
+}
+
+}  // namespace marti::studies

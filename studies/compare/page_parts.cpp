@@ -1,0 +1,101 @@
+#include "studies/compare/page_parts.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "sim/schema.h"
+#include "studies/compare/compare_text.h"
+#include "studies/report/model/chart_library.h"
+#include "studies/sweep/plan/sweep_keys.h"
+#include "studies/tables/cell_number.h"
+#include "studies/tables/text_units.h"
+
+namespace marti::studies {
+
+namespace {
+
+const sim::Schema& keys() {
+  static const sim::Schema schema = sweep_schema();
+  return schema;
+}
+
+SortedCell setting_cell(const std::string& key, const Cell& value) {
+  return {setting_text(value), setting_number(key, value)};
+}
+
+}  // namespace
+
+SortedTable settings_table(const std::string& title, const std::vector<Difference>& settings) {
+  SortedTable table;
+  table.title = title;
+  table.columns = {{"key", false, "of the configuration"},
+                   {"A", false, "value in A; - where the machine does not use it"},
+                   {"B", false, "value in B; - where the machine does not use it"},
+                   {"meaning", false, ""}};
+  for (const Difference& setting : settings) {
+    const std::optional<std::size_t> key = keys().find(setting.name);
+    table.rows.push_back({{setting.name, {}},
+                          setting_cell(setting.name, setting.a),
+                          setting_cell(setting.name, setting.b),
+                          {key ? keys().keys()[*key].meaning : std::string(), {}}});
+  }
+  return table;
+}
+
+SortedCell figure_cell(const Cell& value, const std::string& figure) {
+  SortedCell cell{printable(figure_text(value, unit_of_figure(figure), "-")), {}};
+  if (const std::optional<double> number = number_of(value); number && std::isfinite(*number)) {
+    cell.number = number;
+  }
+  return cell;
+}
+
+SortedCell change_cell(const Difference& figure) { return {change_of(figure), figure.relative()}; }
+
+SortedCell time_cell(std::int64_t ps) { return {seconds(ps), static_cast<double>(ps)}; }
+
+SortedCell ratio_cell(double ratio) { return {fmt::format("{:.4f}", ratio), ratio}; }
+
+SortedTable figures_table(const std::string& title, const std::vector<Difference>& figures) {
+  SortedTable table;
+  table.title = title;
+  table.columns = {{"figure", false, "name in the catalogue: marti figures"},
+                   {"A", true, ""},
+                   {"B", true, ""},
+                   {"change", true, "from A to B; sorted by |B - A| / max(|A|, |B|)"},
+                   {"meaning", false, ""}};
+  for (const Difference& figure : figures) {
+    table.rows.push_back({{figure.name, {}},
+                          figure_cell(figure.a, figure.name),
+                          figure_cell(figure.b, figure.name),
+                          change_cell(figure),
+                          {meaning_of_figure(figure.name), {}}});
+  }
+  return table;
+}
+
+ReportChart ratio_chart(const std::vector<RatioPoint>& points) {
+  Table table("compare_points", "Frame time of B by that of A, for each point",
+              {{"point", ColumnType::integer, "1", "its number"},
+               {"name", ColumnType::text, "", "the values of its axes"},
+               {"a_ps", ColumnType::integer, "ps", "frame time of A"},
+               {"b_ps", ColumnType::integer, "ps", "frame time of B"},
+               {"ratio", ColumnType::real, "1", "frame time of B / frame time of A"},
+               {"which", ColumnType::text, "", "which is faster"}});
+  for (const RatioPoint& point : points) {
+    table.add_row({point.point, point.name, point.a, point.b,
+                   static_cast<double>(point.b) / static_cast<double>(point.a),
+                   std::string(point.b < point.a   ? "B is faster"
+                               : point.b > point.a ? "B is slower"
+                                                   : "equal")});
+  }
+  return make_chart(table.name(), table, "Below the line B is faster.");
+}
+
+std::string who_is(const char* letter, const std::string& name, const std::string& version) {
+  return fmt::format("{} is {}{}.", letter, printable(name),
+                     version.empty() ? "" : ", made by marti " + printable(version));
+}
+
+}  // namespace marti::studies

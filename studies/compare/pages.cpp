@@ -1,0 +1,247 @@
+// The page of each kind of comparison.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "studies/compare/compare_text.h"
+#include "studies/compare/comparison_page.h"
+#include "studies/compare/frames.h"
+#include "studies/compare/page_parts.h"
+#include "studies/report/model/chart_library.h"
+#include "studies/tables/cell_number.h"
+#include "studies/tables/text_units.h"
+
+namespace marti::studies {
+
+namespace {
+
+std::string title_of(const std::string& a, const std::string& b) {
+  return fmt::format("{} compared with {}", printable(b), printable(a));
+}
+
+void add_frame_part(const std::vector<Difference>& settings, ComparisonPage& page) {
+  if (!settings.empty()) {
+    page.parts.push_back(
+        {"frame", "What differs in the frame", {}, {}, {settings_table("Settings of the frame", settings)}});
+  }
+}
+
+void add_machine_part(const std::vector<Difference>& settings, const std::string& equal,
+                      ComparisonPage& page) {
+  ComparisonPart part{"machine", "What differs in the machine", {equal}, {}, {}};
+  if (!settings.empty()) {
+    part.tables.push_back(settings_table("Settings", settings));
+  }
+  page.parts.push_back(std::move(part));
+}
+
+ReportChart times_chart(const std::vector<ActivityTime>& times, double end) {
+  Table table("compare_times", "Where the time went",
+              {{"activity", ColumnType::text, "", "see docs/model.md, Accounting"},
+               {"a_ps", ColumnType::integer, "ps", "mean of a node of A"},
+               {"b_ps", ColumnType::integer, "ps", "mean of a node of B"},
+               {"change_ms", ColumnType::real, "ms", "B less A"},
+               {"of_frame", ColumnType::real, "fraction", "the change by the frame time of A"},
+               {"which", ColumnType::text, "", "whether B spends more"}});
+  for (const ActivityTime& time : times) {
+    table.add_row({time.activity, time.mean_a, time.mean_b, time.change * 1e-9, time.change / end,
+                   std::string(time.change > 0.0 ? "more in B" : "less in B")});
+  }
+  return make_chart(table.name(), table, "The changes add up to that of the frame time.");
+}
+
+SortedTable times_table(const std::vector<ActivityTime>& times, double end) {
+  SortedTable table;
+  table.title = "Mean time of a node by activity";
+  table.columns = {{"activity", false, "see docs/model.md, Accounting"},
+                   {"A", true, ""},
+                   {"B", true, ""},
+                   {"change", true, "B less A"},
+                   {"of A's frame", true, "the change by the frame time of A"}};
+  for (const ActivityTime& time : times) {
+    table.rows.push_back({{time.activity, {}},
+                          time_cell(time.mean_a),
+                          time_cell(time.mean_b),
+                          {signed_seconds(std::llround(time.change)), time.change},
+                          {change_percent(time.change / end), time.change / end}});
+  }
+  return table;
+}
+
+}  // namespace
+
+ComparisonPage page_of(const ComparedPair& pair) {
+  ComparisonPage page;
+  page.title = title_of(pair.a.name, pair.b.name);
+  ComparisonPart verdict{"answer", "The verdict", verdict_of(pair), {}, {}};
+  verdict.sentences.push_back(who_is("A", pair.a.name, pair.a.version));
+  verdict.sentences.push_back(who_is("B", pair.b.name, pair.b.version));
+  page.parts.push_back(std::move(verdict));
+  std::vector<Difference> machine = pair.differences.settings;
+  if (!pair.same_frame) {
+    add_frame_part(frame_settings(machine), page);
+    std::erase_if(machine, [](const Difference& setting) { return is_frame_setting(setting.name); });
+  }
+  add_machine_part(machine,
+                   fmt::format("{} differ{}, {} are equal.", count(machine.size(), "setting"),
+                               machine.size() == 1 ? "s" : "", pair.differences.equal_settings),
+                   page);
+  ComparisonPart time{"time", "Where the time went", helps_of(pair), {}, {}};
+  if (!pair.times.empty()) {
+    const auto end = static_cast<double>(frame_time(pair.a));
+    time.charts.push_back(times_chart(pair.times, end));
+    time.tables.push_back(times_table(pair.times, end));
+  }
+  if (!time.sentences.empty() || !time.charts.empty()) {
+    page.parts.push_back(std::move(time));
+  }
+  const Differences& found = pair.differences;
+  std::vector<Difference> figures = found.texts;
+  figures.insert(figures.end(), found.numbers.begin(), found.numbers.end());
+  ComparisonPart counters{"counters", "Figures, the largest change first", {}, {}, {}};
+  counters.sentences.push_back(fmt::format("{} differ{}, {} are equal.", count(figures.size(), "figure"),
+                                           figures.size() == 1 ? "s" : "", found.equal.size()));
+  if (!figures.empty()) {
+    counters.tables.push_back(figures_table("Figures that differ", figures));
+  }
+  if (!found.one_side.empty()) {
+    counters.tables.push_back(figures_table("Figures that only one has", found.one_side));
+  }
+  page.parts.push_back(std::move(counters));
+  return page;
+}
+
+ComparisonPage page_of(const ResultAndSweep& found) {
+  ComparisonPage page;
+  page.title = title_of(found.a, found.b);
+  ComparisonPart verdict{"answer", "The verdict", verdict_of(found), {}, {}};
+  verdict.sentences.push_back(who_is("A", found.a, {}));
+  verdict.sentences.push_back(who_is("B", found.b, {}));
+  page.parts.push_back(std::move(verdict));
+  add_frame_part(found.frame, page);
+  add_machine_part(found.alike,
+                   fmt::format("{} differ{} in every point alike, {} from point to point, {} are equal.",
+                               count(found.alike.size(), "setting"), found.alike.size() == 1 ? "s" : "",
+                               found.varied.size(), found.equal_settings),
+                   page);
+  SortedTable table;
+  table.title = found.same_frame ? "Points, the shortest frame first" : "Points, the nearest machine first";
+  table.columns = {{"point", true, "its number in the sweep"},
+                   {"settings", false, "that differ from point to point"},
+                   {"frame time", true, ""},
+                   {"B / A", true, "of the frame times; empty where the frames differ"},
+                   {"differing settings", true, "that both machines use"}};
+  std::vector<RatioPoint> ratios;
+  for (std::size_t i = 0; i < std::min(found.points.size(), most_page_points); ++i) {
+    const ComparedPoint& point = found.points[i];
+    const std::string name =
+        (point.name.empty() ? "" : point.name + ": ") + values_text(point.settings, found.of_sweep(), false);
+    table.rows.push_back({{std::to_string(point.ordinal), static_cast<double>(point.ordinal)},
+                          {name, {}},
+                          time_cell(point.end),
+                          found.same_frame ? ratio_cell(point.ratio) : SortedCell(),
+                          {std::to_string(point.distance), static_cast<double>(point.distance)}});
+    ratios.push_back({point.ordinal, name, found.sweep_is_a() ? point.end : found.end,
+                      found.sweep_is_a() ? found.end : point.end});
+  }
+  ComparisonPart points{"points", "Points", {}, {}, {}};
+  points.sentences.push_back(fmt::format("{} takes {}: {}.", found.result_letter(), seconds(found.end),
+                                         values_text(found.varied, found.of_result(), false)));
+  if (found.same_frame) {
+    points.charts.push_back(ratio_chart(ratios));
+  }
+  points.tables.push_back(std::move(table));
+  page.parts.push_back(std::move(points));
+  return page;
+}
+
+ComparisonPage page_of(const TwoSweeps& found) {
+  ComparisonPage page;
+  page.title = title_of(found.a, found.b);
+  ComparisonPart verdict{"answer", "The verdict", verdict_of(found), {}, {}};
+  verdict.sentences.push_back(fmt::format(
+      "{} in both, joined by {}; {} only in A, {} only in B.", count(found.both, "point"),
+      found.by_axes ? "the values of their axes" : "all settings", found.only_a.size(), found.only_b.size()));
+  verdict.sentences.push_back(who_is("A", found.a, found.version_a));
+  verdict.sentences.push_back(who_is("B", found.b, found.version_b));
+  page.parts.push_back(std::move(verdict));
+  add_frame_part(found.frame, page);
+  add_machine_part(found.alike,
+                   fmt::format("{} differ{} at every joined point alike.",
+                               count(found.alike.size(), "setting"), found.alike.size() == 1 ? "s" : ""),
+                   page);
+  if (found.points.empty()) {
+    return page;
+  }
+  SortedTable table;
+  table.title = "Points, the largest effect first";
+  table.columns = {{"point of A", true, "its number"}, {"point of B", true, "its number"}};
+  for (const std::string& axis : found.axes) {
+    table.columns.push_back({printable(axis), false, "axis of A"});
+  }
+  table.columns.insert(table.columns.end(), {{"A", true, "frame time"},
+                                             {"B", true, "frame time"},
+                                             {"B / A", true, "empty where the frames differ"}});
+  std::vector<RatioPoint> ratios;
+  for (std::size_t i = 0; i < std::min(found.points.size(), most_page_points); ++i) {
+    const JoinedPoint& point = found.points[i];
+    std::vector<SortedCell> row = {{std::to_string(point.a), static_cast<double>(point.a)},
+                                   {std::to_string(point.b), static_cast<double>(point.b)}};
+    for (std::size_t axis = 0; axis < found.axes.size(); ++axis) {
+      row.push_back({point.texts[axis], number_of(point.values[axis])});
+    }
+    row.insert(row.end(), {time_cell(point.end_a), time_cell(point.end_b),
+                           point.same_frame ? ratio_cell(point.ratio()) : SortedCell()});
+    table.rows.push_back(std::move(row));
+    if (point.same_frame) {
+      ratios.push_back({point.a, point.name, point.end_a, point.end_b});
+    }
+  }
+  ComparisonPart points{"points", "Points", {}, {}, {}};
+  if (!ratios.empty()) {
+    points.charts.push_back(ratio_chart(ratios));
+  }
+  points.tables.push_back(std::move(table));
+  page.parts.push_back(std::move(points));
+  if (!found.times.empty()) {
+    SortedTable times;
+    times.title = "Mean change of a node's time by activity";
+    times.columns = {{"activity", false, "see docs/model.md, Accounting"},
+                     {"of A's frame", true, "B less A by the frame time of A, mean of the points"}};
+    for (const MeanChange& time : found.times) {
+      times.rows.push_back({{time.activity, {}}, {change_percent(time.of_frame), time.of_frame}});
+    }
+    page.parts.push_back({"time", "Where the time went", {}, {}, {std::move(times)}});
+  }
+  SortedTable counters;
+  counters.title = "Counters that differ, each where it differs most";
+  counters.columns = {{"counter", false, "name in the catalogue: marti figures"},
+                      {"points", true, "that differ in it"},
+                      {"A", true, ""},
+                      {"B", true, ""},
+                      {"change", true, "from A to B; sorted by |B - A| / max(|A|, |B|)"},
+                      {"at point", true, "of A"},
+                      {"meaning", false, ""}};
+  for (const CounterDifference& counter : found.differing) {
+    const std::string& name = counter.largest.name;
+    counters.rows.push_back({{name, {}},
+                             {std::to_string(counter.points), static_cast<double>(counter.points)},
+                             figure_cell(counter.largest.a, name),
+                             figure_cell(counter.largest.b, name),
+                             change_cell(counter.largest),
+                             {std::to_string(counter.a), static_cast<double>(counter.a)},
+                             {meaning_of_figure(name), {}}});
+  }
+  ComparisonPart part{"counters", "Counters, the largest change first", {}, {}, {}};
+  part.sentences.push_back(fmt::format("{} differ{}, {} are equal.", count(found.differing.size(), "counter"),
+                                       found.differing.size() == 1 ? "s" : "",
+                                       found.counters - found.differing.size()));
+  if (!counters.rows.empty()) {
+    part.tables.push_back(std::move(counters));
+  }
+  page.parts.push_back(std::move(part));
+  return page;
+}
+
+}  // namespace marti::studies

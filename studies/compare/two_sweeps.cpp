@@ -1,0 +1,296 @@
+#include "studies/compare/two_sweeps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "studies/compare/alike.h"
+#include "studies/compare/compare_text.h"
+#include "studies/compare/cycles.h"
+#include "studies/compare/frames.h"
+#include "studies/keys/setting_value.h"
+#include "studies/sweep/store/sweep_reader.h"
+#include "studies/tables/text_units.h"
+
+namespace marti::studies {
+
+namespace {
+
+struct Sweep {
+  explicit Sweep(const std::filesystem::path& file) : reader(file), points(reader.points()) {}
+
+  SweepReader reader;
+  std::vector<StoredPoint> points;
+};
+
+// A value with its type, so that 1 and "1" differ.
+std::string typed(const Cell& cell) { return fmt::format("{}:{}", cell.index(), short_text(cell, "-")); }
+
+std::map<std::string, std::string> settings_of(const SweepReader& reader, std::int64_t machine) {
+  const auto list = reader.settings(machine);
+  return {list.begin(), list.end()};
+}
+
+// The axes by whose values the points of a sweep are told apart. What a named point gives (every value of
+// "point" has one value of such an axis) may change from sweep to sweep.
+std::vector<std::string> telling_axes(const Sweep& sweep) {
+  const std::vector<std::string>& axes = sweep.reader.axes();
+  const auto named = std::find(axes.begin(), axes.end(), "point");
+  if (named == axes.end()) {
+    return axes;
+  }
+  const auto at = static_cast<std::size_t>(named - axes.begin());
+  std::vector<std::string> telling = {"point"};
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    std::map<std::string, std::set<std::string>> values;
+    for (const StoredPoint& point : sweep.points) {
+      values[typed(point.values[at])].insert(typed(point.values[i]));
+    }
+    const bool follows =
+        std::all_of(values.begin(), values.end(), [](const auto& value) { return value.second.size() == 1; });
+    if (i != at && !follows) {
+      telling.push_back(axes[i]);
+    }
+  }
+  return telling;
+}
+
+std::string axes_key(const Sweep& sweep, const StoredPoint& point, const std::vector<std::string>& axes) {
+  std::string key;
+  for (const std::string& axis : axes) {
+    const auto at = std::find(sweep.reader.axes().begin(), sweep.reader.axes().end(), axis);
+    const Cell& value = point.values.at(static_cast<std::size_t>(at - sweep.reader.axes().begin()));
+    key += axis + "=" + typed(value) + "\n";
+  }
+  return key;
+}
+
+std::string settings_key(const Sweep& sweep, const StoredPoint& point) {
+  std::string key;
+  for (const auto& [name, value] : sweep.reader.settings(point.machine)) {
+    key += name;
+    key += '=';
+    key += value;
+    key += '\n';
+  }
+  return key;
+}
+
+// The first point of each key.
+using Index = std::map<std::string, const StoredPoint*>;
+
+Index index_of(const Sweep& sweep, const std::vector<std::string>* axes) {
+  Index index;
+  std::set<std::int64_t> machines;
+  for (const StoredPoint& point : sweep.points) {
+    if (axes != nullptr) {
+      index.emplace(axes_key(sweep, point, *axes), &point);
+    } else if (machines.insert(point.machine).second) {
+      index.emplace(settings_key(sweep, point), &point);
+    }
+  }
+  return index;
+}
+
+ComparedResult result_of(const Sweep& sweep, const StoredPoint& point) {
+  ComparedResult result;
+  result.name = fmt::format("{}:{}", sweep.reader.file().string(), point.ordinal);
+  result.version = sweep.reader.version();
+  result.settings = settings_of(sweep.reader, point.machine);
+  add_counters(*sweep.reader.read_result(point.machine), result.figures);
+  return result;
+}
+
+// The values of a point's axes as people write them.
+std::vector<std::string> texts_of(const Sweep& sweep, const StoredPoint& point,
+                                  const std::map<std::string, std::string>& settings) {
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < sweep.reader.axes().size(); ++i) {
+    const auto setting = settings.find(sweep.reader.axes()[i]);
+    texts.push_back(printable(setting == settings.end() ? short_text(point.values[i], "-")
+                                                        : plain_setting(setting->second)));
+  }
+  return texts;
+}
+
+std::string name_of(const std::vector<std::string>& axes, const std::vector<std::string>& texts) {
+  std::string name;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    name += (name.empty() ? "" : ", ") + printable(axes[i]) + " " + texts[i];
+  }
+  return name;
+}
+
+void enter_counters(const Differences& differences, const JoinedPoint& point,
+                    std::map<std::string, CounterDifference>& counters) {
+  const auto enter = [&](const Difference& difference) {
+    CounterDifference& counter = counters[difference.name];
+    ++counter.points;
+    constexpr double one_sided = 2.0;
+    const double size = difference.relative().value_or(one_sided);
+    const double largest = counter.largest.relative().value_or(one_sided);
+    // The lowest point on ties, in whatever order points come.
+    if (counter.points == 1 || size > largest || (size == largest && point.a < counter.a)) {
+      counter.largest = difference;
+      counter.a = point.a;
+      counter.b = point.b;
+    }
+  };
+  std::for_each(differences.numbers.begin(), differences.numbers.end(), enter);
+  std::for_each(differences.one_side.begin(), differences.one_side.end(), enter);
+}
+
+// Sums over the joined points.
+struct Sums {
+  std::map<std::string, CounterDifference> counters;
+  std::map<std::string, double> times;  // changes by A's frame time
+  std::size_t timed = 0;                // points that have the times
+};
+
+void enter_times(const ComparedResult& one, const ComparedResult& other, Sums& sums) {
+  const std::vector<ActivityTime> times = activity_times(one, other);
+  const auto end = static_cast<double>(frame_time(one));
+  for (const ActivityTime& time : times) {
+    sums.times[time.activity] += time.change / end;
+  }
+  sums.timed += times.empty() ? 0 : 1;
+}
+
+std::vector<MeanChange> mean_changes(const Sums& sums) {
+  std::vector<MeanChange> means;
+  for (const auto& [activity, sum] : sums.times) {
+    means.push_back({activity, sum / static_cast<double>(sums.timed)});
+  }
+  std::stable_sort(means.begin(), means.end(), [](const MeanChange& x, const MeanChange& y) {
+    return std::abs(x.of_frame) > std::abs(y.of_frame);
+  });
+  return means;
+}
+
+// One pair of timed points.
+void join(const Sweep& a, const Sweep& b, const StoredPoint& from, const StoredPoint& to, TwoSweeps& found,
+          Sums& sums) {
+  ComparedResult one = result_of(a, from);
+  ComparedResult other = result_of(b, to);
+  JoinedPoint point;
+  point.a = from.ordinal;
+  point.b = to.ordinal;
+  point.texts = texts_of(a, from, one.settings);
+  point.name = name_of(found.axes, point.texts);
+  point.values = from.values;
+  point.end_a = frame_time(one);
+  point.end_b = frame_time(other);
+  const Differences differences = differences_of(one, other);
+  found.equal += differences.numbers.empty() && differences.one_side.empty() ? 1 : 0;
+  enter_counters(differences, point, sums.counters);
+  keep_what_sweeps_have(one);
+  keep_what_sweeps_have(other);
+  point.settings = differences_of(one, other).settings;
+  for (auto [sweep, stored, result] : {std::tuple(&a, &from, &one), std::tuple(&b, &to, &other)}) {
+    if (const std::optional<FrameRow> frame = sweep->reader.read_frame(stored->machine)) {
+      add_frame(*frame, result->figures);
+    }
+  }
+  point.same_frame = same_frame(one, other);
+  if (point.same_frame) {
+    enter_times(one, other, sums);
+  }
+  found.points.push_back(std::move(point));
+}
+
+double size_of(const JoinedPoint& point) { return std::abs(std::log(point.ratio())); }
+
+void sort_points(TwoSweeps& found) {
+  std::stable_sort(found.points.begin(), found.points.end(), [](const JoinedPoint& x, const JoinedPoint& y) {
+    if (x.same_frame != y.same_frame) {
+      return x.same_frame;
+    }
+    return size_of(x) != size_of(y) ? size_of(x) > size_of(y) : x.a < y.a;
+  });
+}
+
+void take_settings(TwoSweeps& found) {
+  std::map<std::string, Difference> frame;
+  std::vector<std::vector<Difference>*> lists;
+  for (JoinedPoint& point : found.points) {
+    if (!point.same_frame) {
+      for (const Difference& setting : frame_settings(point.settings)) {
+        frame.emplace(setting.name, setting);
+      }
+    }
+    lists.push_back(&point.settings);
+  }
+  for (auto& [name, setting] : frame) {
+    found.frame.push_back(std::move(setting));
+  }
+  found.alike = take_alike(lists).alike;
+}
+
+}  // namespace
+
+std::size_t TwoSweeps::comparable() const {
+  return static_cast<std::size_t>(
+      std::count_if(points.begin(), points.end(), [](const JoinedPoint& point) { return point.same_frame; }));
+}
+
+TwoSweeps two_sweeps(const std::filesystem::path& file_a, const std::filesystem::path& file_b) {
+  const Sweep a(file_a);
+  const Sweep b(file_b);
+  TwoSweeps found;
+  found.a = file_a.string();
+  found.b = file_b.string();
+  found.version_a = a.reader.version();
+  found.version_b = b.reader.version();
+  found.axes = a.reader.axes();
+  const std::vector<std::string> axes = telling_axes(a);
+  const std::vector<std::string> other_axes = telling_axes(b);
+  found.by_axes = std::set<std::string>(axes.begin(), axes.end()) ==
+                  std::set<std::string>(other_axes.begin(), other_axes.end());
+  const Index from = index_of(a, found.by_axes ? &axes : nullptr);
+  const Index to = index_of(b, found.by_axes ? &axes : nullptr);
+  Sums sums;
+  for (const auto& [key, point] : from) {
+    const auto other = to.find(key);
+    if (other == to.end()) {
+      found.only_a.push_back(point->ordinal);
+      continue;
+    }
+    ++found.both;
+    if (point->done && other->second->done) {
+      join(a, b, *point, *other->second, found, sums);
+    }
+  }
+  for (const auto& [key, point] : to) {
+    if (!from.contains(key)) {
+      found.only_b.push_back(point->ordinal);
+    }
+  }
+  std::sort(found.only_a.begin(), found.only_a.end());
+  std::sort(found.only_b.begin(), found.only_b.end());
+  sort_points(found);
+  take_settings(found);
+  found.counters = counted_figures().size();
+  found.times = mean_changes(sums);
+  for (auto& [name, counter] : sums.counters) {
+    found.differing.push_back(std::move(counter));
+  }
+  std::stable_sort(found.differing.begin(), found.differing.end(), [](const auto& x, const auto& y) {
+    return x.largest.relative().value_or(2.0) > y.largest.relative().value_or(2.0);
+  });
+  return found;
+}
+
+std::optional<double> mean_ratio(const TwoSweeps& found) {
+  double sum = 0.0;
+  const std::size_t comparable = found.comparable();
+  for (std::size_t i = 0; i < comparable; ++i) {
+    sum += std::log(found.points[i].ratio());
+  }
+  return comparable == 0 ? std::nullopt : std::optional(std::exp(sum / static_cast<double>(comparable)));
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+"""marti_sweep_test.py MARTI SOURCE [PYTHON_WITH_MATPLOTLIB]: docs/examples/marti_sweep.py on the store of a real sweep
+has the names, units and values that `marti sweep --json` and points.csv have."""
+
+import csv
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+MARTI, SOURCE, *DRAWING = sys.argv[1:]
+MODULE = pathlib.Path(SOURCE) / "docs" / "examples" / "marti_sweep.py"
+sys.path.insert(0, str(MODULE.parent))
+sys.modules["pandas"] = None  # the module must do without
+import marti_sweep
+
+CONFIG = """
+scene.source = "teapot:2"
+image.width = 16
+image.height = 12
+[prices]
+node = 1
+cache_kib = 0.25
+[sweep.axes]
+machine.nodes = [1, 2, 5]
+cache.size = ["512 B", "4 KiB"]
+node.clock = ["33 MHz", "66 MHz"]
+prefetch.next_line = [false, true]
+interconnect.kind = ["bus", "crossbar"]
+"""
+
+
+def run(*command, status=0):
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == status, (command, done.returncode, done.stdout, done.stderr)
+    return done.stdout if status == 0 else done.stderr
+
+
+class TheModule(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.work = tempfile.TemporaryDirectory()
+        cls.out = pathlib.Path(cls.work.name) / "out"
+        config = pathlib.Path(cls.work.name) / "sweep.toml"
+        config.write_text(CONFIG)
+        cls.command = (MARTI, "sweep", str(config), "-o", str(cls.out), "--quiet", "--json")
+        cls.json = json.loads(run(*cls.command))
+        cls.sweep = marti_sweep.load(cls.out)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.work.cleanup()
+
+    def test_values_are_those_of_json(self):
+        points = self.sweep.points()
+        self.assertEqual(len(points), 48)
+        self.assertEqual(len(points), len(self.json["rows"]))
+        for point, row in zip(points, self.json["rows"]):
+            # What limits a point is predicted by the program; the store does not have it.
+            expected = {name: value for name, value in row.items() if not name.startswith("limit")}
+            self.assertEqual(point, expected)
+            for name, value in point.items():
+                self.assertEqual(type(value), type(expected[name]), name)
+        self.assertEqual({type(row["prefetch.next_line"]) for row in self.json["rows"]}, {bool})
+        self.assertEqual({row["cache.size"] for row in self.json["rows"]}, {512, 4096})
+        self.assertEqual({row["node.clock"] for row in self.json["rows"]}, {33e6, 66e6})
+
+    def test_names_and_units_are_those_of_json_and_csv(self):
+        columns = {column["name"]: column["unit"] for column in self.json["columns"]}
+        with open(self.out / "points.csv", newline="") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual(list(table[0]), list(columns))
+        names = [name for name in columns if not name.startswith("limit")]
+        self.assertEqual(self.sweep.names(), names)
+        for name, known in self.sweep.figures.items():
+            self.assertEqual(known["unit"], columns[name], name)
+        self.assertEqual(columns["cache.size"], "byte")
+        self.assertEqual(columns["node.clock"], "Hz")
+        text = {True: "true", False: "false", None: ""}
+        for point, row in zip(self.sweep.points(), table):
+            for name, value in point.items():
+                if isinstance(value, float):
+                    self.assertEqual(float(row[name]), value, name)
+                else:
+                    self.assertEqual(row[name], text[value] if value is None or value is True or value is False
+                                     else str(value), name)
+
+    def test_figures_are_those_of_the_catalogue(self):
+        catalogue = run(MARTI, "figures")
+        for name, known in self.sweep.figures.items():
+            if name != "cost":
+                self.assertIn(f"  {name} ", catalogue)
+                self.assertIn(known["meaning"], catalogue)
+
+    def test_points_of_some_values(self):
+        where = {"machine.nodes": 5, "prefetch.next_line": True}
+        points = self.sweep.points("end", where=where)
+        expected = [row for row in self.json["rows"] if all(row[key] == value for key, value in where.items())]
+        self.assertEqual([point["end"] for point in points], [row["end"] for row in expected])
+        self.assertEqual(len(points), 8)
+        self.assertEqual(list(points[0]), [*self.sweep.axes, "end"])
+
+    def test_best_is_that_of_the_program(self):
+        for figure in ("end", "hit_ratio"):
+            for budget in (None, 5.2, 12):
+                more = () if budget is None else ("--budget", str(budget))
+                rows = json.loads(run(*self.command, "--best", figure, *more))["rows"]
+                expected = next(row for row in rows if row["best"])
+                best = self.sweep.best(figure, budget)
+                self.assertEqual((best["cost"], best[figure]), (expected["cost"], expected[figure]))
+        self.assertIsNone(self.sweep.best("end", budget=0))
+
+    def test_a_wrong_question_is_one_message(self):
+        for ask in (lambda: self.sweep.points("hit_rato"), lambda: self.sweep.best("nodes"),
+                    lambda: self.sweep.points(where={"no.key": 1}), lambda: marti_sweep.load(self.work.name),
+                    lambda: marti_sweep.load(self.out / "points.csv")):
+            self.assertRaises(marti_sweep.SweepError, ask)
+        self.assertIn("did you mean 'hit_ratio'", run(sys.executable, str(MODULE), str(self.out), "--csv", "hit_rato",
+                                                      status=1))
+
+    def test_runs_in_a_shell(self):
+        lines = run(sys.executable, "-B", str(MODULE), str(self.out), "--csv", "speed_up").splitlines()
+        self.assertEqual(lines[0], ",".join([*self.sweep.axes, "speed_up"]))
+        self.assertEqual(len(lines), 49)
+        self.assertTrue(run(sys.executable, "-B", str(MODULE), str(self.out)).startswith("48 points of marti "))
+
+    def test_a_store_of_another_program_is_refused(self):
+        store = pathlib.Path(self.work.name) / "other.sqlite"
+        store.write_bytes((self.out / "results.sqlite").read_bytes())
+        import sqlite3
+        with sqlite3.connect(store) as database:
+            database.execute("UPDATE store SET value = '99' WHERE what = 'format'")
+        database.close()
+        with self.assertRaisesRegex(marti_sweep.SweepError, "is of format 99, but this reads 1, 2, 3"):
+            marti_sweep.load(store)
+
+    @unittest.skipUnless(DRAWING, "there is no matplotlib")
+    def test_draws(self):
+        drawn = []
+        for name in ("a.svg", "b.svg"):
+            file = pathlib.Path(self.work.name) / name
+            run(DRAWING[0], "-B", str(MODULE), str(self.out), "--plot", "speed_up", "--over", "machine.nodes", "--by",
+                "cache.size", "-o", str(file))
+            drawn.append(file.read_bytes())
+        self.assertEqual(drawn[0], drawn[1])
+        self.assertIn(b"<svg", drawn[0])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
