@@ -146,10 +146,11 @@ class Sweep:
         return min(points, key=lambda p: (-sign * p[figure], p["cost"], p["ordinal"]), default=None)
 
     def plot(self, figure, over, by=None, where=None, axes=None):
-        """Draws a figure over an axis with matplotlib, a line for each value of `by`. Returns matplotlib's axes."""
-        from matplotlib import pyplot
-
+        """Draws a figure over an axis with matplotlib, a line for each value of `by`, on `axes` or on new ones, which
+        are returned."""
         if axes is None:
+            from matplotlib import pyplot
+
             _, axes = pyplot.subplots(figsize=(6, 4), layout="constrained")
         lines = {}
         for point in self.points(over, figure, *([by] if by else []), where=where):

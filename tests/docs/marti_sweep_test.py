@@ -136,6 +136,20 @@ class TheModule(unittest.TestCase):
         with self.assertRaisesRegex(marti_sweep.SweepError, "is of format 99, but this reads 1, 2, 3"):
             marti_sweep.load(store)
 
+    def test_plots_a_line_for_each_value(self):
+        class Axes:  # stands for matplotlib's
+            lines = {}
+            plot = lambda self, x, y, marker, label: self.lines.update({label: list(zip(x, y))})
+            set = lambda self, xlabel, ylabel: vars(self).update(xlabel=xlabel, ylabel=ylabel)
+            legend = lambda self: None
+        where = {"node.clock": 33e6, "interconnect.kind": "bus", "prefetch.next_line": False}
+        axes = self.sweep.plot("end", "machine.nodes", by="cache.size", where=where, axes=Axes())
+        self.assertEqual((axes.xlabel, axes.ylabel), ("machine.nodes", "end (ps)"))
+        self.assertEqual(sorted(axes.lines), ["cache.size = 4096", "cache.size = 512"])
+        for row in self.json["rows"]:
+            if all(row[key] == value for key, value in where.items()):
+                self.assertIn((row["machine.nodes"], row["end"]), axes.lines[f"cache.size = {row['cache.size']}"])
+
     @unittest.skipUnless(DRAWING, "there is no matplotlib")
     def test_draws(self):
         drawn = []
