@@ -90,6 +90,10 @@ struct DramConfig {
   /// For which a burst has the data bus of a channel; of pseudo channels a part of all their buses.
   [[nodiscard]] sim::Ticks burst_time() const { return period * timing.bl / (pseudo_channels ? ranks : 1); }
   [[nodiscard]] std::uint32_t columns() const { return row_bytes / burst_bytes; }
+  /// Bytes that all channels hold.
+  [[nodiscard]] std::uint64_t capacity() const {
+    return std::uint64_t{channels} * ranks * banks_of_rank() * rows * row_bytes;
+  }
   [[nodiscard]] std::uint32_t banks_of_rank() const { return bank_groups * banks; }
   /// Bytes a second over all channels, if data are moved without a pause.
   [[nodiscard]] double peak_bandwidth() const;

@@ -106,7 +106,8 @@ void PolygonMesh::cut_fan(std::size_t corners) {
 
 void PolygonMesh::finish(const LeftOut& left_out) {
   if (scene_.triangles.empty()) {
-    file_.fail(bad_ > 0 ? "none of its polygons has finite positions" : "the scene has no triangles");
+    file_.fail(bad_ > 0 ? "none of its polygons has positions that are finite and not beyond 1e30"
+                        : "the scene has no triangles");
   }
   scene_.name = file_.path().filename().string();
   frame_camera(scene_);

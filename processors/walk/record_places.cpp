@@ -37,6 +37,15 @@ memory::Layout layout_of(const WorkLog& log, const MachineConfig& config, std::o
   if (std::max(layout.end(), plan ? plan->end() : 0) / unit >= memory::no_line) {
     throw sim::KeyError("cache.line", "the database has 2^32 or more lines; use longer cache lines");
   }
+  if (config.banks.dram) {
+    const bool shared_tree = plan && config.build.sharing == Sharing::shared;
+    const memory::Address end = std::max(layout.end(), shared_tree ? plan->end() : 0);
+    if (end > config.banks.dram->capacity()) {
+      throw sim::KeyError("dram.rows",
+                          "scene and image take " + std::to_string(end) + " bytes, and the memory holds " +
+                              std::to_string(config.banks.dram->capacity()) + "; use more or longer rows");
+    }
+  }
   return layout;
 }
 

@@ -30,7 +30,7 @@ std::optional<Change> Changer::with(const std::vector<NewValue>& values) const {
       return std::nullopt;
     }
     const sim::Value& from = value.from ? *value.from : now(value.key);
-    if (from != value.to) {
+    if (now(value.key) != value.to || from != value.to) {
       keys.push_back({key.name, sim::print_value(key.type, from), sim::print_value(key.type, value.to)});
     }
     settings.push_back({index, {value.to}, 0, key.name});
@@ -59,7 +59,7 @@ std::optional<Change> Changer::both(const Change& a, const Change& b) const {
 }
 
 std::optional<Change> Changer::made(std::vector<KeyChange> keys, std::vector<sim::Setting> settings) const {
-  if (keys.empty()) {
+  if (std::all_of(keys.begin(), keys.end(), [](const KeyChange& key) { return key.from == key.to; })) {
     return std::nullopt;
   }
   sim::Config config = config_.with(settings);
@@ -73,8 +73,10 @@ std::optional<Change> Changer::made(std::vector<KeyChange> keys, std::vector<sim
 std::string describe(const std::vector<KeyChange>& keys) {
   std::string text;
   for (const KeyChange& key : keys) {
-    text +=
-        fmt::format("{}{} {} -> {}", text.empty() ? "" : ", ", key.key, unquoted(key.from), unquoted(key.to));
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key.key, unquoted(key.from));
+    if (key.from != key.to) {
+      text += fmt::format(" -> {}", unquoted(key.to));
+    }
   }
   return text;
 }

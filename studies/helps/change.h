@@ -11,7 +11,8 @@
 
 namespace marti::studies {
 
-/// A key and its values before and after, as one would write them in a TOML file.
+/// A key and its values before and after, as one would write them in a TOML file. They are equal where a
+/// value that followed from other keys must be given to stay as it is.
 struct KeyChange {
   std::string key;
   std::string from;
@@ -26,7 +27,7 @@ struct NewValue {
 };
 
 struct Change {
-  std::vector<KeyChange> keys;         ///< those whose value differs
+  std::vector<KeyChange> keys;         ///< all that must be given to get the machine
   std::vector<sim::Setting> settings;  ///< of all keys that must be set
   processors::MachineConfig machine;
 };
@@ -48,6 +49,8 @@ class Changer {
   [[nodiscard]] const sim::Key& key(std::string_view name) const {
     return config_.schema().keys()[index_of(name)];
   }
+  /// Whether the configuration gives the key a value.
+  [[nodiscard]] bool given(std::string_view key) const { return config_.given_at(index_of(key)); }
   /// The key's value in the configuration.
   [[nodiscard]] const sim::Value& now(std::string_view key) const {
     return config_.values_at(index_of(key)).front();
@@ -60,7 +63,8 @@ class Changer {
   const sim::Config& config_;
 };
 
-/// "machine.nodes 64 -> 71", several keys with commas between them.
+/// "machine.nodes 64 -> 71", several keys with commas between them; "pipeline.search 5" for one that stays as
+/// it is.
 [[nodiscard]] std::string describe(const std::vector<KeyChange>& keys);
 
 }  // namespace marti::studies

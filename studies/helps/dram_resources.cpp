@@ -36,7 +36,11 @@ void add_dram(const Changer& changer, const memory::DramConfig& dram, std::vecto
     add(key, changer.with({{key, std::string(other)}}));
   };
   choose("dram.page", memory::dram_page_names[dram.page == DramPage::open ? 1 : 0]);
-  choose("dram.policy", memory::dram_policy_names[dram.policy == DramPolicy::fcfs ? 1 : 0]);
+  if (dram.policy == DramPolicy::fcfs) {
+    choose("dram.policy", memory::dram_policy_names[1]);
+  } else if (!changer.given("dram.queue") && !changer.given("dram.reorder_cap")) {
+    choose("dram.policy", memory::dram_policy_names[0]);  // has no use for these keys
+  }
 }
 
 }  // namespace marti::studies

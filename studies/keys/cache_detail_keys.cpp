@@ -50,7 +50,7 @@ void read_second_level(sim::Config& config, processors::MachineConfig& machine) 
 void declare_count_keys(sim::Schema& schema) {
   schema.section("count",
                  "what is counted about the caches beside hits and misses; it makes runs slower, and changes "
-                 "nothing else");
+                 "nothing else but the number of simulated events");
   schema.boolean("count.miss_classes", false,
                  "why first-level caches missed: compulsory, capacity, conflict, invalidation");
   schema.boolean("count.sharing", false, "how many nodes of a cluster fetched each line");

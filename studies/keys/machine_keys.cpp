@@ -166,7 +166,7 @@ void declare_interconnect(Schema& schema) {
   schema.size("memory.interleave", "0 B", {"0 B", "1 GiB"},
               "bytes in a row that share a bank, a power of two, and without a cache the most that one "
               "reference reads; 0: a cache line, or 32 B without a cache");
-  clock(schema, "memory.clock", "clock of the banks");
+  clock(schema, "memory.clock", "clock of the banks, and of a shared second level before banks or DRAM");
   cycles(schema, "memory.access_cycles", 4, "cycles from the start of an access to its data");
   cycles(schema, "memory.busy_cycles", 6, "cycles from the start of an access to the next");
   declare_dram_keys(schema);

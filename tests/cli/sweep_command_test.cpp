@@ -218,7 +218,8 @@ TEST_F(SweepCommand, FindsTheBestMachineForABudget) {
       << "the old name";
   const Outcome dear = sweep(config, out, "--best speed_up --budget 0.5");
   EXPECT_EQ(dear.status, 2);
-  EXPECT_TRUE(says(dear, "no point has a speed_up within a cost of 0.5")) << dear.output;
+  EXPECT_TRUE(says(dear, "no point costs at most 0.5; the cheapest that has the figure speed_up costs "))
+      << dear.output;
   const Outcome wrong = sweep(config, place("none"), "--best sped_up");
   EXPECT_EQ(wrong.status, 2);
   EXPECT_TRUE(says(wrong, "did you mean \"speed_up\"?")) << wrong.output;

@@ -117,9 +117,15 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
     offers.push_back({row.point.cost, *number_of(row.figures.back())});
   }
   const std::optional<std::size_t> best = best_within(offers, budget, better);
+  if (offers.empty()) {
+    throw sim::UserError(fmt::format("{}: no point has the figure {}", reader.file().string(), metric));
+  }
   if (!best) {
-    throw sim::UserError(reader.file().string() + ": no point has a " + metric +
-                         (budget ? fmt::format(" within a cost of {:g}", *budget) : std::string()));
+    const auto by_cost = [](const Offer& a, const Offer& b) { return a.cost < b.cost; };
+    throw sim::UserError(
+        fmt::format("{}: no point costs at most {:g}; the cheapest that has the figure {} costs {:g}",
+                    reader.file().string(), budget.value_or(0.0), metric,
+                    std::min_element(offers.begin(), offers.end(), by_cost)->cost));
   }
   std::vector<Row> front;
   std::vector<Row> marked;  // with whether it is the best

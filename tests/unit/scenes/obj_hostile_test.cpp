@@ -123,7 +123,7 @@ TEST(ObjHostile, FilesThatAreNoObj) {
   const SceneFolder folder;
   EXPECT_EQ(folder.refusal("a.obj", ""), "a.obj: the scene has no triangles");
   EXPECT_EQ(folder.refusal("a.obj", "v nan 0 0\nf 1 1 1\n"),
-            "a.obj: none of its polygons has finite positions");
+            "a.obj: none of its polygons has positions that are finite and not beyond 1e30");
   EXPECT_EQ(folder.refusal("a.obj", std::string(100, '\0')).rfind("a.obj:1: ", 0), 0U);
   EXPECT_EQ(folder.refusal("a.obj", std::string(100'000, '\\')).rfind("a.obj:1: ", 0), 0U);
   std::filesystem::create_directories(folder.path() / "folder.obj");
