@@ -20,6 +20,9 @@
 
 namespace marti::sim {
 
+/// The most bytes of a configuration file.
+inline constexpr std::int64_t longest_config = 1 << 20;
+
 /// The value that a key had in a run, and where it came from.
 struct EffectiveValue {
   std::string key;
@@ -39,9 +42,9 @@ struct Setting {
 /// Cheap to copy: copies share the schema and the values given.
 class Config {
  public:
-  /// Reads a file of at most 1 MiB. Each assignment is the "key=value" of a --set option; assignments
-  /// override the file, and later ones earlier ones. A value is read as TOML, or as an unquoted text if it is
-  /// not TOML (`cache.size=32KiB`) or if the key is a text or a choice.
+  /// Reads a file of at most longest_config bytes. Each assignment is the "key=value" of a --set option;
+  /// assignments override the file, and later ones earlier ones. A value is read as TOML, or as an unquoted
+  /// text if it is not TOML (`cache.size=32KiB`) or if the key is a text or a choice.
   static Config from_file(const Schema& schema, const std::filesystem::path& file,
                           std::span<const std::string> assignments = {});
   /// from_file() for a given text; `name` replaces the file's name in messages.

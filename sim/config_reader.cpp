@@ -20,12 +20,12 @@
 #include "sim/nearest.h"
 #include "sim/shown.h"
 #include "sim/toml_text.h"
+#include "sim/trim.h"
 
 namespace marti::sim {
 
 namespace {
 
-constexpr std::int64_t longest_file = 1 << 20;
 // toml++ recurses into tables and bounds only the depth of values, so a key of 100,000 parts would overflow
 // the stack.
 constexpr std::size_t most_key_parts = 32;
@@ -150,12 +150,6 @@ void check_free(const DocumentValue& value, const std::string& name, std::string
       check_free(entry.value, name + "." + entry.name, file);
     }
   }
-}
-
-std::string_view trim(std::string_view text, std::string_view blanks = " \t") {
-  const std::size_t begin = text.find_first_not_of(blanks);
-  return begin == std::string_view::npos ? std::string_view()
-                                         : text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
 }
 
 /// A line of a text that could not be read, with the section that it seems to be in.
@@ -415,7 +409,7 @@ Config Config::from_text(const Schema& schema, std::string_view text, std::strin
 
 Config Config::from_file(const Schema& schema, const std::filesystem::path& file,
                          std::span<const std::string> assignments) {
-  return from_text(schema, read_file(file, longest_file), file.string(), assignments);
+  return from_text(schema, read_file(file, longest_config), file.string(), assignments);
 }
 
 }  // namespace marti::sim

@@ -6,9 +6,10 @@
 namespace marti::processors {
 
 FlowHost::FlowHost(const WorkLog& log, const PacketList& packets, const MachineConfig& config,
-                   std::uint32_t limit)
+                   std::uint32_t limit, sim::WorkMeter* meter)
     : log_(log),
       packets_(packets),
+      meter_(meter),
       limit_(limit),
       occupancy_(config.host.clock.cycles(config.host.occupancy_cycles)),
       ways_(config.clusters) {
@@ -24,6 +25,7 @@ bool FlowHost::has_ray(std::uint32_t cluster) {
       if (next_packet_ == packets_.size()) {
         return false;
       }
+      count_step(meter_);
       way.packet = packets_[next_packet_++];
       way.x = way.packet.x0;
       way.y = way.packet.y0;

@@ -29,8 +29,10 @@ struct SentSample {
 
 class FlowHost {
  public:
-  /// At most `limit` rays may be in flight in each cluster.
-  FlowHost(const WorkLog& log, const PacketList& packets, const MachineConfig& config, std::uint32_t limit);
+  /// At most `limit` rays may be in flight in each cluster. Each packet whose rays are next is counted on
+  /// `meter`, which may be null.
+  FlowHost(const WorkLog& log, const PacketList& packets, const MachineConfig& config, std::uint32_t limit,
+           sim::WorkMeter* meter = nullptr);
 
   /// Whether a camera ray is left for the cluster. Skips pixels without rays. Takes a packet when the
   /// cluster's is used up, so clusters must ask in the order of simulated time, each from its own event.
@@ -82,6 +84,7 @@ class FlowHost {
 
   const WorkLog& log_;
   const PacketList& packets_;
+  sim::WorkMeter* meter_;
   std::uint32_t limit_;
   sim::Ticks occupancy_;
   std::uint64_t next_packet_ = 0;

@@ -4,8 +4,9 @@
 
 namespace marti::processors {
 
-Host::Host(const HostConfig& config, std::uint64_t packets, std::uint32_t nodes)
+Host::Host(const HostConfig& config, std::uint64_t packets, std::uint32_t nodes, sim::WorkMeter* meter)
     : config_(config),
+      meter_(meter),
       packets_(packets),
       nodes_(nodes),
       taken_(config.assignment == Assignment::dynamic ? 0 : nodes),
@@ -19,6 +20,7 @@ std::optional<Grant> Host::next(std::uint32_t node, sim::Ticks now) {
       return std::nullopt;
     }
     ++taken_[node];
+    count_step(meter_);
     return Grant{packet, now};
   }
   if (config_.assignment == Assignment::blocks) {
@@ -27,12 +29,14 @@ std::optional<Grant> Host::next(std::uint32_t node, sim::Ticks now) {
       return std::nullopt;
     }
     ++taken_[node];
+    count_step(meter_);
     return Grant{packet, now};
   }
   ++statistics_.requests;
   if (handed_out_ == packets_) {
     return std::nullopt;
   }
+  count_step(meter_);
   const sim::Ticks begin = std::max(now, free_at_);
   free_at_ = sim::add_ticks(begin, occupancy_);
   statistics_.busy = sim::add_ticks(statistics_.busy, occupancy_);

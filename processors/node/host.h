@@ -10,6 +10,7 @@
 #include "processors/machine/packets.h"
 #include "sim/statistics.h"
 #include "sim/time.h"
+#include "sim/work_meter.h"
 
 namespace marti::processors {
 
@@ -37,7 +38,8 @@ static_assert(sim::declares_every_member<HostStatistics>());
 /// Requests must come in the order of simulated time.
 class Host {
  public:
-  Host(const HostConfig& config, std::uint64_t packets, std::uint32_t nodes);
+  /// Each packet that is granted is counted on `meter`, which may be null.
+  Host(const HostConfig& config, std::uint64_t packets, std::uint32_t nodes, sim::WorkMeter* meter = nullptr);
 
   /// Grants node `node`, free at `now`, its next packet; std::nullopt when none is left for it.
   std::optional<Grant> next(std::uint32_t node, sim::Ticks now);
@@ -46,6 +48,7 @@ class Host {
 
  private:
   HostConfig config_;
+  sim::WorkMeter* meter_;
   std::uint64_t packets_;
   std::uint64_t nodes_;
   std::uint64_t handed_out_ = 0;      // dynamic

@@ -11,6 +11,7 @@
 #include "processors/program/pixel_set.h"
 #include "processors/program/work_log.h"
 #include "scenes/scene.h"
+#include "sim/work_meter.h"
 
 namespace marti::accel {
 class Structure;
@@ -60,6 +61,8 @@ struct RenderOptions {
   /// colours, log and counts of rays. No pixel of `only` may have been traced in it. Null: nothing is taken
   /// over.
   const Frame* before = nullptr;
+  /// Counts each row that is done; after its stop() render() throws sim::Stopped. Null: nobody waits.
+  sim::WorkMeter* meter = nullptr;
 };
 
 /// Rays of each kind, in the order of RayKind.

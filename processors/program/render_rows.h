@@ -66,6 +66,7 @@ void render_rows(const scenes::Scene& scene, const Structure& structure, const E
     }
     worker.rays += tracer.rays();
     worker.hit_hash += tracer.hit_hash();
+    count_step(options.meter);
   };
 
   // Tests of determinism ask for more threads than cores; TBB grants them only through this control.

@@ -21,7 +21,7 @@ MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const
   const std::vector<std::uint32_t> rank = node_ranks(log, config);
   sim::Engine engine;
   engine.reserve(std::size_t{config.all_nodes()} + config.clusters);
-  FlowHost host(log, packets, config, limit);
+  FlowHost host(log, packets, config, limit, options.meter);
   std::vector<std::unique_ptr<memory::Network>> networks;
   ReplayInput input{log, config, layout, packets, rank, options.step_by_step};
   input.observer = options.observer;

@@ -115,7 +115,7 @@ MachineResult replay_image(const WorkLog& log, const MachineConfig& config, cons
   const std::vector<std::uint32_t> rank = node_ranks(log, config);
   sim::Engine engine;
   engine.reserve(std::size_t{config.all_nodes()} * config.contexts + 1);
-  Host host(config.host, packets.size(), config.all_nodes());
+  Host host(config.host, packets.size(), config.all_nodes(), options.meter);
   ReplayInput input = {log,
                        config,
                        layout,

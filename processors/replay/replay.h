@@ -20,6 +20,7 @@
 #include "processors/walk/left_out.h"
 #include "processors/walk/packet_sample.h"
 #include "processors/walk/second_level.h"
+#include "sim/work_meter.h"
 
 namespace marti::processors {
 
@@ -94,6 +95,9 @@ struct ReplayOptions {
   /// Records the critical path; `observer` must be it or pass all calls on to it. Same result. Not with
   /// `stripped` or `sample`.
   PathRecorder* path = nullptr;
+  /// Counts each packet that is handed out; after its stop() the replay throws sim::Stopped at the next one.
+  /// Null: nobody waits. Same result.
+  sim::WorkMeter* meter = nullptr;
 };
 
 /// Times `config` on `log`. Deterministic, single-threaded; many replays may share one log. Before it

@@ -215,11 +215,12 @@ class StrippedLog::Stripper {
  public:
   /// `left`: bytes that all threads together may still write.
   Stripper(const ReplayInput& input, std::span<const std::uint32_t> ways,
-           std::shared_ptr<const VisitPlan> plan, std::atomic<std::int64_t>& left)
+           std::shared_ptr<const VisitPlan> plan, std::atomic<std::int64_t>& left, sim::WorkMeter* meter)
       : log_(input.log),
         packets_(input.config.packets),
         walker_(input, Caches(input.config, std::max(1U, std::ranges::min(ways))), std::move(plan)),
-        left_(left) {
+        left_(left),
+        meter_(meter) {
     for (const std::uint32_t each : ways) {
       walker_.caches().writers.emplace_back(each);
     }
@@ -251,6 +252,7 @@ class StrippedLog::Stripper {
         sum.references[kind] = statistics.references.hits[kind] + statistics.references.misses[kind];
       }
       caches.end_packet();
+      count_step(meter_);
       x0 = x1;
     }
     for (BandWriter& writer : caches.writers) {
@@ -280,12 +282,14 @@ class StrippedLog::Stripper {
   PacketConfig packets_;
   LogWalker<Caches> walker_;
   std::atomic<std::int64_t>& left_;
+  sim::WorkMeter* meter_;
 };
 
 std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const WorkLog& log,
                                                                   const MachineConfig& config,
                                                                   std::span<const std::uint32_t> ways,
-                                                                  std::uint64_t most_bytes) {
+                                                                  std::uint64_t most_bytes,
+                                                                  sim::WorkMeter* meter) {
   sim::ensure(!ways.empty() && *std::max_element(ways.begin(), ways.end()) <= most_ways,
               "a log is stripped for no ways, or for too many");
   std::vector<std::shared_ptr<const StrippedLog>> made(ways.size());
@@ -324,7 +328,7 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const WorkLog&
     const auto strip_with = [&]<class Caches>() {
       const std::shared_ptr<const VisitPlan> plan = LogWalker<Caches>::visits_of(input);
       tbb::enumerable_thread_specific<Stripper<Caches>> strippers(
-          [&] { return Stripper<Caches>(input, ways, plan, left); });
+          [&] { return Stripper<Caches>(input, ways, plan, left, meter); });
       tbb::parallel_for(std::size_t{0}, bands, [&](std::size_t number) {
         const bool fits = left >= 0;
         for (const std::shared_ptr<StrippedLog>& each : logs) {
@@ -363,9 +367,9 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const WorkLog&
 }
 
 std::shared_ptr<const StrippedLog> StrippedLog::make(const WorkLog& log, const MachineConfig& config,
-                                                     std::uint64_t most_bytes) {
+                                                     std::uint64_t most_bytes, sim::WorkMeter* meter) {
   const std::uint32_t ways = ways_of(config);
-  return make(log, config, std::span(&ways, 1), most_bytes).front();
+  return make(log, config, std::span(&ways, 1), most_bytes, meter).front();
 }
 
 std::uint64_t StrippedLog::bytes_of_words() const {

@@ -38,6 +38,7 @@
 #include "processors/cost/accounting.h"
 #include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
+#include "sim/work_meter.h"
 
 namespace marti::processors {
 
@@ -62,14 +63,15 @@ class StrippedLog {
 
   /// Strips `log` for the key of `config` and for each of `ways`, in one pass on all host threads; the same
   /// at any number of them. An entry is null when a line number or a number of cycles does not fit, or when
-  /// the words of all would take more than `most_bytes`; all are null for a machine without key.
+  /// the words of all would take more than `most_bytes`; all are null for a machine without key. `meter`
+  /// counts each packet, and after its stop() this throws sim::Stopped; null: nobody waits.
   [[nodiscard]] static std::vector<std::shared_ptr<const StrippedLog>> make(
       const WorkLog& log, const MachineConfig& config, std::span<const std::uint32_t> ways,
-      std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
+      std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max(), sim::WorkMeter* meter = nullptr);
   /// The stripped log for `config` alone.
   [[nodiscard]] static std::shared_ptr<const StrippedLog> make(
       const WorkLog& log, const MachineConfig& config,
-      std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
+      std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max(), sim::WorkMeter* meter = nullptr);
 
   // A word for each reference: the cycles since the end of the reference before, or since the beginning of
   // the pixel, in its lower half; above them the reference's record kind, whether it is a sure miss, and its

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,6 +26,7 @@
 #include "sim/memory_budget.h"
 #include "sim/shown.h"
 #include "sim/units.h"
+#include "sim/work_meter.h"
 #include "studies/cli/command_error.h"
 #include "studies/cli/examples.h"
 #include "studies/cli/reference_commands.h"
@@ -45,6 +47,7 @@
 #include "studies/operations/operations.h"
 #include "studies/paper/paper.h"
 #include "studies/paper/paper_keys.h"
+#include "studies/progress/shown_meter.h"
 #include "studies/report/report_command.h"
 #include "studies/run/run_result.h"
 #include "studies/run/trace/trace.h"
@@ -93,6 +96,7 @@ struct RunArguments {
   bool no_what_helps = false;
 };
 
+// `exact` has a meter.
 void run_within_command(const RunArguments& arguments, sim::Config& config, studies::RunOptions exact) {
   if (!arguments.keep.empty() || arguments.verify_plan) {
     throw sim::UserError("--keep and --verify-plan are for exact runs; leave --within out");
@@ -108,7 +112,10 @@ void run_within_command(const RunArguments& arguments, sim::Config& config, stud
   } catch (const sim::UserError& error) {
     throw sim::UserError("--within: " + std::string(error.what()));
   }
-  print(studies::run_within(config, tolerance, arguments.json, std::move(exact)));
+  std::optional<studies::ShownMeter> shown(std::in_place, *exact.meter);
+  const std::string text = studies::run_within(config, tolerance, arguments.json, std::move(exact));
+  shown.reset();  // before anything is printed
+  print(text);
 }
 
 void run_command(const RunArguments& arguments) {
@@ -123,6 +130,8 @@ void run_command(const RunArguments& arguments) {
                        : arguments.what_helps  ? studies::Measuring::all
                                                : studies::Measuring::within_budget;
   options.prices = studies::read_given_prices(config);
+  sim::WorkMeter meter;
+  options.meter = &meter;
   if (!arguments.within.empty()) {
     run_within_command(arguments, config, std::move(options));
     return;
@@ -131,9 +140,11 @@ void run_command(const RunArguments& arguments) {
   if (!arguments.directory.empty()) {
     studies::load_image_library();
   }
+  std::optional<studies::ShownMeter> shown(std::in_place, meter);
   const studies::RunResult result = studies::run(config, std::move(options));
   const studies::PlanVerdict verdict =
       arguments.verify_plan ? studies::verify_plan(result) : studies::PlanVerdict();
+  shown.reset();  // before anything is printed
   if (!verdict.holds) {
     throw sim::InternalError("the plan is wrong\n" + verdict.text);
   }
@@ -181,7 +192,10 @@ void run_study(const StudyArguments& arguments, const sim::Schema& schema, const
   if (!arguments.directory.empty()) {
     studies::load_image_library();
   }
-  const studies::StudyOutput output = sim::with_places(config, [&] { return study(config); });
+  sim::WorkMeter meter;
+  std::optional<studies::ShownMeter> shown(std::in_place, meter);
+  const studies::StudyOutput output = sim::with_places(config, [&] { return study(config, &meter); });
+  shown.reset();  // before anything is printed
   std::string text = output.report;
   if (!output.host_report.empty()) {
     text += "\n" + output.host_report;
@@ -236,8 +250,9 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
   schemes->callback([&] { run_study(arguments, studies::schemes_schema(), studies::run_schemes); });
   error->callback([&] { run_study(arguments, studies::error_schema(), studies::run_error); });
   stability->callback([&] {
-    run_study(arguments, studies::stability_schema(),
-              [](sim::Config& config) { return studies::run_stability(config); });
+    run_study(arguments, studies::stability_schema(), [](sim::Config& config, sim::WorkMeter* meter) {
+      return studies::run_stability(config, meter);
+    });
   });
 }
 
@@ -550,10 +565,6 @@ int parse_and_run(int argc, char** argv) {
   }
   if (words.empty()) {
     print(app.help());
-    return done;
-  }
-  if (words.front() == "help" && (words.size() == 1 || !words[1].starts_with('-'))) {
-    print(studies::help_on(app, std::span(words).subspan(1)));
     return done;
   }
   try {

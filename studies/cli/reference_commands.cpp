@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <span>
+#include <string>
 #include <vector>
 
 #include "sim/error.h"
@@ -34,9 +36,12 @@ sim::Schema all_keys() {
   return schema;
 }
 
+namespace {
+
+// What `marti help WORDS` prints. Throws UserError when the words name no command.
 std::string help_on(const CLI::App& app, std::span<const std::string> words) {
   const CLI::App* command = &app;
-  std::string before;
+  std::string name = app.get_name();
   for (const std::string& word : words) {
     const CLI::App* const found = find_subcommand(*command, word);
     if (found == nullptr) {
@@ -47,11 +52,14 @@ std::string help_on(const CLI::App& app, std::span<const std::string> words) {
       throw sim::UserError("help: there is no command \"" + sim::shown(word) + "\"" +
                            sim::did_you_mean(word, names));
     }
-    before += (before.empty() ? "" : " ") + command->get_name();
+    name += " " + found->get_name();
     command = found;
   }
-  return command->help(before);
+  // CLI::App::help() would be that of the command that was called, which is this one.
+  return command->get_formatter()->make_help(command, name, CLI::AppFormatMode::Normal);
 }
+
+}  // namespace
 
 void add_reference_commands(CLI::App& app, ReferenceArguments& arguments, void (*print)(const std::string&)) {
   CLI::App* config = app.add_subcommand("config", "Prints every configuration key, or those asked for");
@@ -83,8 +91,10 @@ void add_reference_commands(CLI::App& app, ReferenceArguments& arguments, void (
       print(std::string(completion_script(shell)));
     });
   }
-  // For the list of commands: main() calls help_on() before the arguments are read as those of a command.
-  app.add_subcommand("help", "Prints what a command takes");
+  CLI::App* help = app.add_subcommand("help", "Prints what a command takes");
+  help->add_option("COMMAND", arguments.command, "the command, in one word or more; all if not given")
+      ->type_name("WORD");
+  help->callback([&app, &arguments, print] { print(help_on(app, arguments.command)); });
   app.add_subcommand("man", "Prints the manual page, for man(1)")->callback([&app, print] {
     print(man_page(app));
   });

@@ -168,7 +168,11 @@ std::string completions(const CLI::App& app, const sim::Schema& schema, std::spa
     }
     std::size_t position = 0;
     for (const CLI::Option* option : place.command->get_options()) {
-      if (!option->nonpositional() && position++ == place.positionals) {
+      if (!option->nonpositional() && option->get_type_name() == "WORD") {
+        for (const CLI::App* other : subcommands_of(app)) {
+          candidates.add(other->get_name());
+        }
+      } else if (!option->nonpositional() && position++ == place.positionals) {
         add_values(option->get_type_name(), schema, begun, candidates);
       }
     }

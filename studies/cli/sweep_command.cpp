@@ -1,7 +1,6 @@
 #include "studies/cli/sweep_command.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "studies/figures/derived_figures.h"
 #include "studies/keys/config_file.h"
 #include "studies/keys/frame_keys.h"
+#include "studies/progress/progress_line.h"
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/sweep/ranks/launch.h"
 #include "studies/sweep/ranks/ranks.h"
@@ -23,8 +23,6 @@
 namespace marti::studies {
 
 namespace {
-
-constexpr std::int64_t longest_file = 1 << 20;  // the limit of sim::Config::from_file
 
 std::string said(const SweepReport& report) {
   if (report.timed == 0 && report.traced == 0) {
@@ -39,7 +37,7 @@ SweepOptions options_of(const SweepArguments& arguments) {
   SweepOptions options;
   options.directory = arguments.directory;
   options.threads = arguments.threads;
-  options.terminal = isatty(STDERR_FILENO) == 1;
+  options.terminal = errors_go_to_a_terminal();
   options.quiet = arguments.quiet;
   return options;
 }
@@ -78,7 +76,7 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
   SweepOptions options = options_of(arguments);
   options.ranks = ranks ? &*ranks : nullptr;
   if (ranks) {
-    options.configuration = sim::read_file(arguments.config, longest_file);
+    options.configuration = sim::read_file(arguments.config, sim::longest_config);
   }
   sim::Config config = ranks
                            ? sim::Config::from_text(sweep_schema(), options.configuration, arguments.config,

@@ -41,8 +41,9 @@ StudyOutput simulator_error(const ErrorConfig& config) {
 
 }  // namespace
 
-StudyOutput run_error(sim::Config& config) {
-  const ErrorConfig error = read_error(config);
+StudyOutput run_error(sim::Config& config, sim::WorkMeter* meter) {
+  ErrorConfig error = read_error(config);
+  error.frame.meter = meter;
   StudyOutput output;
   for (const ErrorFamily family : error.families) {
     append(output, family == ErrorFamily::simulator ? simulator_error(error)

@@ -2,11 +2,13 @@
 #pragma once
 
 #include "sim/config.h"
+#include "sim/work_meter.h"
 #include "studies/tables/study_files.h"
 
 namespace marti::studies {
 
 /// The simulator's methods against exact replay. Throws UserError for anything wrong with the input.
-[[nodiscard]] StudyOutput run_error(sim::Config& config);
+/// `meter` is told how far the study is; null: nobody waits.
+[[nodiscard]] StudyOutput run_error(sim::Config& config, sim::WorkMeter* meter = nullptr);
 
 }  // namespace marti::studies

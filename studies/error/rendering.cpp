@@ -45,16 +45,20 @@ class Measurement {
     for (const RenderingSetting& setting : study_.plan.settings) {
       study_.points.push_back({setting, {}, false, {}, {}});
     }
+    sim::begin_part(frame_.meter, "rendering each setting", "settings", study_.points.size());
     for (RenderingPoint& point : study_.points) {
       look_at(point);
+      sim::count_step(frame_.meter);
     }
     std::mt19937_64 random(study_.plan.base.seed);
     std::vector<std::size_t> order(study_.points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
+    sim::begin_part(frame_.meter, "measuring run times", "renderings", order.size() * options_.repeats);
     for (std::uint32_t repeat = 0; repeat < options_.repeats; ++repeat) {
       std::shuffle(order.begin(), order.end(), random);
       for (const std::size_t point : order) {
         time(study_.points[point], repeat);
+        sim::count_step(frame_.meter);
       }
     }
     for (RenderingPoint& point : study_.points) {

@@ -85,6 +85,7 @@ class FrameStudy {
       exact_seconds_.assign(config_.nodes.size() * config_.caches.size(), 0.0);
       for (std::size_t cache = 0; cache < config_.caches.size(); ++cache) {
         for (std::size_t m = 0; m < simulator_methods().size(); ++m) {
+          sim::begin_part(config_.frame.meter, "timing machines by each method");
           run_method(m, cache, repeat);
         }
       }

@@ -173,6 +173,7 @@ WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& 
 
 std::string run_within(sim::Config& config, double tolerance, bool json, RunOptions exact) {
   FrameConfig frame = read_frame(config);
+  frame.meter = exact.meter;
   refuse_several_frames(config, frame.frames);
   const processors::MachineConfig machine = read_machine(config);
   const RecordConfig record = read_record(config, true);

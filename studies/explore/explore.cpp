@@ -1,12 +1,16 @@
 #include "studies/explore/explore.h"
 
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <thread>
 
+#include "sim/error.h"
 #include "studies/explore/explore_service.h"
 #include "studies/explore/http_server.h"
 #include "studies/explore/open_page.h"
 #include "studies/explore/session.h"
+#include "studies/progress/shown_meter.h"
 
 namespace marti::studies {
 
@@ -32,9 +36,15 @@ class Serving {
 }  // namespace
 
 void explore_command(const ExploreArguments& arguments, void (*print)(const std::string&)) {
+  if (!std::isfinite(arguments.seconds)) {
+    throw sim::UserError("--for: must be a number of seconds");
+  }
   const std::unique_ptr<HttpServer> server = make_http_server();
   const int port = server->bind(arguments.port);  // before the frame is traced, which may take long
-  const Session session(arguments.config, arguments.assignments);
+  sim::WorkMeter meter;
+  std::optional<ShownMeter> shown(std::in_place, meter);
+  const Session session(arguments.config, arguments.assignments, &meter);
+  shown.reset();  // before anything is printed
   ExploreService service(session, random_token(), port);
   const Serving serving(*server, service);
   print(service.address() + "\n");

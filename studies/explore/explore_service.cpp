@@ -115,6 +115,12 @@ std::optional<HttpResponse> ExploreService::file(const std::string& name) const 
   if (name == "keys") {
     return made(json_type, session_.keys());
   }
+  if (name == "progress") {
+    const sim::WorkMeter::State state = turns_.state();
+    return made(
+        json_type,
+        Json({{"part", state.part}, {"unit", state.unit}, {"done", state.done}, {"of", state.of}}).dump());
+  }
   for (const auto& [script, text] : explore_scripts()) {
     if (name == script) {
       return made("text/javascript; charset=utf-8", text);
@@ -134,7 +140,7 @@ std::optional<HttpResponse> ExploreService::answer_head(const HttpHead& head) {
   if (head.method == "GET") {
     return file(*name).value_or(nothing(404));
   }
-  if (head.method != "POST" || (*name != "time" && *name != "helps" && *name != "end")) {
+  if (head.method != "POST" || (*name != "time" && *name != "helps" && *name != "report" && *name != "end")) {
     return nothing(404);
   }
   if (!is_json(head)) {
@@ -147,12 +153,21 @@ HttpResponse ExploreService::answer(const HttpHead& head, const std::string& bod
   const std::string name = below_token(head.path).value_or("");
   try {
     if (name == "time") {
-      return simulate(body, Measuring::none);
+      return simulate(body, [&](const Settings& settings, sim::WorkMeter* meter) {
+        return session_.answer(settings, Measuring::none, meter);
+      });
     }
     if (name == "helps") {
-      return simulate(body, Measuring::within_budget);
+      return simulate(body, [&](const Settings& settings, sim::WorkMeter* meter) {
+        return session_.answer(settings, Measuring::within_budget, meter);
+      });
     }
-  } catch (const Stopped&) {
+    if (name == "report") {
+      return simulate(body, [&](const Settings& settings, sim::WorkMeter* meter) {
+        return session_.report(settings, meter);
+      });
+    }
+  } catch (const sim::Stopped&) {
     return nothing(409);
   } catch (const std::exception& error) {
     const Json json = {{"error", "internal error: " + std::string(error.what())}, {"key", nullptr}};
@@ -164,7 +179,7 @@ HttpResponse ExploreService::answer(const HttpHead& head, const std::string& bod
   return nothing(204);
 }
 
-HttpResponse ExploreService::simulate(const std::string& body, Measuring what_helps) {
+HttpResponse ExploreService::simulate(const std::string& body, const Simulate& what) {
   const std::optional<Request> request = parse(body);
   if (!request) {
     return nothing(400);
@@ -173,7 +188,9 @@ HttpResponse ExploreService::simulate(const std::string& body, Measuring what_he
   if (!turn) {
     return nothing(409);
   }
-  return {200, json_type, session_.answer(request->settings, what_helps, &turn->stop())};
+  std::string answer = what(request->settings, &turn->meter());
+  const char* const type = answer.starts_with("{") ? json_type : "text/html; charset=utf-8";
+  return {200, type, std::move(answer)};
 }
 
 void ExploreService::wait_for_end(double seconds) {

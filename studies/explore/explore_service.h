@@ -2,6 +2,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -38,7 +39,9 @@ class ExploreService : public HttpService {
   [[nodiscard]] bool is_own(const HttpHead& head) const;
   [[nodiscard]] std::optional<std::string> below_token(const std::string& path) const;
   [[nodiscard]] std::optional<HttpResponse> file(const std::string& name) const;
-  [[nodiscard]] HttpResponse simulate(const std::string& body, Measuring what_helps);
+  using Simulate = std::function<std::string(const Settings& settings, sim::WorkMeter* meter)>;
+  // What `what` gives when it is its turn: JSON or a page.
+  [[nodiscard]] HttpResponse simulate(const std::string& body, const Simulate& what);
 
   const Session& session_;
   std::string token_;

@@ -1,9 +1,13 @@
 #include "studies/explore/http_server.h"
 
 #include <httplib.h>
+#include <poll.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -62,12 +66,120 @@ void put(HttpResponse made, httplib::Response& response) {
   }
 }
 
+using Clock = std::chrono::steady_clock;
+
+// A request must have come, and its answer have been taken, in so much time; the page is on this computer.
+constexpr std::chrono::seconds for_request(2);
+constexpr std::chrono::seconds for_answer(10);
+// When the server ends, an answer that is under way is given this long.
+constexpr std::chrono::milliseconds for_last_answer(500);
+// So long a connection may wait before it looks whether the server ends.
+constexpr std::chrono::milliseconds between_looks(100);
+constexpr std::size_t most_head_bytes = 32 * 1024;
+
+// A connection whose request may be neither endless nor slow.
+class Connection : public httplib::Stream {
+ public:
+  Connection(socket_t socket, std::size_t most_bytes, const std::atomic<bool>& ending)
+      : socket_(socket), left_(most_head_bytes + 2 * most_bytes), ending_(ending) {}
+  ~Connection() override {
+    shutdown(socket_, SHUT_RDWR);
+    close(socket_);
+  }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  [[nodiscard]] bool is_readable() const override { return begin_ < end_ || ready(POLLIN, between_looks); }
+  [[nodiscard]] bool is_writable() const override { return ready(POLLOUT, between_looks); }
+
+  ssize_t read(char* into, std::size_t size) override {
+    if (begin_ == end_ && !fill()) {
+      return -1;
+    }
+    const std::size_t given = std::min(size, end_ - begin_);
+    std::copy_n(buffer_.data() + begin_, given, into);
+    begin_ += given;
+    return static_cast<ssize_t>(given);
+  }
+  ssize_t write(const char* from, std::size_t size) override {
+    if (!answer_until_) {
+      answer_until_ = Clock::now() + for_answer;
+    }
+    while (!ready(POLLOUT, between_looks)) {
+      const Clock::time_point now = Clock::now();
+      if (ending_) {
+        answer_until_ = std::min(*answer_until_, now + for_last_answer);
+      }
+      if (now >= *answer_until_) {
+        return -1;
+      }
+    }
+    return send(socket_, from, size, MSG_DONTWAIT | MSG_NOSIGNAL);
+  }
+
+  void get_remote_ip_and_port(std::string& ip, int& port) const override { get_local_ip_and_port(ip, port); }
+  void get_local_ip_and_port(std::string& ip, int& port) const override {
+    ip = "127.0.0.1";
+    port = 0;
+  }
+  [[nodiscard]] socket_t socket() const override { return socket_; }
+
+ private:
+  [[nodiscard]] bool ready(short what, std::chrono::milliseconds most) const {
+    pollfd asked{socket_, what, 0};
+    return poll(&asked, 1, static_cast<int>(most.count())) > 0;
+  }
+  // Whether more of the request has come.
+  bool fill() {
+    do {
+      if (ending_ || Clock::now() >= request_until_) {
+        return false;
+      }
+    } while (!ready(POLLIN, between_looks));
+    const ssize_t came = recv(socket_, buffer_.data(), std::min(buffer_.size(), left_), MSG_DONTWAIT);
+    if (came <= 0) {
+      return false;
+    }
+    begin_ = 0;
+    end_ = static_cast<std::size_t>(came);
+    left_ -= end_;
+    return true;
+  }
+
+  socket_t socket_;
+  std::size_t left_;  // bytes that the request may still have
+  const std::atomic<bool>& ending_;
+  std::array<char, 4096> buffer_{};
+  std::size_t begin_ = 0;  // of what is in the buffer
+  std::size_t end_ = 0;
+  Clock::time_point request_until_ = Clock::now() + for_request;
+  std::optional<Clock::time_point> answer_until_;  // set when the answer begins
+};
+
+// cpp-httplib's server on such connections.
+class Server : public httplib::Server {
+ public:
+  // cpp-httplib lets five connections wait to be taken; one more is tried again by its client after a second.
+  void let_many_wait() { ::listen(svr_sock_, SOMAXCONN); }
+  void end() {
+    ending_ = true;
+    stop();
+  }
+
+ private:
+  bool process_and_close_socket(socket_t socket) override {
+    Connection connection(socket, payload_max_length_, ending_);
+    bool closed = false;
+    return process_request(connection, true, closed, nullptr);
+  }
+
+  std::atomic<bool> ending_ = false;
+};
+
 class Httplib : public HttpServer {
  public:
   Httplib() {
     server_.new_task_queue = [] { return new httplib::ThreadPool(threads); };
-    server_.set_keep_alive_max_count(1);
-    server_.set_keep_alive_timeout(2);
     server_.set_tcp_nodelay(true);
     server_.set_default_headers(headers_of_all());
     // The default lets another process take the same port.
@@ -87,6 +199,7 @@ class Httplib : public HttpServer {
       throw sim::UserError(
           "explore: the port cannot be had; another program may use it (--port 0 takes a free one)");
     }
+    server_.let_many_wait();
     return port;
   }
 
@@ -126,11 +239,11 @@ class Httplib : public HttpServer {
     while (!server_.is_running() && !ended_) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    server_.stop();
+    server_.end();
   }
 
  private:
-  httplib::Server server_;
+  Server server_;
   std::atomic<bool> ended_ = false;
 };
 

@@ -51,9 +51,11 @@ class HttpServer {
   /// Takes a port of 127.0.0.1, a free one for 0, and returns it. Throws UserError when it cannot be had.
   virtual int bind(int port) = 0;
   /// Answers until stop() is called, which may be before. Each response ends its connection, so that nothing
-  /// in a body that was not read is taken for a request; a body longer than `most_bytes` has status 413.
+  /// in a body that was not read is taken for a request; a body longer than `most_bytes` has status 413. A
+  /// connection whose request does not come within seconds, or does not end, is closed.
   virtual void serve(HttpService& service, std::size_t most_bytes) = 0;
-  /// Has serve() end when the requests that it works on are answered. From any thread.
+  /// Has serve() end when the requests that it works on are answered, without waiting for requests that have
+  /// not come or for answers that are not taken. From any thread.
   virtual void stop() = 0;
 };
 

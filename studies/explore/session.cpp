@@ -13,15 +13,19 @@
 #include "sim/files.h"
 #include "sim/nearest.h"
 #include "studies/keys/config_file.h"
+#include "studies/keys/frame_keys.h"
 #include "studies/keys/price_keys.h"
+#include "studies/report/model/chart_library.h"
+#include "studies/report/page/report_page.h"
+#include "studies/report/plots/vega_bundle.h"
+#include "studies/report/read/read_report.h"
+#include "studies/show/key_list.h"
 
 namespace marti::studies {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr std::int64_t longest_file = 1 << 20;
 
 constexpr std::array<std::string_view, 9> no_controls = {
     "scene", "frames", "image", "structure", "host_machine", "record", "count", "sweep", "prices"};
@@ -33,11 +37,8 @@ std::string value_anywhere(const sim::Config& config, const sim::Key& key, std::
   if (key.name == "scene.source") {
     const auto& source = std::get<std::string>(config.values_at(index).front());
     if (scenes::names_a_file(source)) {
-      const std::filesystem::path beside = config.where(key.name).starts_with("--set")
-                                               ? std::filesystem::path()
-                                               : std::filesystem::path(config.name()).parent_path();
-      return sim::print_value(key.type,
-                              std::filesystem::absolute(beside / source).lexically_normal().string());
+      const std::filesystem::path file = std::filesystem::absolute(directory_of_scene(config) / source);
+      return sim::print_value(key.type, file.lexically_normal().string());
     }
   }
   return sim::print_values(key, config.values_at(index));
@@ -51,6 +52,8 @@ Json key_json(const sim::Config& config, std::size_t index) {
           {"list", key.is_list},
           {"choices", key.choices},
           {"range", print_range(key)},
+          {"minimum", json_of_bound(key.minimum)},
+          {"maximum", json_of_bound(key.maximum)},
           {"unit", key.unit},
           {"meaning", key.meaning},
           {"value", sim::print_values(key, config.values_at(index))}};
@@ -102,20 +105,32 @@ bool is_control(const sim::Key& key) {
   return std::find(no_controls.begin(), no_controls.end(), section) == no_controls.end();
 }
 
-Session::Session(const std::filesystem::path& file, std::vector<std::string> assignments)
+Session::Session(const std::filesystem::path& file, std::vector<std::string> assignments,
+                 sim::WorkMeter* meter)
     : name_(file.string()), assignments_(std::move(assignments)), schema_(run_schema()) {
   require_config_file(file);
   declare_price_keys(schema_);
-  text_ = sim::read_file(file, longest_file);
+  text_ = sim::read_file(file, sim::longest_config);
   sim::Config config = sim::Config::from_text(schema_, text_, name_, assignments_);
   RunOptions options;
   options.prices = read_given_prices(config);
+  options.meter = meter;
   functional_ = run(config, std::move(options)).functional;
   keys_ = keys_json(config);
 }
 
-std::string Session::timed(const Settings& settings, Measuring what_helps,
-                           const std::atomic<bool>* stop) const {
+template <class Make>
+std::string Session::refused_or(const Make& make) const {
+  try {
+    return make();
+  } catch (const sim::UserError& error) {
+    return refusal(error.what(), key_of(error.what(), schema_));
+  } catch (const std::bad_alloc&) {
+    return refusal("not enough memory for this machine", std::nullopt);
+  }
+}
+
+std::string Session::timed(const Settings& settings, Measuring what_helps, sim::WorkMeter* meter) const {
   std::vector<std::string> assignments = assignments_;
   for (const auto& [key, value] : settings) {
     const std::optional<std::size_t> index = schema_.find(key);
@@ -137,19 +152,31 @@ std::string Session::timed(const Settings& settings, Measuring what_helps,
   options.what_helps = what_helps;
   options.functional = functional_;
   options.stripped_logs = &stripped_logs_;
-  options.stop = stop;
-  return json_of(run(config, std::move(options)));
+  options.meter = meter;
+  const RunResult result = run(config, std::move(options));
+  explored_.add(settings, result);
+  return json_of(result);
 }
 
-std::string Session::answer(const Settings& settings, Measuring what_helps,
-                            const std::atomic<bool>* stop) const {
-  try {
-    return timed(settings, what_helps, stop);
-  } catch (const sim::UserError& error) {
-    return refusal(error.what(), key_of(error.what(), schema_));
-  } catch (const std::bad_alloc&) {
-    return refusal("not enough memory for this machine", std::nullopt);
-  }
+std::string Session::answer(const Settings& settings, Measuring what_helps, sim::WorkMeter* meter) const {
+  return refused_or([&] { return timed(settings, what_helps, meter); });
+}
+
+std::string Session::report(const Settings& settings, sim::WorkMeter* meter) const {
+  return refused_or([&] {
+    if (!have_vega_scripts()) {
+      throw sim::UserError(no_vega_scripts);
+    }
+    const RunJson run(Json::parse(timed(settings, Measuring::within_budget, meter)), name_);
+    ReportData report = report_of_run(run);
+    report.title += ", explored";
+    const Table machines = explored_.table();
+    if (machines.rows().size() > 1) {
+      report.charts.insert(report.charts.begin(), make_chart("explored", machines));
+    }
+    report.tables.insert(report.tables.begin(), {machines, false});
+    return report_page(report, vega_scripts());
+  });
 }
 
 }  // namespace marti::studies

@@ -2,7 +2,6 @@
 // work log.
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -10,12 +9,11 @@
 #include <vector>
 
 #include "sim/schema.h"
+#include "sim/work_meter.h"
+#include "studies/explore/explored_machines.h"
 #include "studies/run/run_result.h"
 
 namespace marti::studies {
-
-/// Keys and their values, each as --set has them.
-using Settings = std::vector<std::pair<std::string, std::string>>;
 
 /// Whether the key describes the machine. Keys of the frame, of the computer and of what is recorded do not:
 /// the frame is rendered only once.
@@ -25,21 +23,30 @@ class Session {
  public:
   /// Reads the configuration, renders its frame and times its machine. Throws UserError for anything that is
   /// wrong with them.
-  Session(const std::filesystem::path& file, std::vector<std::string> assignments);
+  /// `meter` is told how far this is; null: nobody waits.
+  Session(const std::filesystem::path& file, std::vector<std::string> assignments,
+          sim::WorkMeter* meter = nullptr);
 
   /// As JSON: the controls with section, type, range, choices and meaning, the value that each key has in the
   /// configuration, and what else of the configuration a copy of it must have.
   [[nodiscard]] const std::string& keys() const { return keys_; }
 
   /// The result of the machine with these settings, as `marti run --json` prints it with them behind the
-  /// session's own; {"error": message, "key": name or null} when the machine is refused. Throws Stopped
-  /// when `stop` becomes true. Several threads may call it.
+  /// session's own; {"error": message, "key": name or null} when the machine is refused. `meter` is
+  /// told how far it is; after its stop() this throws sim::Stopped. Several threads may call it.
   [[nodiscard]] std::string answer(const Settings& settings, Measuring what_helps,
-                                   const std::atomic<bool>* stop = nullptr) const;
+                                   sim::WorkMeter* meter = nullptr) const;
+
+  /// The page of `marti report` for the machine with these settings, with a table of all machines that were
+  /// simulated; else as answer().
+  [[nodiscard]] std::string report(const Settings& settings, sim::WorkMeter* meter = nullptr) const;
 
  private:
+  // What `make` returns, or what is wrong as answer() says it.
+  template <class Make>
+  [[nodiscard]] std::string refused_or(const Make& make) const;
   [[nodiscard]] std::string timed(const Settings& settings, Measuring what_helps,
-                                  const std::atomic<bool>* stop) const;
+                                  sim::WorkMeter* meter) const;
 
   std::string name_;
   std::string text_;  // of the file
@@ -47,6 +54,7 @@ class Session {
   sim::Schema schema_;
   FunctionalRun functional_;
   mutable KeptStrippedLogs stripped_logs_;  // guards itself
+  mutable ExploredMachines explored_;       // guards itself
   std::string keys_;
 };
 

@@ -5,18 +5,23 @@ namespace marti::studies {
 Turns::Turn::~Turn() {
   if (turns_ != nullptr) {
     const std::lock_guard lock(turns_->mutex_);
-    turns_->taken_ = false;
+    turns_->taken_ = nullptr;
     turns_->changed_.notify_all();
   }
 }
 
 void Turns::stop() {
   const std::lock_guard lock(mutex_);
-  ++newest_reader_;
-  ++newest_background_;
-  reader_waits_ = false;
-  stop_ = true;
+  ended_ = true;
+  if (taken_) {
+    taken_->stop();
+  }
   changed_.notify_all();
+}
+
+sim::WorkMeter::State Turns::state() const {
+  const std::lock_guard lock(mutex_);
+  return taken_ ? taken_->state() : sim::WorkMeter::State();
 }
 
 std::optional<Turns::Turn> Turns::take(Asker asker) {
@@ -27,19 +32,20 @@ std::optional<Turns::Turn> Turns::take(Asker asker) {
   if (reader) {
     ++newest_background_;
     reader_waits_ = true;
-    stop_ = true;
+    if (taken_) {
+      taken_->stop();
+    }
   }
   changed_.notify_all();  // those whose place is taken now
-  changed_.wait(lock, [&] { return newest != mine || (!taken_ && (reader || !reader_waits_)); });
-  if (newest != mine) {
+  changed_.wait(lock, [&] { return ended_ || newest != mine || (!taken_ && (reader || !reader_waits_)); });
+  if (ended_ || newest != mine) {
     return std::nullopt;
   }
   if (reader) {
     reader_waits_ = false;
   }
-  taken_ = true;
-  stop_ = false;
-  return std::optional<Turn>(std::in_place, *this);
+  taken_ = std::make_shared<sim::WorkMeter>();
+  return std::optional<Turn>(std::in_place, *this, taken_);
 }
 
 }  // namespace marti::studies

@@ -1,11 +1,14 @@
 // One simulation at a time: whose turn it is.
 #pragma once
 
-#include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
+
+#include "sim/work_meter.h"
 
 namespace marti::studies {
 
@@ -21,18 +24,20 @@ class Turns {
   /// While it lives no other turn is given.
   class Turn {
    public:
-    explicit Turn(Turns& turns) : turns_(&turns) {}
-    Turn(Turn&& other) noexcept : turns_(other.turns_) { other.turns_ = nullptr; }
+    Turn(Turns& turns, std::shared_ptr<sim::WorkMeter> meter) : turns_(&turns), meter_(std::move(meter)) {}
+    Turn(Turn&& other) noexcept
+        : turns_(std::exchange(other.turns_, nullptr)), meter_(std::move(other.meter_)) {}
     Turn(const Turn&) = delete;
     Turn& operator=(const Turn&) = delete;
     Turn& operator=(Turn&&) = delete;
     ~Turn();
 
-    /// Becomes true when a reader asks for a newer one.
-    [[nodiscard]] const std::atomic<bool>& stop() const { return turns_->stop_; }
+    /// For the work; it is stopped when a reader asks for a newer one.
+    [[nodiscard]] sim::WorkMeter& meter() const { return *meter_; }
 
    private:
     Turns* turns_;
+    std::shared_ptr<sim::WorkMeter> meter_;
   };
 
   /// Waits for a turn. A reader's request takes the place of every request that waits, one of the background
@@ -40,14 +45,17 @@ class Turns {
   /// that has its turn.
   [[nodiscard]] std::optional<Turn> take(Asker asker);
 
-  /// Stops the one that has its turn; those that wait get none.
+  /// Stops the one that has its turn; those that wait and those that come get none.
   void stop();
 
+  /// How far the one is that has its turn; nothing has begun if there is none.
+  [[nodiscard]] sim::WorkMeter::State state() const;
+
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
-  bool taken_ = false;
-  std::atomic<bool> stop_ = false;  // of the turn that is taken
+  std::shared_ptr<sim::WorkMeter> taken_;  // of the turn that is taken; null: none is
+  bool ended_ = false;
   bool reader_waits_ = false;
   std::uint64_t newest_reader_ = 0;
   std::uint64_t newest_background_ = 0;

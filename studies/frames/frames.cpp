@@ -57,10 +57,14 @@ class FramesStudy {
 
  private:
   void add(const PosedFrame& pose) {
+    sim::WorkMeter* const meter = config_.frame.meter;
+    sim::begin_part(meter, fmt::format("building the tree of frame {}", pose.number));
     FrameTree tree = make_frame_tree(before_ ? &*before_ : nullptr, pose.scene, options_);
     refuse_beyond_memory(config_.frame, pose.scene, *tree.triangles, *tree.octree);
     processors::RenderOptions options = config_.frame.render;
     options.record = true;
+    options.meter = meter;
+    sim::begin_part(meter, fmt::format("tracing frame {}", pose.number), "rows", options.height);
     processors::Frame frame = render(pose.scene, *tree.triangles, *tree.octree, options);
     if (config_.verify) {
       verify(config_, pose, tree, frame);
@@ -73,6 +77,7 @@ class FramesStudy {
     outcome.image_hash = image_hash(frame.image);
     outcome.build_seconds = tree.build_seconds;
     outcome.update_seconds = tree.update_seconds;
+    sim::begin_part(meter, fmt::format("timing frame {}", pose.number));
     outcome.ways = ways_.time(*frame.log, tree.update ? &*tree.update : nullptr);
     images_.push_back({fmt::format("frame-{:04}", pose.number), std::move(frame.image)});
     tree.update.reset();
@@ -116,8 +121,9 @@ std::string head_of(const sim::Config& config, const FramesConfig& frames, std::
 
 }  // namespace
 
-StudyOutput run_frames(sim::Config& config) {
-  const FramesConfig frames = read_frames(config);
+StudyOutput run_frames(sim::Config& config, sim::WorkMeter* meter) {
+  FramesConfig frames = read_frames(config);
+  frames.frame.meter = meter;
   FramesStudy study(frames);
   study.run();
   const std::vector<FrameOutcome>& outcomes = study.outcomes();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "sim/config.h"
+#include "sim/work_meter.h"
 #include "studies/tables/study_files.h"
 
 namespace marti::studies {
@@ -11,6 +12,7 @@ namespace marti::studies {
 /// Poses, builds, renders and times all frames, one after the other. Throws UserError for anything wrong with
 /// the input, InternalError when an updated tree is not the one of a fresh build or gives another image. The
 /// reproducible tables, the images and the report do not depend on the number of host threads.
-[[nodiscard]] StudyOutput run_frames(sim::Config& config);
+/// `meter` is told how far the study is; null: nobody waits.
+[[nodiscard]] StudyOutput run_frames(sim::Config& config, sim::WorkMeter* meter = nullptr);
 
 }  // namespace marti::studies

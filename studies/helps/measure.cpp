@@ -180,10 +180,16 @@ class Measurement {
     return std::max(worth_naming, saved[most_named - 1]);
   }
 
+  // So many machines are replayed next, at most.
+  void tell(std::size_t machines) const {
+    sim::begin_part(shared_.meter, "measuring what would help", "machines", machines);
+  }
+
   void measure_steps() {
     const std::vector<Replay> wanted = in_order();
     const Work kept = limited_ ? budget_ / part_for_best : 0;
     std::size_t next = 0;
+    tell(wanted.size());
     while (next < wanted.size() && wanted[next].into->most_saved >= least_wanted()) {
       std::vector<Replay> together;
       while (next < wanted.size() && together.size() < begun_together &&
@@ -203,6 +209,7 @@ class Measurement {
         replays.push_back({&cases_[i].resource.best->machine, &*best});
       }
     }
+    tell(replays.size());
     replay(replays);
   }
 
@@ -253,6 +260,7 @@ class Measurement {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       replays.push_back({&changes[i].machine, &pairs[i].step});
     }
+    tell(replays.size());
     replay(replays);
     double most = 0.0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {

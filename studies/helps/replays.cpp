@@ -27,9 +27,10 @@ MachineConfig without_counting(const MachineConfig& machine) {
 }
 
 Replayed replay_one(const SharedLog& shared, const MachineConfig& machine) {
-  end_if_stopped(shared.stop);
+  sim::WorkMeter packets(shared.meter);
   processors::ReplayOptions options = shared.options;
   options.stripped = stripped_for(shared, machine);
+  options.meter = &packets;
   try {
     const processors::MachineResult result =
         processors::replay(shared.log, without_counting(machine), options);
@@ -64,7 +65,11 @@ std::vector<Replayed> replay_all(const SharedLog& shared, std::span<const Machin
   arena.execute([&] {
     tbb::parallel_for(
         std::size_t{0}, machines.size(),
-        [&](std::size_t i) { replayed[i] = replay_one(shared, *machines[i]); }, tbb::simple_partitioner());
+        [&](std::size_t i) {
+          replayed[i] = replay_one(shared, *machines[i]);
+          count_step(shared.meter);
+        },
+        tbb::simple_partitioner());
   });
   return replayed;
 }

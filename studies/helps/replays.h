@@ -1,7 +1,6 @@
 // Replays of several machines at a time.
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,16 +13,6 @@
 
 namespace marti::studies {
 
-/// Thrown in place of a result for which nobody waits any more.
-struct Stopped {};
-
-/// Throws Stopped if `stop` is true.
-inline void end_if_stopped(const std::atomic<bool>* stop) {
-  if (stop != nullptr && *stop) {
-    throw Stopped();
-  }
-}
-
 /// What replays share: the work log, a stripped log for the machines that it suits (null: none), what the
 /// replays are to keep, and the memory that is left for them.
 struct SharedLog {
@@ -31,7 +20,7 @@ struct SharedLog {
   std::shared_ptr<const processors::StrippedLog> stripped;
   processors::ReplayOptions options;
   sim::MemoryBudget memory;
-  const std::atomic<bool>* stop = nullptr;  ///< true: no further replay begins
+  sim::WorkMeter* meter = nullptr;  ///< counts the replays; stopped, it stops them; null: nobody waits
 };
 
 /// The stripped log, if it suits the machine; else null.
@@ -48,7 +37,7 @@ struct Replayed {
 };
 
 /// Replays each machine, all of which have room. As many are replayed at a time as there are cores and memory
-/// for; results do not depend on it. Throws Stopped.
+/// for; results do not depend on it. Throws sim::Stopped.
 [[nodiscard]] std::vector<Replayed> replay_all(const SharedLog& shared,
                                                std::span<const processors::MachineConfig* const> machines);
 

@@ -18,9 +18,13 @@ std::recursive_mutex& held() {
   return mutex;
 }
 
-std::function<void(int)>& action() {
-  static auto& function = *new std::function<void(int)>;  // NOLINT(cppcoreguidelines-owning-memory)
-  return function;
+struct Action {
+  std::function<void(int)> what{};
+  AtSignal::Then then = AtSignal::Then::exit;
+};
+Action& action() {
+  static auto& one = *new Action;  // NOLINT(cppcoreguidelines-owning-memory)
+  return one;
 }
 
 // Waits for one of the signals. All threads block them, because a thread inherits the mask of the one that
@@ -32,9 +36,11 @@ void watch(const sigset_t& signals) {
   }
   held().lock();  // never unlocked: no output may begin any more
   sim::abandon_pending_files();
-  if (action()) {
-    action()(signal);
-    _exit(128 + signal);  // the status that a shell reports for a signal
+  if (action().what) {
+    action().what(signal);
+    if (action().then == AtSignal::Then::exit) {
+      _exit(128 + signal);  // the status that a shell reports for a signal
+    }
   }
   std::signal(signal, SIG_DFL);
   sigset_t mine;
@@ -67,14 +73,14 @@ void end_cleanly_on_signals() {
 
 SignalsHeld::SignalsHeld() : lock_(held()) {}
 
-AtSignal::AtSignal(std::function<void(int signal)> what) {
+AtSignal::AtSignal(std::function<void(int signal)> what, Then then) {
   const SignalsHeld hold;
-  action() = std::move(what);
+  action() = {std::move(what), then};
 }
 
 AtSignal::~AtSignal() {
   const SignalsHeld hold;
-  action() = nullptr;
+  action() = {};
 }
 
 }  // namespace marti::studies

@@ -1,6 +1,7 @@
 // Signals that end the program: what it leaves behind then.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <mutex>
 
@@ -21,10 +22,14 @@ class SignalsHeld {
 };
 
 /// An action for the case that such a signal comes while this lives: it is called once, in a thread of its
-/// own, after temporary files are removed; then the program exits with status 128 + signal. One at a time.
+/// own, after temporary files are removed; then the program ends. One at a time.
 class AtSignal {
  public:
-  explicit AtSignal(std::function<void(int signal)> action);
+  enum class Then : std::uint8_t {
+    exit,   ///< with status 128 + signal
+    signal  ///< by the signal, as without an action
+  };
+  explicit AtSignal(std::function<void(int signal)> action, Then then = Then::exit);
   /// If the action has begun, waits for it and does not return: the program exits.
   ~AtSignal();
   AtSignal(const AtSignal&) = delete;

@@ -25,7 +25,7 @@ void declare_second_level_keys(sim::Schema& schema) {
   schema.integer("l2.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
                  "seed of random replacement");
   cycles(schema, "l2.hit_cycles", 4,
-         "cycles of a look-up that hits: private: of the node's clock; shared: of the banks' clock");
+         "cycles of a look-up that hits: private: of the node's clock; shared: of memory.clock");
 }
 
 void read_second_level(sim::Config& config, processors::MachineConfig& machine) {

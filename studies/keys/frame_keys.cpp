@@ -176,13 +176,16 @@ sim::MemoryBudget read_memory(const sim::Config& config, std::uint64_t processes
   return sim::MemoryBudget(static_cast<std::uint64_t>(limit), true);
 }
 
+std::filesystem::path directory_of_scene(const sim::Config& config) {
+  const std::string where = config.where("scene.source");
+  const bool of_the_command = where.starts_with("--set") || where.starts_with("--axis");
+  return of_the_command ? std::filesystem::path() : std::filesystem::path(config.name()).parent_path();
+}
+
 FrameConfig read_frame(sim::Config& config) {
   FrameConfig frame;
   frame.scene = config.text("scene.source");
-  const std::string where = config.where("scene.source");
-  if (!where.starts_with("--set") && !where.starts_with("--axis")) {
-    frame.open.base_directory = std::filesystem::path(config.name()).parent_path();
-  }
+  frame.open.base_directory = directory_of_scene(config);
   if (scenes::names_a_file(frame.scene)) {
     const std::filesystem::path file = frame.open.base_directory / frame.scene;
     if (std::error_code error; !std::filesystem::exists(file, error)) {

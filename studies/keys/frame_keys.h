@@ -11,6 +11,7 @@
 #include "sim/config.h"
 #include "sim/memory_budget.h"
 #include "sim/schema.h"
+#include "sim/work_meter.h"
 #include "studies/run/plan/plan.h"
 
 namespace marti::studies {
@@ -35,9 +36,10 @@ struct FrameConfig {
   std::string structure;
   accel::StructureOptions structure_options;
   processors::RenderOptions render;
-  bool exact_too = false;    ///< with the voxel cut: render the exact image beside it
-  sim::MemoryBudget memory;  ///< of scene, structure, image and work log together
-  KeptItems keep;            ///< plan items to keep; no configuration key, as it changes no result
+  bool exact_too = false;           ///< with the voxel cut: render the exact image beside it
+  sim::MemoryBudget memory;         ///< of scene, structure, image and work log together
+  KeptItems keep;                   ///< plan items to keep; no configuration key, as it changes no result
+  sim::WorkMeter* meter = nullptr;  ///< is told how far the frame is; null: nobody waits for it
 };
 
 /// The options with the image made so small that its longer side has at most `side` pixels.
@@ -51,6 +53,10 @@ void declare_frame_keys(sim::Schema& schema);
 
 /// Lets the structure, whichever is built, take what is left of the budget.
 void give_memory(const sim::MemoryBudget& memory, accel::StructureOptions& options);
+
+/// Where a scene file that the configuration names is looked for: beside the configuration, or in the current
+/// directory (empty) if the command line names it.
+[[nodiscard]] std::filesystem::path directory_of_scene(const sim::Config& config);
 
 /// Throws UserError naming file, line and key.
 [[nodiscard]] FrameConfig read_frame(sim::Config& config);

@@ -49,7 +49,7 @@ constexpr std::array<CountedWalk, 11> plans{{
 
 }  // namespace
 
-OperationsStudy count_operations(sim::Config& config) {
+OperationsStudy count_operations(sim::Config& config, sim::WorkMeter* meter) {
   const FrameConfig frame = read_frame(config);
   static_cast<void>(read_machine(config));
   config.refuse_unused();
@@ -61,6 +61,7 @@ OperationsStudy count_operations(sim::Config& config) {
   study.max_depth = frame.render.max_depth;
   study.max_objects = frame.structure_options.octree.max_objects;
   study.max_level = frame.structure_options.octree.max_level;
+  sim::begin_part(meter, "counting operations", "walks", plans.size());
   for (const CountedWalk& plan : plans) {
     accel::StructureOptions options = frame.structure_options;
     options.bsp.walk = plan.walk;
@@ -86,13 +87,14 @@ OperationsStudy count_operations(sim::Config& config) {
       row.entries = structure->topology().entries.size();
       row.measured = processors::measure_operation_mixes(scene, *triangles, *structure, render);
     }
+    sim::count_step(meter);
   }
   study.lengths = measure_unit_lengths(deepest, unit_length_rays);
   return study;
 }
 
-StudyOutput run_operations(sim::Config& config) {
-  StudyOutput output = output_of(count_operations(config));
+StudyOutput run_operations(sim::Config& config, sim::WorkMeter* meter) {
+  StudyOutput output = output_of(count_operations(config, meter));
   output.tables.push_back(provenance_table(config.effective_values()));
   return output;
 }

@@ -7,6 +7,7 @@
 
 #include "processors/cost/operation_mix.h"
 #include "sim/config.h"
+#include "sim/work_meter.h"
 #include "studies/operations/unit_length.h"
 #include "studies/tables/study_files.h"
 
@@ -34,13 +35,14 @@ struct OperationsStudy {
 /// Counts all walks over the configured scene. Its image is made small, because counting is slow and brute
 /// force slower. Every structure is built whatever structure.kind is. Reads a configuration of `marti run`,
 /// whose machine it checks and does not use. Throws UserError as that does.
-[[nodiscard]] OperationsStudy count_operations(sim::Config& config);
+[[nodiscard]] OperationsStudy count_operations(sim::Config& config, sim::WorkMeter* meter = nullptr);
 
 /// Report and tables: "operations" has a row for each walk and kind of step, "unit_length" one for each depth
 /// and structure.
 [[nodiscard]] StudyOutput output_of(const OperationsStudy& study);
 
 /// Runs the study: its report, its tables, and the provenance of its numbers.
-[[nodiscard]] StudyOutput run_operations(sim::Config& config);
+/// `meter` is told how far the study is; null: nobody waits.
+[[nodiscard]] StudyOutput run_operations(sim::Config& config, sim::WorkMeter* meter = nullptr);
 
 }  // namespace marti::studies

@@ -49,11 +49,13 @@ std::vector<RunOutcomes> time_initial_levels(const PaperConfig& config, std::spa
       outcomes[run].levels.emplace_back().initial = std::move(initial);
     }
   }
+  sim::begin_part(config.frame.meter, "timing initial trees", "machines", machines.size());
   tbb::parallel_for(std::size_t{0}, machines.size(), [&](std::size_t i) {
     const auto [run, level] = machines[i];
     LevelOutcome& outcome = outcomes[run].levels[level];
     outcome =
         outcome_of(processors::replay(*runs[run].log, machine_for(config, outcome.initial)), outcome.initial);
+    sim::count_step(config.frame.meter);
   });
   return outcomes;
 }

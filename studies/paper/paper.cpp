@@ -98,15 +98,18 @@ std::string text_of_tables(std::span<const Table> tables) {
 
 }  // namespace
 
-StudyOutput run_paper(sim::Config& config) {
-  const PaperConfig paper = read_paper(config);
+StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter) {
+  PaperConfig paper = read_paper(config);
+  paper.frame.meter = meter;
   const memory::LayoutConfig& layout = paper.machine.layout;
 
   // One after the other, so that the host's seconds mean something.
   std::vector<SceneTrees> trees;
+  sim::begin_part(meter, "building trees", "scenes", paper.scenes.size());
   for (const std::string& name : paper.scenes) {
     trees.push_back(
         measure_trees(name, open(config, paper, name, "paper.scenes"), paper.frame.structure_options));
+    sim::count_step(meter);
   }
   Table scenes = scene_table(config, paper, trees);
 
@@ -141,8 +144,10 @@ StudyOutput run_paper(sim::Config& config) {
   output.tables.push_back(std::move(scenes));
   output.tables.push_back(provenance_table(config.effective_values()));
   output.host_tables = {host_tree_table(trees), host_table()};
+  sim::begin_part(meter, "measuring trees on this computer", "runs", runs.size());
   for (std::size_t i = 0; i < runs.size() && paper.host_repetitions != 0; ++i) {
     output.host_tables.push_back(host_building_table(i, runs[i].run, measure_host(paper, runs[i])));
+    sim::count_step(meter);
   }
   for (const Table& table : output.host_tables) {
     output.host_report += (output.host_report.empty() ? "" : "\n") + text_of(table);

@@ -3,12 +3,14 @@
 #pragma once
 
 #include "sim/config.h"
+#include "sim/work_meter.h"
 #include "studies/tables/study_files.h"
 
 namespace marti::studies {
 
 /// Runs the whole study. Throws UserError for anything wrong with the input. The reproducible tables and the
 /// report do not depend on the number of host threads.
-[[nodiscard]] StudyOutput run_paper(sim::Config& config);
+/// `meter` is told how far the study is; null: nobody waits.
+[[nodiscard]] StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter = nullptr);
 
 }  // namespace marti::studies

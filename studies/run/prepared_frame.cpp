@@ -76,6 +76,7 @@ scenes::Scene open_planned(const FrameConfig& config, scenes::FileUse* file) {
 
 PreparedFrame::PreparedFrame(const FrameConfig& config) : config_(config) {
   scenes::FileUse file;
+  sim::begin_part(config.meter, "reading the scene");
   scenes::Scene scene = open_planned(config, &file);
   prepare_planned(std::move(scene), std::move(file));
 }
@@ -113,6 +114,7 @@ void PreparedFrame::prepare(const scenes::Scene& scene) {
   config_.memory.take(scenes::host_bytes(scene) + accel::TriangleSet::host_bytes(scene), "the scene takes",
                       smaller_scene);
   give_memory(config_.memory, config_.structure_options);
+  sim::begin_part(config_.meter, "building the " + config_.structure);
   triangles_ = std::make_shared<const accel::TriangleSet>(scene);
   structure_ = accel::make_structure(config_.structure, triangles_, config_.structure_options);
   others_ = kept_structures(config_, triangles_);
@@ -150,7 +152,15 @@ processors::Frame PreparedFrame::trace(const processors::PixelSet* only,
   processors::RenderOptions options = config_.render;
   options.only = only;
   options.before = before;
+  options.meter = config_.meter;
+  sim::begin_part(config_.meter, "tracing", "rows", options.height);
   return with_scene_keys([&] { return processors::render(*scene_, *triangles_, *structure_, options); });
+}
+
+processors::Frame PreparedFrame::trace_small(double side) const {
+  return with_scene_keys([&] {
+    return processors::render(*scene_, *triangles_, *structure_, made_small(config_.render, side));
+  });
 }
 
 FunctionalRun PreparedFrame::part(processors::Frame frame) const {
@@ -178,6 +188,8 @@ FunctionalRun PreparedFrame::finish(processors::Frame frame) const {
     if (config_.exact_too) {
       processors::RenderOptions options = config_.render;
       options.voxel_cut = 0.0;
+      options.meter = config_.meter;
+      sim::begin_part(config_.meter, "tracing without the voxel cut", "rows", options.height);
       processors::Frame exact =
           with_scene_keys([&] { return processors::render(*scene_, *triangles_, *structure_, options); });
       report.exact = {

@@ -31,6 +31,8 @@ class PreparedFrame {
   /// null (processors::RenderOptions).
   [[nodiscard]] processors::Frame trace(const processors::PixelSet* only = nullptr,
                                         const processors::Frame* before = nullptr) const;
+  /// Traces and records the frame with its longer side made so many pixels, at most.
+  [[nodiscard]] processors::Frame trace_small(double side) const;
   /// The run of a frame of which only a part is traced: what was not counted of the whole is missing.
   [[nodiscard]] FunctionalRun part(processors::Frame frame) const;
   /// The run of the whole frame.

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "processors/machine/packets.h"
 #include "processors/path/path_recorder.h"
 #include "processors/replay/host_bytes.h"
 #include "processors/walk/stripped_log.h"
@@ -60,6 +61,10 @@ void refuse_maps_beyond_memory(const sim::Config& config, const RecordConfig& re
   }
 }
 
+std::uint64_t packets_of(const processors::WorkLog& log, const processors::MachineConfig& machine) {
+  return processors::PacketList(log.width, log.height, machine.packets).size();
+}
+
 std::uint64_t bytes_of(const processors::StrippedLog* stripped) {
   return stripped == nullptr ? 0 : stripped->bytes_of_words();
 }
@@ -75,7 +80,7 @@ sim::MemoryBudget memory_beside(const RunResult& result, const RecordConfig& rec
 }
 
 // Times the machine with the observers that are asked for, then evaluates what they have seen.
-processors::MachineResult watched_replay(const RecordConfig& record, const std::filesystem::path& directory,
+processors::MachineResult watched_replay(const RecordConfig& record, const RunOptions& run,
                                          const processors::StrippedLog* stripped, RunResult& result) {
   Observers observers;
   std::optional<processors::PathRecorder> path;
@@ -86,7 +91,7 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
                      record.timeline ? processors::PathPieces::no_fold : processors::PathPieces::usual_fold));
   }
   if (record.timeline) {
-    result.timeline = std::make_unique<Timeline>(directory / "timeline.json", record.timeline_options);
+    result.timeline = std::make_unique<Timeline>(run.directory / "timeline.json", record.timeline_options);
     result.timeline->mark(path ? &*path : nullptr);
     observers.add(*result.timeline);
   }
@@ -102,6 +107,7 @@ processors::MachineResult watched_replay(const RecordConfig& record, const std::
   options.observer = observers.empty() ? nullptr : &observers;
   options.stripped = path ? nullptr : stripped;  // a critical path needs every step
   options.path = path ? &*path : nullptr;
+  options.meter = run.meter;
   const KeptItems& kept = result.frame_config.keep;
   keep(kept, options);
   const processors::WorkLog& log = *result.functional.frame.log;
@@ -126,7 +132,7 @@ std::shared_ptr<const processors::StrippedLog> strip_for_both(const FrameConfig&
                                                               std::uint64_t log_bytes,
                                                               const processors::MachineConfig& machine,
                                                               const processors::MachineConfig& other,
-                                                              KeptStrippedLogs* kept) {
+                                                              const RunOptions& options) {
   using processors::StrippedLog;
   // Stripping takes less time than the two save, but not where little is taken out.
   const bool pays = StrippedLog::ways_of(machine) != 0 &&
@@ -137,9 +143,11 @@ std::shared_ptr<const processors::StrippedLog> strip_for_both(const FrameConfig&
   if (!pays || taken >= left) {
     return nullptr;
   }
+  KeptStrippedLogs* const kept = options.stripped_logs;
   std::shared_ptr<const StrippedLog> stripped = kept == nullptr ? nullptr : kept->find(machine);
   if (stripped == nullptr) {
-    stripped = StrippedLog::make(log, machine, (left - taken) / 2);
+    sim::begin_part(options.meter, "taking known references out", "packets", packets_of(log, machine));
+    stripped = StrippedLog::make(log, machine, (left - taken) / 2, options.meter);
     if (kept != nullptr && stripped != nullptr && stripped->bytes_of_words() <= (left - taken) / 4) {
       kept->keep(stripped);
     }
@@ -155,27 +163,29 @@ std::shared_ptr<const processors::StrippedLog> time_frame(const RecordConfig& re
   result.plan = result.functional.plan;
   const processors::WorkLog& log = *result.functional.frame.log;
   if (result.machine.all_nodes() == 1 && result.machine.scheme == processors::Scheme::image) {
-    result.timed = watched_replay(record, options.directory, nullptr, result);
+    sim::begin_part(options.meter, "timing the machine", "packets", packets_of(log, result.machine));
+    result.timed = watched_replay(record, options, nullptr, result);
     result.one_node = result.timed;
   } else {
     const processors::MachineConfig one_node = processors::one_node_of(result.machine);
     stripped = strip_for_both(result.frame_config, log, result.functional.totals.bytes, result.machine,
-                              one_node, options.stripped_logs);
-    end_if_stopped(options.stop);
+                              one_node, options);
+    sim::begin_part(options.meter, "timing the machine and one node", "packets",
+                    packets_of(log, result.machine) + packets_of(log, one_node));
     processors::ReplayOptions of_one;
+    of_one.meter = options.meter;
     keep(result.frame_config.keep, of_one);
     of_one.stripped = stripped.get();
     // What is wrong with the machine is told first, whichever is done first.
     std::exception_ptr fault;
-    tbb::parallel_invoke(
-        [&] { result.timed = watched_replay(record, options.directory, stripped.get(), result); },
-        [&] {
-          try {
-            result.one_node = processors::replay(log, one_node, of_one);
-          } catch (...) {
-            fault = std::current_exception();
-          }
-        });
+    tbb::parallel_invoke([&] { result.timed = watched_replay(record, options, stripped.get(), result); },
+                         [&] {
+                           try {
+                             result.one_node = processors::replay(log, one_node, of_one);
+                           } catch (...) {
+                             fault = std::current_exception();
+                           }
+                         });
     if (fault != nullptr) {
       std::rethrow_exception(fault);
     }
@@ -195,11 +205,18 @@ WhatHelps measure_help(const sim::Config& config, const RunOptions& run,
   const Work of_the_run = run_work(result.functional.totals, result.timed, result.one_node, stripped.get());
   const Work budget = run.what_helps == Measuring::all ? unlimited_work : of_the_scene + of_the_run;
   SharedLog shared{
-      *result.functional.frame.log, std::move(stripped), {}, result.frame_config.memory, run.stop};
+      *result.functional.frame.log, std::move(stripped), {}, result.frame_config.memory, run.meter};
   keep(result.frame_config.keep, shared.options);
   const std::uint64_t taken = result.functional.totals.bytes + bytes_of(shared.stripped.get());
   shared.memory = sim::MemoryBudget(shared.memory.left() - std::min(taken, shared.memory.left()));
   return what_helps(config, run.prices, result.machine, result.timed, shared, budget);
+}
+
+// The options of another run of `first`.
+RunOptions options_like(const RunResult& first) {
+  RunOptions options;
+  options.meter = first.frame_config.meter;
+  return options;
 }
 
 // A result with the configuration of `first`, for which nothing has been run yet.
@@ -230,6 +247,7 @@ RunResult run(sim::Config& config, RunOptions options) {
   result.config_name = config.name();
   result.frame_config = read_frame(config);
   result.frame_config.keep = options.keep;
+  result.frame_config.meter = options.meter;
   refuse_several_frames(config, result.frame_config.frames);
   result.machine = read_machine(config);
   const RecordConfig record = read_record(config, !options.directory.empty());
@@ -254,14 +272,14 @@ RunResult run(sim::Config& config, RunOptions options) {
 RunResult run_again(const RunResult& first, const KeptItems& keep) {
   RunResult result = described_by(first, keep);
   result.functional = run_functional(result.frame_config);
-  (void)time_frame({}, {}, result);
+  (void)time_frame({}, options_like(first), result);
   return result;
 }
 
 RunResult time_again(const RunResult& first, const KeptItems& keep) {
   RunResult result = described_by(first, keep);
   result.functional = first.functional;
-  (void)time_frame({}, {}, result);
+  (void)time_frame({}, options_like(first), result);
   return result;
 }
 

@@ -1,7 +1,6 @@
 // Everything one `marti run` found out.
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -72,9 +71,8 @@ struct RunOptions {
   std::optional<Prices> prices{};          ///< by which that is chosen
   /// Stripped logs of that functional run, taken from here and kept here; null: none.
   KeptStrippedLogs* stripped_logs = nullptr;
-  /// Becomes true when nobody waits for the result any more: the run then throws Stopped, at the latest when
-  /// the replays that have begun are done.
-  const std::atomic<bool>* stop = nullptr;
+  /// Is told how far the run is; after its stop() the run soon throws sim::Stopped. Null: nobody waits.
+  sim::WorkMeter* meter = nullptr;
 };
 
 /// Runs a configuration: one functional run, the machine and the same machine with one node. Throws UserError

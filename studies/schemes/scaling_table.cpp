@@ -44,6 +44,8 @@ std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const proce
   const auto quickest = std::min_element(stages.begin(), stages.end(),
                                          [](const auto& a, const auto& b) { return a.end < b.end; });
   std::vector<ScalingPoint> points;
+  sim::begin_part(config.frame.meter, "timing machines", "machines",
+                  config.machines.size() * (1 + config.nodes.size()));
   for (const std::filesystem::path& file : config.machines) {
     const NamedMachine own = read_machine_file(file, config.frame);
     processors::PipelineConfig shares = own.config.pipeline;
@@ -54,11 +56,13 @@ std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const proce
     }
     const processors::MachineConfig alone = one_node_of(own.config);
     const Counts one_node = counts_of(alone, processors::replay(log, alone));
+    sim::count_step(config.frame.meter);
     for (const std::uint32_t nodes : config.nodes) {
       if (nodes >= fewest_nodes(own.config)) {
         const NamedMachine machine = read_machine_file(file, config.frame, nodes, shares);
         points.push_back(point_of(machine, processors::replay(log, machine.config), one_node));
       }
+      sim::count_step(config.frame.meter);
     }
   }
   return points;

@@ -17,10 +17,12 @@
 
 namespace marti::studies {
 
-StudyOutput run_schemes(sim::Config& config) {
-  const SchemesConfig schemes = read_schemes(config);
+StudyOutput run_schemes(sim::Config& config, sim::WorkMeter* meter) {
+  SchemesConfig schemes = read_schemes(config);
+  schemes.frame.meter = meter;
   const FunctionalRun run = run_functional(schemes.frame);
   const processors::WorkLog& log = *run.frame.log;
+  sim::begin_part(meter, "balancing the stages of the pipeline");
   const std::vector<StagePoint> stages = time_stages(schemes, log);
   const std::vector<ScalingPoint> points = time_machines(schemes, log, stages);
   const std::vector<CellPoint> cells = time_cells(schemes);

@@ -3,12 +3,14 @@
 #pragma once
 
 #include "sim/config.h"
+#include "sim/work_meter.h"
 #include "studies/tables/study_files.h"
 
 namespace marti::studies {
 
 /// Traces the scene once, times every machine from its log, and then trees of several cell sizes. Throws
 /// UserError for anything wrong with the input.
-[[nodiscard]] StudyOutput run_schemes(sim::Config& config);
+/// `meter` is told how far the study is; null: nobody waits.
+[[nodiscard]] StudyOutput run_schemes(sim::Config& config, sim::WorkMeter* meter = nullptr);
 
 }  // namespace marti::studies

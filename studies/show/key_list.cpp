@@ -29,8 +29,6 @@ Json json_of_value(const sim::Value& value) {
   return std::visit([](const auto& content) { return Json(content); }, value);
 }
 
-Json json_of_bound(const std::optional<sim::Value>& bound) { return bound ? json_of_value(*bound) : Json(); }
-
 Json json_of_key(const sim::Key& key) {
   Json value;
   if (key.is_list) {
@@ -53,6 +51,10 @@ Json json_of_key(const sim::Key& key) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json json_of_bound(const std::optional<sim::Value>& bound) {
+  return bound ? json_of_value(*bound) : Json();
+}
 
 std::string keys_as_text(const sim::Schema& schema, std::string_view only) {
   require_any(schema, only);

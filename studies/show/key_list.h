@@ -1,6 +1,8 @@
 // The configuration keys as `marti config` prints them.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,5 +15,8 @@ namespace marti::studies {
 /// A list of objects with name, type, list, default, minimum, maximum, choices, unit and meaning; sizes in
 /// bytes, durations in ps, frequencies in Hz, percentages as fractions.
 [[nodiscard]] std::string keys_as_json(const sim::Schema& schema, std::string_view only);
+
+/// A limit of a key's range as JSON; null for none.
+[[nodiscard]] nlohmann::ordered_json json_of_bound(const std::optional<sim::Value>& bound);
 
 }  // namespace marti::studies

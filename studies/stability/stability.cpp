@@ -36,9 +36,11 @@ Table empty_times() {
 
 }  // namespace
 
-StudyOutput run_stability(sim::Config& config) { return run_stability(config, stability_cases()); }
+StudyOutput run_stability(sim::Config& config, sim::WorkMeter* meter) {
+  return run_stability(config, stability_cases(), meter);
+}
 
-StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> all) {
+StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> all, sim::WorkMeter* meter) {
   const StabilityConfig stability = read_stability(config, all);
   const CaseSize& size = stability.size;
   const std::vector<StabilityCase>& cases = stability.cases;
@@ -47,6 +49,7 @@ StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> al
   Table times = empty_times();
   std::string failed;
   std::size_t failures = 0;
+  sim::begin_part(meter, "trying extreme cases", "cases", cases.size());
   for (const StabilityCase& one : cases) {
     const double before = process_cpu_seconds();
     const CaseOutcome outcome = run_case(one, size);
@@ -58,6 +61,7 @@ StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> al
       ++failures;
       failed += (failed.empty() ? "" : ", ") + one.id;
     }
+    sim::count_step(meter);
   }
   const Table precision = precision_table(compare_precisions(size.rays / 4));
   output.report = text_of(table) + "\n" + text_of(precision) + "\n" +

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "sim/config.h"
+#include "sim/work_meter.h"
 #include "studies/stability/stability_case.h"
 #include "studies/tables/study_files.h"
 
@@ -11,9 +12,11 @@ namespace marti::studies {
 
 /// Runs every case. When one fails, the output's `fault` says which. Throws UserError for anything wrong with
 /// the input.
-[[nodiscard]] StudyOutput run_stability(sim::Config& config);
+/// `meter` is told how far the study is; null: nobody waits.
+[[nodiscard]] StudyOutput run_stability(sim::Config& config, sim::WorkMeter* meter = nullptr);
 
 /// Like the function above, with other cases than stability_cases().
-[[nodiscard]] StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> cases);
+[[nodiscard]] StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> cases,
+                                        sim::WorkMeter* meter = nullptr);
 
 }  // namespace marti::studies

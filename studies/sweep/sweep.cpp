@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "processors/replay/host_bytes.h"
@@ -92,9 +93,11 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
   std::optional<StoreLock> lock(std::in_place, report.store);
   const auto unlock = [&lock](int /*signal*/) { lock.reset(); };
   const bool is_new = !is_begun(report.store);
+  SweepOutlook outlook;
   {
     const AtSignal unlocked(unlock);
-    announce(describe(plan, look_ahead(plan, options)));  // checks a store that was begun
+    outlook = look_ahead(plan, options);  // checks a store that was begun
+    announce(describe(plan, outlook));
   }
   const unsigned threads = threads_of(options);
   const unsigned all_threads =
@@ -111,12 +114,15 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
   if (options.ranks != nullptr) {
     server.emplace(*options.ranks, plan);
   }
-  Coordinator coordinator(plan, store, progress, [&](std::size_t frame) {
-    site.drop(frame);
-    if (server) {
-      server->over(frame);
-    }
-  });
+  Coordinator coordinator(
+      plan, store, progress,
+      [&](std::size_t frame) {
+        site.drop(frame);
+        if (server) {
+          server->over(frame);
+        }
+      },
+      std::move(outlook.costs));
   try {
     const AtSignal last_words([&](int signal) {
       const std::size_t saved = coordinator.close_for_good();

@@ -1,78 +1,68 @@
 #include "studies/sweep/sweep_outlook.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <chrono>
 #include <functional>
-#include <memory>
-#include <string>
 
 #include "processors/replay/host_bytes.h"
-#include "processors/replay/replay.h"
-#include "processors/walk/stripped_log.h"
-#include "studies/run/functional_run.h"
-#include "studies/sweep/work/stripped_log_cache.h"
+#include "studies/sweep/frame_samples.h"
+#include "studies/sweep/machine_samples.h"
 
 namespace marti::studies {
 
 namespace {
 
-constexpr std::uint32_t sample_side = 64;
-constexpr std::size_t most_samples = 3;
+using Clock = std::chrono::steady_clock;
 
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+// Until when samples are begun.
+constexpr std::chrono::milliseconds for_frames(700);
+constexpr std::chrono::milliseconds for_machines(600);
+
+// A short sweep is not held up by its estimate.
+constexpr std::size_t fewest_frames = 3;
+constexpr std::size_t fewest_machines = 16;
+constexpr std::chrono::milliseconds for_fewest(100);
+
+// Says when there are enough samples: after `most`, or after `fewest` samples that took for_fewest.
+std::function<bool()> enough_after(Clock::duration most, std::size_t fewest) {
+  return [begin = Clock::now(), most, fewest, taken = std::size_t{0}]() mutable {
+    const Clock::duration passed = Clock::now() - begin;
+    return passed >= most || (++taken >= fewest && passed >= for_fewest);
+  };
 }
 
-using Machines = std::vector<const processors::MachineConfig*>;
-
-// Whether the sweep will strip the log for this machine, one of those of a frame.
-bool shares_stripped(const processors::MachineConfig& machine, const Machines& machines) {
-  const std::string key = processors::StrippedLog::key_of(machine);
-  std::size_t sharing = 0;
-  bool lru = false;
-  for (const processors::MachineConfig* other : machines) {
-    if (processors::StrippedLog::key_of(*other) == key) {
-      ++sharing;
-      lru = lru || processors::StrippedLog::ways_of(*other) != 0;
-    }
+double seconds_of(const SweepPlan& plan, const std::vector<std::size_t>& frames,
+                  const std::vector<std::size_t>& machines, std::size_t at_once, SweepOutlook& outlook) {
+  const FrameSamples samples(plan, frames, enough_after(for_frames, fewest_frames));
+  const std::vector<FrameEstimate> estimates = samples.estimates();
+  std::vector<const FrameEstimate*> of_frame(plan.frames.size());
+  outlook.costs.tracing.resize(plan.frames.size());
+  double preparing = 0.0;
+  double tracing = 0.0;
+  double most_bytes = 0.0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    of_frame[frames[i]] = &estimates[i];
+    preparing += estimates[i].prepare_seconds;
+    tracing += estimates[i].trace_seconds;
+    outlook.costs.tracing[frames[i]] = estimates[i].prepare_seconds + estimates[i].trace_seconds;
+    most_bytes = std::max(most_bytes, estimates[i].log_bytes);
   }
-  return !key.empty() && StrippedLogCache::pays(sharing, lru);
-}
-
-// Estimates for one frame and one of its machines, scaled up from a small image.
-struct Sample {
-  double trace_seconds = 0.0;
-  double machine_seconds = 0.0;
-  double log_bytes = 0.0;
-};
-
-Sample take_sample(const SweepFrame& frame, const processors::MachineConfig* machine, bool strips) {
-  FrameConfig config = frame.config;
-  const std::uint32_t longer = std::max(config.render.width, config.render.height);
-  const double pixels = static_cast<double>(config.render.width) * config.render.height;
-  if (longer > sample_side) {
-    config.render.width = std::max(1U, config.render.width * sample_side / longer);
-    config.render.height = std::max(1U, config.render.height * sample_side / longer);
+  outlook.log_bytes = static_cast<std::uint64_t>(most_bytes);
+  MachinesEstimate timing;
+  if (!machines.empty()) {
+    timing = estimate_machines(
+        plan, machines, samples, [&](std::size_t frame) -> const FrameEstimate& { return *of_frame[frame]; },
+        enough_after(for_machines, fewest_machines));
   }
-  config.render.voxel_cut = 0.0;  // a coarse image would cut more than the frame
-  const double scale = pixels / (static_cast<double>(config.render.width) * config.render.height);
-  const auto begin = std::chrono::steady_clock::now();
-  const FunctionalRun run = run_functional(config);
-  Sample sample;
-  sample.trace_seconds = seconds_since(begin) * scale;
-  sample.log_bytes = static_cast<double>(run.totals.bytes) * scale;
-  if (machine != nullptr) {
-    // A machine whose energy does not fit is refused when it is timed, with the line of its key.
-    processors::MachineConfig plain = *machine;
-    plain.energy = {};
-    const auto stripped = strips ? processors::StrippedLog::make(*run.frame.log, plain) : nullptr;
-    processors::ReplayOptions options;
-    options.stripped = stripped.get();
-    const auto timing = std::chrono::steady_clock::now();
-    (void)processors::replay(*run.frame.log, plain, options);
-    sample.machine_seconds = seconds_since(timing) * scale;
-  }
-  return sample;
+  outlook.costs.timing = timing.of_frame;
+  outlook.costs.timing.resize(plan.frames.size());
+  const auto cores = static_cast<double>(tbb::this_task_arena::max_concurrency());
+  const double threads = std::min(static_cast<double>(at_once), cores);
+  // One frame is prepared before anything else can be done; several are prepared while machines are timed.
+  return preparing / (frames.size() == 1 ? 1.0 : threads) + (tracing + timing.stripping) / cores +
+         timing.timing / threads;
 }
 
 }  // namespace
@@ -82,7 +72,8 @@ SweepOutlook outlook_of(const SweepPlan& plan, const std::vector<bool>& machines
   SweepOutlook outlook;
   outlook.machines_done =
       static_cast<std::size_t>(std::count(machines_done.begin(), machines_done.end(), true));
-  std::vector<Machines> left(plan.frames.size());
+  std::vector<std::size_t> left;
+  std::vector<bool> needed(plan.frames.size());
   std::vector<std::uint64_t> bytes;
   for (std::size_t i = 0; i < plan.machines.size(); ++i) {
     const SweepMachine& machine = plan.machines[i];
@@ -90,11 +81,12 @@ SweepOutlook outlook_of(const SweepPlan& plan, const std::vector<bool>& machines
       continue;
     }
     bytes.push_back(processors::host_bytes(machine.config));
-    left[machine.frame].push_back(&machine.config);
+    left.push_back(i);
+    needed[machine.frame] = true;
   }
   std::vector<std::size_t> to_trace;
   for (std::size_t frame = 0; frame < plan.frames.size(); ++frame) {
-    if (!left[frame].empty() || !frames_done[frame]) {
+    if (needed[frame] || !frames_done[frame]) {
       to_trace.push_back(frame);
     } else {
       ++outlook.frames_done;
@@ -103,25 +95,9 @@ SweepOutlook outlook_of(const SweepPlan& plan, const std::vector<bool>& machines
   if (to_trace.empty()) {
     return outlook;
   }
-  const std::size_t samples = std::min(most_samples, to_trace.size());
-  Sample sum;
-  double most_bytes = 0.0;
-  for (std::size_t i = 0; i < samples; ++i) {
-    const Machines& machines = left[to_trace[i]];
-    const processors::MachineConfig* middle = machines.empty() ? nullptr : machines[machines.size() / 2];
-    const Sample sample = take_sample(plan.frames[to_trace[i]], middle,
-                                      middle != nullptr && shares_stripped(*middle, machines));
-    sum.trace_seconds += sample.trace_seconds;
-    sum.machine_seconds += sample.machine_seconds;
-    most_bytes = std::max(most_bytes, sample.log_bytes);
-  }
-  const auto mean = [samples](double value) { return value / static_cast<double>(samples); };
   const std::size_t at_once =
       std::min<std::size_t>(std::max(1U, threads), std::max<std::size_t>(1, bytes.size()));
-  outlook.seconds =
-      mean(sum.trace_seconds) * static_cast<double>(to_trace.size()) +
-      mean(sum.machine_seconds) * static_cast<double>(bytes.size()) / static_cast<double>(at_once);
-  outlook.log_bytes = static_cast<std::uint64_t>(most_bytes);
+  outlook.seconds = seconds_of(plan, to_trace, left, at_once, outlook);
   const auto largest = bytes.begin() + static_cast<std::ptrdiff_t>(std::min(at_once, bytes.size()));
   std::partial_sort(bytes.begin(), largest, bytes.end(), std::greater<>());
   std::uint64_t together = 0;

@@ -7,9 +7,9 @@
 
 namespace marti::studies {
 
-/// An estimate for the machines that are not done, with so many of them timed at a time. Frames are sampled
-/// with at most 64 pixels a side, and only the first few of them; of each, the middle one of the machines
-/// that are left is timed on the sample, with a stripped log if it will have one, and stands for all.
+/// An estimate for the machines that are not done, with so many of them timed at a time. Takes at most
+/// about 1.5 seconds, unless a single scene takes longer to be read and sorted: some frames are traced small
+/// (frame_samples.h), and some machines timed on these (machine_samples.h).
 [[nodiscard]] SweepOutlook outlook_of(const SweepPlan& plan, const std::vector<bool>& machines_done,
                                       const std::vector<bool>& frames_done, unsigned threads);
 

@@ -170,6 +170,76 @@ describe("the page of marti explore", () => {
       assert.equal(rows.length, 3);
     }));
 
+  it("simulates while a slider moves", () =>
+    withPage("", async (page) => {
+      await answer_of(page, {});
+      const slide = async (key, steps) => {
+        await page.getByRole("slider", { name: `slide ${key}`, exact: true }).focus();
+        for (let i = 0; i < Math.abs(steps); ++i) await page.keyboard.press(steps < 0 ? "ArrowLeft" : "ArrowRight");
+      };
+      await slide("machine.nodes", 1);
+      const five = await answer_of(page, { "machine.nodes": "5" });
+      assert.deepEqual(five.figures, (await run(config, { "machine.nodes": "5" })).figures.machine);
+      await slide("cache.size", 2);
+      await answer_of(page, { "machine.nodes": "5", "cache.size": "4 KiB" });
+      assert.equal(await control(page, "cache.size").inputValue(), "4 KiB");
+      // Back where the configuration is, nothing is set.
+      await slide("machine.nodes", -1);
+      await answer_of(page, { "cache.size": "4 KiB" });
+      // Every position of every slider is a value in the range of its setting.
+      const wrong = await page.evaluate(async () => {
+        const keys = await explore.server.keys();
+        const wrong = [];
+        const tried = new Set();
+        for (const key of keys.controls.filter(({ type, list }) => explore.controls.numbers.includes(type) && !list)) {
+          const numbers = explore.sliders.numbers_of({ ...key, plain: explore.controls.plain(key.value) });
+          if (numbers.some((number, i) => i > 0 && number <= numbers[i - 1])) wrong.push(`${key.name}: not ascending`);
+          if (key.minimum !== null && numbers.some((number) => number < key.minimum)) wrong.push(`${key.name}: too low`);
+          if (key.maximum !== null && numbers.some((number) => number > key.maximum * (1 + 1e-9))) wrong.push(`${key.name}: too high`);
+          if (key.type === "size" && numbers.some((number) => number > 0 && number !== key.minimum && !Number.isInteger(Math.log2(number)))) wrong.push(`${key.name}: no power of two`);
+          for (const number of numbers) {
+            const read = explore.sliders.number_of(key, explore.sliders.text_of(key, number));
+            if (!(Math.abs(read - number) <= 0.005 * Math.abs(number))) wrong.push(`${key.name}: ${number} becomes ${read}`);
+          }
+          if (numbers.length && !tried.has(key.type)) {
+            tried.add(key.type);
+            const answer = await explore.server.time({ [key.name]: explore.sliders.text_of(key, numbers.at(-1)) });
+            if (answer.error?.includes(": must be ")) wrong.push(answer.error);
+          }
+        }
+        if (tried.size < 4) wrong.push(`sliders of ${[...tried]} only`);
+        return wrong;
+      });
+      assert.deepEqual(wrong, []);
+    }));
+
+  it("says how far a slow machine is", () =>
+    withPage("", async (page) => {
+      await answer_of(page, {});
+      // Of a machine of the curve, or of none.
+      assert.deepEqual(Object.keys(await page.evaluate(() => explore.server.progress())), ["part", "unit", "done", "of"]);
+      await page.evaluate(() => {
+        const { time } = explore.server;
+        explore.server.progress = async () => ({ part: "timing", unit: "packets", done: 3, of: 9 });
+        explore.server.time = async (...asked) => {
+          await new Promise((done) => setTimeout(done, 2000));
+          return time(...asked);
+        };
+        explore.state.set({ "machine.nodes": "3" });
+      });
+      await page.waitForFunction(() => /^simulating for .* s: timing, 3 of 9 packets;/.test(document.getElementById("state").textContent));
+      await answer_of(page, { "machine.nodes": "3" });
+    }));
+
+  it("saves a report of all machines", () =>
+    withPage("#machine.nodes=7", async (page) => {
+      await answer_of(page, { "machine.nodes": "7" });
+      const saved = await download(page, page.getByRole("button", { name: "Save as report" }));
+      assert.equal(saved.name, "explored.html");
+      assert.match(saved.text, /^<!DOCTYPE html>/);
+      for (const said of ["machine.nodes = 7", "as the configuration", "All machines that were simulated"]) assert.ok(saved.text.includes(said), said);
+    }));
+
   it("has a name for everything and fits a phone", () =>
     withPage("", async (page) => {
       await answer_of(page, {});

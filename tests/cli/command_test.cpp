@@ -169,6 +169,11 @@ TEST(Command, UsageErrorsAreTwoAndHelpIsZero) {
   EXPECT_EQ(marti("run --help").status, 0);
   EXPECT_EQ(marti("help run").output, marti("run --help").output);
   EXPECT_EQ(marti("help study error").output, marti("study error --help").output);
+  EXPECT_EQ(marti("help").output, marti("--help").output);
+  EXPECT_EQ(marti("help help").output, marti("help --help").output);
+  expect_refused("help nonsense", "there is no command \"nonsense\"");
+  expect_refused("help run paper", "there is no command \"paper\"");
+  expect_refused("help --nonsense", "--nonsense");
   EXPECT_EQ(marti("-V").output, marti("--version").output);
   EXPECT_EQ(marti("--version").status, 0);
 }

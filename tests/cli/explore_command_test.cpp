@@ -27,6 +27,14 @@ TEST(ExploreCommand, PrintsItsAddressAndEndsAfterItsTime) {
   EXPECT_EQ(outcome.output.substr(token + 32), "/\n");
 }
 
+TEST(ExploreCommand, ATimeThatIsNoNumberIsRefused) {
+  for (const std::string time : {"nan", "inf", "-1"}) {
+    const Outcome outcome = marti("explore " + marti_toml + small_teapot + " --for " + time);
+    EXPECT_EQ(outcome.status, 2) << time;
+    EXPECT_TRUE(outcome.output.find("--for") != std::string::npos) << outcome.output;
+  }
+}
+
 TEST(ExploreCommand, ASignalEndsIt) {
   const TemporaryDirectory directory;
   const std::filesystem::path output = directory.path() / "output";

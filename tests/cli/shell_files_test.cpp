@@ -107,6 +107,7 @@ TEST(Completion, RefusesOtherShells) {
 TEST(Completion, OffersAxesAndKeys) {
   EXPECT_EQ(bash_offers("marti sweep --axis cache.wa"), "cache.ways=\n");
   EXPECT_EQ(bash_offers("marti config cache.wa"), "cache.ways\n");
+  EXPECT_EQ(bash_offers("marti help swe"), "sweep\n");
 }
 
 TEST(Completion, NeverComplains) {

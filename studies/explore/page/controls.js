@@ -12,6 +12,8 @@ explore.controls = (() => {
     return made;
   };
 
+  const is_number = (key) => numbers.includes(key.type) && !key.list;
+
   /** A value of a configuration without its quotation marks. */
   const plain = (value) => (value.startsWith('"') ? JSON.parse(value) : value);
 
@@ -57,11 +59,13 @@ explore.controls = (() => {
     const control = { key, own };
     const read = () => (control.input.type === "checkbox" ? String(control.input.checked) : control.input.value.trim());
     const move = (value) => explore.state.set({ [key.name]: value === own ? null : value });
+    const slider = is_number(key) ? explore.sliders.make({ ...key, plain: own }, move) : null;
     control.input = input_of(key, () => move(read()));
     control.input.id = `control-${key.name}`;
     control.show = (value) => {
       if (control.input.type === "checkbox") control.input.checked = value === "true";
       else if (control.input.value.trim() !== value) control.input.value = value;
+      slider?.show(value);
     };
     control.error = element("p", { className: "error", hidden: true });
     control.error.setAttribute("role", "alert");
@@ -71,7 +75,7 @@ explore.controls = (() => {
       button.addEventListener("click", () => move(scaled(key, read(), factor)));
       return button;
     };
-    const steps = numbers.includes(key.type) && !key.list ? [step("÷2", "halve", 0.5), step("×2", "double", 2)] : [];
+    const steps = is_number(key) ? [step("÷2", "halve", 0.5), step("×2", "double", 2)] : [];
     const range = [key.unit, key.range].filter(Boolean).join("; ");
     control.box = element(
       "div",
@@ -79,6 +83,7 @@ explore.controls = (() => {
       element("label", { htmlFor: control.input.id, textContent: key.name.slice(key.section.length + 1) }),
       control.input,
       ...steps,
+      ...(slider ? [slider.input] : []),
       control.error,
       element("p", { className: "note", textContent: key.meaning + (range ? ` (${range})` : "") }),
     );

@@ -5,7 +5,10 @@
   const { server, state, background, controls, answer, curve, save } = explore;
   const keys = await server.keys();
   document.getElementById("what").textContent = `${keys.file}, ${keys.scene}`;
+  const patience = 150;  // ms
+  const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
   let asked = 0;
+  let running = null;  // the answer that is waited for: since when, and its end
 
   /** What follows the answer: what helps, then machines that are shown and not known yet. */
   function more(now) {
@@ -23,13 +26,31 @@
     background.run([helps, ...curve.wanted(now).map(one)]);
   }
 
+  /** Says that the answer is waited for, and of one that takes long what marti does; returns what ends that. */
+  function wait_aloud() {
+    const begun = performance.now();
+    let what = "";
+    const look = setInterval(async () => {
+      const { part, unit, done, of } = await server.progress().catch(() => ({}));
+      what = part ? `: ${part}${of ? `, ${Math.min(done, of)} of ${of} ${unit}` : ""}` : "";
+    }, 1000);
+    const say = setInterval(() => {
+      answer.waiting(`simulating for ${((performance.now() - begun) / 1000).toFixed(1)} s${what}; a move takes its place`);
+    }, 250);
+    return () => [look, say].forEach(clearInterval);
+  }
+
   async function update(now) {
     const mine = ++asked;
     background.stop();
     controls.show(now);
+    // A move leaves the answer before it some time, so that answers are shown while a control moves.
+    if (running) await Promise.race([running.done, pause(running.begun + patience - performance.now())]);
+    if (mine !== asked) return;
     const begun = performance.now();
-    const seconds = () => ((performance.now() - begun) / 1000).toFixed(1);
-    const progress = setInterval(() => answer.waiting(`simulating for ${seconds()} s; a move takes its place`), 250);
+    let finished;
+    const run = (running = { begun, done: new Promise((done) => (finished = done)) });
+    const stop_waiting = wait_aloud();
     const before = server.known(now.settings) !== undefined;
     let found = null;
     try {
@@ -37,19 +58,21 @@
     } catch (error) {
       if (mine === asked) answer.waiting(`no answer: ${error.message}; is marti explore still running?`);
     }
-    clearInterval(progress);
-    if (!found || mine !== asked) return;
+    stop_waiting();
+    if (running === run) running = null;
+    finished();
+    if (!found) return;
     const took = performance.now() - begun;
     answer.waiting(before ? "exact; simulated before" : `exact; answered in ${Math.round(took)} ms`);
     answer.show(found, server.known({})?.figures);
     answer.show_helps(null);
     controls.judge(found);
-    if (!("error" in found)) {
+    explore.answered = { settings: now.settings, took, answer: found };  // read by tests
+    if (mine === asked && !("error" in found)) {
       save.show(keys, found, now);
       curve.show(now);
       more(now);
     }
-    explore.answered = { settings: now.settings, took, answer: found };  // read by tests
   }
 
   controls.make(keys);
@@ -60,6 +83,18 @@
     if (!pins.some((pin) => state.text(pin) === state.text(settings))) state.change({ pins: [...pins, settings] });
   });
   document.getElementById("reset").addEventListener("click", () => state.change({ settings: {} }));
+  document.getElementById("save-report").addEventListener("click", async () => {
+    const { settings } = state.now;
+    answer.waiting("making the report");
+    try {
+      let page = null;
+      while (page === null) page = await server.report(settings);
+      save.report(page);
+      answer.waiting("the report has all machines that were simulated");
+    } catch (error) {
+      answer.waiting(`no report: ${error.message}`);
+    }
+  });
   document.getElementById("end").addEventListener("click", async () => {
     background.stop();
     await server.end();

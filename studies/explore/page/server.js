@@ -5,7 +5,7 @@ explore.server = (() => {
   const kept = new Map();  // answers by kind and settings
   const most_kept = 2000;
 
-  async function post(path, content) {
+  async function answer_to(path, content) {
     const response = await fetch(path, {
       method: "POST",
       headers: { "Content-Type": "application/json" },
@@ -13,8 +13,9 @@ explore.server = (() => {
     });
     if ([204, 409].includes(response.status)) return null;
     if (!response.ok && response.status !== 500) throw new Error(`marti answered ${response.status}`);
-    return response.json();
+    return response;
   }
+  const post = async (path, content) => (await answer_to(path, content))?.json() ?? null;
 
   /** What the page uses of a result. */
   const part_of = (result) =>
@@ -43,6 +44,15 @@ explore.server = (() => {
     time: (settings, background = false) => ask("time", settings, background),
     helps: (settings) => ask("helps", settings, true),
     known: (settings) => kept.get(`time?${explore.state.text(settings)}`),
+    /** How far the simulation is that is under way. */
+    progress: async () => (await fetch("progress")).json(),
+    /** The page of a report as text; null when a newer request has taken its place. */
+    async report(settings) {
+      const response = await answer_to("report", { settings });
+      if (!response) return null;
+      if (response.headers.get("Content-Type").startsWith("text/html")) return response.text();
+      throw new Error((await response.json()).error);
+    },
     end: () => post("end", {}),
   };
 })();

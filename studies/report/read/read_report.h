@@ -6,6 +6,7 @@
 
 #include "studies/report/model/report_data.h"
 #include "studies/tables/result_directory.h"
+#include "studies/tables/run_json.h"
 
 namespace marti::studies {
 
@@ -22,6 +23,9 @@ namespace marti::studies {
 /// A directory of `marti run -o`: result.json, and if they exist image.png, heat-*.png and
 /// working_set.vl.json beside it.
 [[nodiscard]] ReportData read_run_report(const std::filesystem::path& directory);
+
+/// What the result of a run says, without the files beside it. Throws UserError when a field is missing.
+[[nodiscard]] ReportData report_of_run(const RunJson& run);
 
 /// A point of a sweep.
 [[nodiscard]] ReportData read_point_report(const PointName& point);

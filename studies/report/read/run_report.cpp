@@ -179,10 +179,15 @@ ReportData read_run_report(const fs::path& directory) {
   const RunJson run = read_run_json(
       directory / "result.json",
       {"config.keys", "figures.frame", "figures.machine", "scene", "structure", "plan", "machine"});
+  ReportData report = report_of_run(run);
+  add_files(directory, run, report);
+  return report;
+}
+
+ReportData report_of_run(const RunJson& run) {
   ReportData report = machine_report(run, "one node");
   report.title = fmt::format("Run of {} on {}", run.text("figures.frame.scene"), machine_text(run));
   add_path_chart(run, report);
-  add_files(directory, run, report);
   if (Table helps = helps_table(run); !helps.rows().empty()) {
     report.tables.push_back({std::move(helps), false});
   }

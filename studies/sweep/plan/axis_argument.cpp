@@ -13,6 +13,7 @@
 #include "sim/key_value.h"
 #include "sim/nearest.h"
 #include "sim/shown.h"
+#include "sim/trim.h"
 #include "studies/sweep/plan/sweep_table.h"
 
 namespace marti::studies {
@@ -26,16 +27,6 @@ std::optional<Number> number_of(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
 }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') {
-    text.remove_prefix(1);
-  }
-  while (!text.empty() && text.back() == ' ') {
-    text.remove_suffix(1);
-  }
-  return text;
-}
-
 class ArgumentReader {
  public:
   ArgumentReader(const sim::Config& config, const std::string& argument)
@@ -46,7 +37,7 @@ class ArgumentReader {
     if (equals == std::string::npos || equals == 0) {
       fail("must have the form KEY=VALUE,VALUE,...");
     }
-    const std::string name(trimmed(std::string_view(argument_).substr(0, equals)));
+    const std::string name(sim::trim(std::string_view(argument_).substr(0, equals)));
     const sim::Schema& schema = config_.schema();
     const std::optional<std::size_t> key = schema.find(name);
     if (!key) {
@@ -59,7 +50,7 @@ class ArgumentReader {
     std::string_view rest = std::string_view(argument_).substr(equals + 1);
     for (bool more = true; more;) {
       const std::size_t comma = rest.find(',');
-      add_part(trimmed(rest.substr(0, comma)));
+      add_part(sim::trim(rest.substr(0, comma)));
       more = comma != std::string_view::npos;
       rest = more ? rest.substr(comma + 1) : rest;
     }
@@ -102,7 +93,7 @@ class ArgumentReader {
       add(value_of(part));
       return;
     }
-    const std::string_view from = trimmed(part.substr(0, dots));
+    const std::string_view from = sim::trim(part.substr(0, dots));
     std::string_view to = part.substr(dots + 2);
     std::size_t sign = to.find_last_of("*+");
     // The sign of an exponent, as in 1e+6, belongs to the number.
@@ -112,8 +103,8 @@ class ArgumentReader {
     }
     const bool stepped = sign != std::string_view::npos;
     const char how = stepped ? to[sign] : ' ';
-    const std::string_view step = stepped ? trimmed(to.substr(sign + 1)) : std::string_view();
-    to = trimmed(to.substr(0, stepped ? sign : to.size()));
+    const std::string_view step = stepped ? sim::trim(to.substr(sign + 1)) : std::string_view();
+    to = sim::trim(to.substr(0, stepped ? sign : to.size()));
     const sim::Value first = value_of(from);
     const sim::Value last = value_of(to);
     if (const auto* whole = std::get_if<std::int64_t>(&first)) {

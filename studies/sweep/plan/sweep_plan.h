@@ -82,11 +82,18 @@ struct SweepPlan {
 /// all ranks of a sweep must agree.
 [[nodiscard]] std::string digest_of(const SweepPlan& plan);
 
+/// Estimated seconds of processor time for each frame of a plan; empty: not estimated.
+struct FrameCosts {
+  std::vector<double> tracing;  ///< of the frame itself
+  std::vector<double> timing;   ///< of one of its machines
+};
+
 /// What is known before the plan runs, beside the plan itself.
 struct SweepOutlook {
-  std::size_t machines_done = 0;               ///< whose results are there already
-  std::size_t frames_done = 0;                 ///< whose logs are kept, or that no machine needs any more
-  std::optional<double> seconds;               ///< estimated time of what is left
+  std::size_t machines_done = 0;  ///< whose results are there already
+  std::size_t frames_done = 0;    ///< whose logs are kept, or that no machine needs any more
+  std::optional<double> seconds;  ///< estimated time of what is left
+  FrameCosts costs;
   std::optional<std::uint64_t> log_bytes;      ///< estimated memory of the work logs in use
   std::optional<std::uint64_t> machine_bytes;  ///< estimated memory of the machines that are timed at once
 };

@@ -7,11 +7,11 @@
 namespace marti::studies {
 
 Coordinator::Coordinator(const SweepPlan& plan, SweepStore& store, Progress& progress,
-                         std::function<void(std::size_t)> over)
+                         std::function<void(std::size_t)> over, FrameCosts estimated)
     : store_(store),
       progress_(progress),
       over_(std::move(over)),
-      schedule_(plan, store.done(), store.frames_done()),
+      schedule_(plan, store.done(), store.frames_done(), std::move(estimated)),
       machines_(plan.machines.size()) {
   progress_.begin(machines_, machines_ - schedule_.machines_left(), plan.frames.size(),
                   plan.frames.size() - schedule_.frames_left());
@@ -35,7 +35,7 @@ void Coordinator::traced(std::size_t frame, const FrameRow& row, std::int64_t cp
   std::unique_lock lock(mutex_);
   store_.add_frame(frame, row, cpu_nanoseconds);
   schedule_.traced(frame, cpu_nanoseconds);
-  progress_.traced(schedule_.nanoseconds_left());
+  progress_.traced(nanoseconds_to_come());
   news_.notify_all();
   tell_if_over(lock, frame);
 }
@@ -44,7 +44,7 @@ void Coordinator::timed(std::size_t machine, const SweepRow& row, std::int64_t c
   std::unique_lock lock(mutex_);
   store_.add_result(machine, row, cpu_nanoseconds);
   const std::size_t frame = schedule_.timed(machine, cpu_nanoseconds);
-  progress_.timed(schedule_.nanoseconds_left());
+  progress_.timed(nanoseconds_to_come());
   if (schedule_.finished()) {
     news_.notify_all();
   }
@@ -59,6 +59,11 @@ void Coordinator::tell_if_over(std::unique_lock<std::mutex>& lock, std::size_t f
   if (over) {
     over_(frame);
   }
+}
+
+// What is under way is half done, on average.
+std::int64_t Coordinator::nanoseconds_to_come() const {
+  return schedule_.nanoseconds_left() + schedule_.nanoseconds_under_way() / 2;
 }
 
 void Coordinator::stop() {

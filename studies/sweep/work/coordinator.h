@@ -21,7 +21,7 @@ class Coordinator : public TaskSource {
   /// `over(frame)` is called once for each frame whose machines are all timed, by the thread that brought the
   /// last.
   Coordinator(const SweepPlan& plan, SweepStore& store, Progress& progress,
-              std::function<void(std::size_t)> over);
+              std::function<void(std::size_t)> over, FrameCosts estimated = {});
 
   /// The next task of a place, see Schedule::next. Without `wait` it returns at once, perhaps with a task
   /// `wait`.
@@ -39,6 +39,7 @@ class Coordinator : public TaskSource {
   std::size_t close_for_good();
 
  private:
+  [[nodiscard]] std::int64_t nanoseconds_to_come() const;
   void tell_if_over(std::unique_lock<std::mutex>& lock, std::size_t frame);
 
   std::mutex mutex_;

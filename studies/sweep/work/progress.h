@@ -5,25 +5,29 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <mutex>
 #include <optional>
 #include <string>
 
+#include "studies/progress/progress_line.h"
+
 namespace marti::studies {
 
-/// Called by one thread at a time.
+/// Thread-safe.
 class Progress {
  public:
   struct Options {
     bool terminal = false;  ///< a bar that is drawn over and over; else lines
     bool quiet = false;
     std::FILE* out = nullptr;
-    unsigned workers = 1;  ///< that share what is left
+    unsigned workers = 1;                      ///< that share what is left
+    std::chrono::milliseconds first_bar{200};  ///< a sweep that is done by then has no bar
   };
   explicit Progress(const Options& options) : options_(options) {}
 
   /// Machines and frames in all, and how many are done already.
   void begin(std::size_t machines, std::size_t machines_done, std::size_t frames, std::size_t frames_done);
-  /// One more frame or machine is done. `nanoseconds_left`: processor time still to be spent.
+  /// One more frame or machine is done. `nanoseconds_left`: processor time still to be spent; 0: not known.
   void traced(std::int64_t nanoseconds_left);
   void timed(std::int64_t nanoseconds_left);
   /// Takes the bar away.
@@ -31,19 +35,23 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
-  void show(std::int64_t nanoseconds_left, bool always);
+  [[nodiscard]] std::string text(std::size_t width);
+  void told(std::int64_t nanoseconds_left, bool last);
 
   Options options_;
+  std::mutex mutex_;  // of all below but the line
   std::size_t machines_ = 0;
   std::size_t machines_done_ = 0;
   std::size_t frames_ = 0;
   std::size_t frames_done_ = 0;
-  std::optional<Clock::time_point> shown_;
-  std::size_t drawn_ = 0;  // characters of the bar
+  std::optional<double> seconds_left_;  // when the last frame or machine was done
+  Clock::time_point told_;              // that time
+  Clock::time_point printed_;           // of the last line where there is no terminal
+  std::optional<ProgressLine> line_;
 };
 
 /// "350 of 1000 machines, 1 of 2 frames, 2 min 05 s left", with a bar of `width` characters before it, if
-/// that is not 0.
+/// that is not 0. What is left is not said below a second: an estimate that comes to its end says nothing.
 [[nodiscard]] std::string progress_text(std::size_t machines_done, std::size_t machines,
                                         std::size_t frames_done, std::size_t frames,
                                         std::optional<double> seconds_left, std::size_t width);

@@ -9,8 +9,8 @@
 namespace marti::studies {
 
 Schedule::Schedule(const SweepPlan& plan, const std::vector<bool>& machines_done,
-                   const std::vector<bool>& frames_done)
-    : frames_(plan.frames.size()), batch_of_(plan.machines.size()) {
+                   const std::vector<bool>& frames_done, FrameCosts estimated)
+    : estimated_(std::move(estimated)), frames_(plan.frames.size()), batch_of_(plan.machines.size()) {
   std::map<std::pair<std::size_t, std::string>, std::size_t> known;
   for (std::size_t machine = 0; machine < plan.machines.size(); ++machine) {
     if (machines_done[machine]) {
@@ -52,7 +52,18 @@ std::int64_t Schedule::cost_of(const Batch& batch) const {
   if (batch.timed != 0) {
     return batch.spent / batch.timed;
   }
-  return timed_ != 0 ? spent_ / timed_ : 0;
+  return share_of(estimated_.timing, batch.frame, spent_, estimated_timing_, timed_);
+}
+
+std::int64_t Schedule::share_of(const std::vector<double>& estimated, std::size_t frame, std::int64_t spent,
+                                double estimated_of_done, std::int64_t done) {
+  if (done == 0) {
+    return 0;
+  }
+  if (frame < estimated.size() && estimated_of_done > 0.0) {
+    return static_cast<std::int64_t>(static_cast<double>(spent) * (estimated[frame] / estimated_of_done));
+  }
+  return spent / done;
 }
 
 // A batch with machines to hand out and a traced log; batches_.size() when there is none.
@@ -131,6 +142,7 @@ void Schedule::traced(std::size_t frame, std::int64_t cpu_nanoseconds) {
   frames_[frame].trace = Trace::done;
   --frames_left_;
   ++traced_;
+  estimated_tracing_ += frame < estimated_.tracing.size() ? estimated_.tracing[frame] : 0.0;
   spent_tracing_ += cpu_nanoseconds;
 }
 
@@ -142,6 +154,7 @@ std::size_t Schedule::timed(std::size_t machine, std::int64_t cpu_nanoseconds) {
   ++batch.timed;
   batch.spent += cpu_nanoseconds;
   ++timed_;
+  estimated_timing_ += batch.frame < estimated_.timing.size() ? estimated_.timing[batch.frame] : 0.0;
   spent_ += cpu_nanoseconds;
   return batch.frame;
 }
@@ -157,9 +170,27 @@ std::int64_t Schedule::nanoseconds_left() const {
   for (const Batch& batch : batches_) {
     left += static_cast<std::int64_t>(batch.machines.size()) * cost_of(batch);
   }
-  const auto waiting = std::count_if(frames_.begin(), frames_.end(),
-                                     [](const Frame& frame) { return frame.trace == Trace::waiting; });
-  return left + (traced_ != 0 ? spent_tracing_ / traced_ * waiting : 0);
+  return left + tracing_of(Trace::waiting);
+}
+
+std::int64_t Schedule::nanoseconds_under_way() const {
+  std::int64_t under_way = 0;
+  for (const Batch& batch : batches_) {
+    const auto handed_out = static_cast<std::int64_t>(batch.size - batch.machines.size());
+    under_way += (handed_out - batch.timed) * cost_of(batch);
+  }
+  return under_way + tracing_of(Trace::under_way);
+}
+
+// What the frames in this state take, by those that are traced.
+std::int64_t Schedule::tracing_of(Trace state) const {
+  std::int64_t cost = 0;
+  for (std::size_t frame = 0; frame < frames_.size(); ++frame) {
+    if (frames_[frame].trace == state) {
+      cost += share_of(estimated_.tracing, frame, spent_tracing_, estimated_tracing_, traced_);
+    }
+  }
+  return cost;
 }
 
 }  // namespace marti::studies

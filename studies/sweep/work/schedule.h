@@ -32,13 +32,13 @@ struct SweepTask {
 /// threads) is given machines of one batch as long as there are any, then a new batch, then some of the batch
 /// with the most work left. One log is traced ahead of the machines that are being timed, so that nobody
 /// waits when a frame comes to its end. Costs are measured: the mean time of the batch's machines, or else of
-/// all machines.
+/// all machines, in the proportions that were estimated for their frames.
 class Schedule {
  public:
   /// `machines_done` and `frames_done` as SweepStore gives them. A frame whose machines are all done is
-  /// traced only if its row is not there.
+  /// traced only if its row is not there. `estimated`: only the proportions of its figures count.
   Schedule(const SweepPlan& plan, const std::vector<bool>& machines_done,
-           const std::vector<bool>& frames_done);
+           const std::vector<bool>& frames_done, FrameCosts estimated = {});
 
   /// The next task of `place`: machines that take about `nanoseconds` together, at least one.
   [[nodiscard]] SweepTask next(std::size_t place, std::int64_t nanoseconds = 0);
@@ -56,6 +56,8 @@ class Schedule {
   [[nodiscard]] std::size_t frames_left() const { return frames_left_; }
   /// Estimated processor time of what is neither done nor under way; 0 while nothing is known.
   [[nodiscard]] std::int64_t nanoseconds_left() const;
+  /// Of what is under way, from its beginning to its end.
+  [[nodiscard]] std::int64_t nanoseconds_under_way() const;
 
  private:
   enum class Trace : std::uint8_t { waiting, under_way, done };
@@ -77,9 +79,15 @@ class Schedule {
   static constexpr std::size_t no_place = static_cast<std::size_t>(-1);
 
   [[nodiscard]] std::int64_t cost_of(const Batch& batch) const;
+  [[nodiscard]] std::int64_t tracing_of(Trace state) const;
   [[nodiscard]] std::size_t choose_batch(std::size_t place) const;
   [[nodiscard]] std::size_t frame_to_trace() const;
 
+  // The mean cost of something of a frame, where all that is done has cost `spent`.
+  static std::int64_t share_of(const std::vector<double>& estimated, std::size_t frame, std::int64_t spent,
+                               double estimated_of_done, std::int64_t done);
+
+  FrameCosts estimated_;
   std::vector<Frame> frames_;
   std::vector<Batch> batches_;
   std::vector<std::size_t> batch_of_;  // of each machine
@@ -87,8 +95,10 @@ class Schedule {
   std::size_t frames_left_ = 0;
   std::int64_t timed_ = 0;
   std::int64_t spent_ = 0;
+  double estimated_timing_ = 0.0;  // of the machines that are timed
   std::int64_t traced_ = 0;
   std::int64_t spent_tracing_ = 0;
+  double estimated_tracing_ = 0.0;  // of the frames that are traced
 };
 
 }  // namespace marti::studies

@@ -4,16 +4,20 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "studies/explore/explore_service.h"
 #include "studies/explore/http_server.h"
 #include "studies/explore/session.h"
+#include "studies/report/plots/vega_bundle.h"
 #include "tests/support/temporary_directory.h"
 
 namespace marti::studies {
@@ -64,14 +68,18 @@ class Served : public testing::Test {
     }
     return result->status;
   }
-  // All that the server sends for these bytes, until it closes the connection.
-  [[nodiscard]] std::string raw(const std::string& bytes) const {
+  [[nodiscard]] int connected() const {
     const int connection = socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(static_cast<std::uint16_t>(port_));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     EXPECT_EQ(connect(connection, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+    return connection;
+  }
+  // All that the server sends for these bytes, until it closes the connection.
+  [[nodiscard]] std::string raw(const std::string& bytes) const {
+    const int connection = connected();
     EXPECT_EQ(send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL), static_cast<ssize_t>(bytes.size()));
     std::string answer;
     std::array<char, 4096> part{};
@@ -93,8 +101,8 @@ class Served : public testing::Test {
 const std::string machine = R"({"settings": {"machine.nodes": "2"}})";
 
 TEST_F(Served, ThePageItsFilesAndItsAnswers) {
-  for (const char* name : {"", "report.css", "explore.css", "main.js", "state.js", "server.js", "controls.js",
-                           "answer.js", "curve.js", "save.js"}) {
+  for (const char* name : {"", "report.css", "explore.css", "main.js", "state.js", "server.js", "sliders.js",
+                           "controls.js", "answer.js", "curve.js", "save.js"}) {
     const auto file = client_.Get(path(name));
     ASSERT_EQ(status(file), 200) << name;
     EXPECT_GT(file->body.size(), 200U) << name;
@@ -206,6 +214,72 @@ TEST_F(Served, NoLongBody) {
   // The server may close the connection before all is sent.
   EXPECT_TRUE(status(chunks) == 413 || status(chunks) == -1) << status(chunks);
   EXPECT_EQ(post("time", machine), 200);
+}
+
+// A process without the token must not be able to have lines kept for it.
+TEST_F(Served, NoEndlessHead) {
+  for (const std::string& line : {std::string("X-Long: more\r\n"), std::string(4000, 'x')}) {
+    const int connection = connected();
+    std::string lines = "GET / HTTP/1.1\r\n";
+    while (lines.size() < 64 * 1024) {
+      lines += line;
+    }
+    // More than the two ends of a connection hold.
+    bool refused = false;
+    for (int i = 0; i < 1024 && !refused; ++i) {
+      refused = send(connection, lines.data(), lines.size(), MSG_NOSIGNAL) < 0;
+    }
+    EXPECT_TRUE(refused);
+    close(connection);
+  }
+  EXPECT_EQ(post("time", machine), 200);
+}
+
+TEST_F(Served, NoSlowRequest) {
+  // It is refused at last, and its connection closed.
+  EXPECT_EQ(raw("GET " + path("") + " HTTP/1.1\r\nHost: ").find("HTTP/1.1 200"), std::string::npos);
+  EXPECT_EQ(post("time", machine), 200);
+}
+
+// More connections than the server has threads, which would wait for requests for seconds.
+TEST_F(Served, TheEndWaitsForNobody) {
+  std::vector<int> connections;
+  for (int i = 0; i < 20; ++i) {
+    connections.push_back(connected());
+    EXPECT_EQ(send(connections.back(), "GET", 3, MSG_NOSIGNAL), 3);
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  server_->stop();
+  thread_.join();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(1900));
+  for (const int connection : connections) {
+    close(connection);
+  }
+  thread_ = std::thread([] {});  // for the destructor
+}
+
+TEST_F(Served, SaysHowFarItIs) {
+  const auto idle = client_.Get(path("progress"));
+  ASSERT_EQ(status(idle), 200);
+  EXPECT_EQ(idle->body, R"({"part":"","unit":"","done":0,"of":0})");
+}
+
+TEST_F(Served, AReportHasAllMachines) {
+  if (!have_vega_scripts()) {
+    GTEST_SKIP() << "this build draws no charts";
+  }
+  EXPECT_EQ(post("time", R"({"settings": {"machine.nodes": "3"}})"), 200);
+  const auto page = client_.Post(path("report"), machine, "application/json");
+  ASSERT_EQ(status(page), 200);
+  EXPECT_EQ(page->get_header_value("Content-Type"), "text/html; charset=utf-8");
+  EXPECT_EQ(page->body.find("<!DOCTYPE html>"), 0U);
+  for (const char* said : {"machine.nodes = 3", "machine.nodes = 2", "All machines that were simulated"}) {
+    EXPECT_NE(page->body.find(said), std::string::npos) << said;
+  }
+  const auto refused =
+      client_.Post(path("report"), R"({"settings": {"machine.nodes": "0"}})", "application/json");
+  EXPECT_EQ(nlohmann::json::parse(refused->body)["key"], "machine.nodes");
+  EXPECT_EQ(post("report", machine, {{"Origin", "https://evil.example"}}), 403);
 }
 
 // What a refused body holds is not taken for the next request.

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "studies/explore/session.h"
@@ -116,11 +117,39 @@ TEST_F(Explored, WhatWouldHelpIsThatOfARun) {
 
 TEST_F(Explored, AnAnswerForNobodyIsGivenUp) {
   const Session session(file_, {});
-  const std::atomic<bool> stop = true;
-  EXPECT_THROW(static_cast<void>(session.answer({{"machine.nodes", "5"}}, Measuring::none, &stop)), Stopped);
-  const std::atomic<bool> go_on = false;
+  sim::WorkMeter stop;
+  stop.stop();
+  EXPECT_THROW(static_cast<void>(session.answer({{"machine.nodes", "5"}}, Measuring::none, &stop)),
+               sim::Stopped);
+  sim::WorkMeter go_on;
   EXPECT_EQ(session.answer({{"machine.nodes", "5"}}, Measuring::none, &go_on),
             run_with({{"machine.nodes", "5"}}));
+}
+
+// A replay that has begun ends when somebody moves on, and the next answer is as exact as any.
+TEST_F(Explored, AReplayThatHasBegunIsGivenUp) {
+  const Session session(file_, {"image.width=96", "image.height=96", "packets.width=1", "packets.height=1"});
+  const Settings settings = {{"machine.nodes", "5"}, {"cache.size", "128 B"}};
+  for (const char* const part : {"taking known references out", "timing the machine and one node"}) {
+    sim::WorkMeter meter;
+    std::atomic<bool> over = false;
+    const std::jthread mover([&] {
+      while (!over && (meter.state().part != part || meter.state().done == 0)) {
+      }
+      meter.stop();
+    });
+    EXPECT_THROW(static_cast<void>(session.answer(settings, Measuring::none, &meter)), sim::Stopped) << part;
+    over = true;
+    EXPECT_LT(meter.state().done, meter.state().of);
+  }
+  std::vector<std::string> all = {"image.width=96",   "image.height=96", "packets.width=1",
+                                  "packets.height=1", "machine.nodes=5", "cache.size=128 B"};
+  sim::Schema schema = run_schema();
+  declare_price_keys(schema);
+  sim::Config config = sim::Config::from_file(schema, file_, all);
+  RunOptions options;
+  options.prices = read_given_prices(config);
+  EXPECT_EQ(session.answer(settings, Measuring::none), json_of(run(config, std::move(options))));
 }
 
 TEST_F(Explored, SettingsComeBehindThoseOfTheCommand) {
@@ -214,9 +243,26 @@ TEST(Turns, TheNewestOfAReaderComesNextAndOthersGiveUp) {
   while (one.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready &&
          two.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready) {
   }
-  EXPECT_TRUE(running->stop());
+  EXPECT_TRUE(running->meter().is_stopped());
   running.reset();
   EXPECT_NE(one.get(), two.get());
+}
+
+TEST(Turns, TellHowFarTheWorkIs) {
+  Turns turns;
+  EXPECT_EQ(turns.state().part, "");
+  {
+    const std::optional<Turns::Turn> turn = turns.take(Asker::reader);
+    ASSERT_TRUE(turn);
+    turn->meter().begin("timing", "packets", 3);
+    turn->meter().count();
+    EXPECT_EQ(turns.state().part, "timing");
+    EXPECT_EQ(turns.state().done, 1U);
+    turns.stop();
+    EXPECT_TRUE(turn->meter().is_stopped());
+  }
+  EXPECT_EQ(turns.state().part, "");
+  EXPECT_FALSE(turns.take(Asker::reader)) << "after the end nothing begins";
 }
 
 TEST(Turns, AReaderIsNotKeptByTheBackground) {

@@ -299,6 +299,32 @@ TEST(SweepSchedule, EstimatesWhatIsLeft) {
   EXPECT_EQ(schedule.nanoseconds_left(), 1000 + 10 + 30) << "its own batch's mean, and that of all";
 }
 
+// Frames of very different sizes: what the first frame has cost says what the second will.
+TEST(SweepSchedule, EstimatesWhatIsLeftInProportion) {
+  SweepPlan plan;
+  plan.frames.resize(2);
+  plan.machines.resize(6);
+  for (std::size_t i = 0; i < plan.machines.size(); ++i) {
+    plan.machines[i].frame = i / 3;
+  }
+  Schedule schedule(plan, std::vector<bool>(6), std::vector<bool>(2), {{0.25, 2.5}, {0.5, 10.0}});
+  EXPECT_EQ(schedule.nanoseconds_left(), 0) << "nothing is measured yet";
+  ASSERT_EQ(schedule.next(0).kind, Kind::trace);
+  schedule.traced(0, 7);
+  EXPECT_EQ(schedule.nanoseconds_left(), 70) << "the other frame";
+  EXPECT_EQ(schedule.nanoseconds_under_way(), 0);
+  const SweepTask first = schedule.next(0);
+  const SweepTask second = schedule.next(0);
+  ASSERT_EQ(second.machines.size(), 1U);
+  EXPECT_EQ(schedule.nanoseconds_under_way(), 0) << "no machine is measured yet";
+  schedule.timed(first.machines.front(), 100);
+  EXPECT_EQ(schedule.nanoseconds_under_way(), 100);
+  EXPECT_EQ(schedule.nanoseconds_left(), 100 + 3 * 2000 + 70);
+  schedule.timed(second.machines.front(), 300);
+  EXPECT_EQ(schedule.nanoseconds_under_way(), 0);
+  EXPECT_EQ(schedule.nanoseconds_left(), 200 + 3 * 4000 + 70);
+}
+
 TEST(SweepSchedule, RefusesResultsThatNobodyWasToBring) {
   SweepPlan plan;
   plan.frames.resize(1);

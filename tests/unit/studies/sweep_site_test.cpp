@@ -192,6 +192,8 @@ TEST(MemoryGate, WaitsForRoom) {
 
 TEST(Progress, SaysHowFarItIs) {
   EXPECT_EQ(progress_text(350, 1000, 1, 2, 125.0, 0), "350 of 1000 machines, 1 of 2 frames, 2 min 05 s left");
+  EXPECT_EQ(progress_text(3, 4, 1, 1, 0.9, 0), "3 of 4 machines, 1 of 1 frames") << "never 0 s for long";
+  EXPECT_EQ(progress_text(3, 4, 1, 1, -5.0, 0), "3 of 4 machines, 1 of 1 frames");
   EXPECT_EQ(progress_text(0, 0, 0, 0, std::nullopt, 0), "0 of 0 machines, 0 of 0 frames");
   EXPECT_EQ(progress_text(1, 4, 0, 1, std::nullopt, 8), "[##......] 1 of 4 machines, 0 of 1 frames");
   EXPECT_EQ(progress_text(0, 0, 1, 1, std::nullopt, 2), "[##] 0 of 0 machines, 1 of 1 frames");
@@ -226,11 +228,17 @@ RC_GTEST_PROP(DurationText, NoPartBecomesSixty, ()) {
 
 std::string shown(bool terminal, bool quiet) {
   std::FILE* out = std::tmpfile();
-  Progress progress({terminal, quiet, out, 2});
+  Progress progress({terminal, quiet, out, 2, std::chrono::milliseconds(20)});
   progress.begin(3, 1, 1, 0);
   progress.traced(500);
   progress.timed(300);
   progress.timed(0);
+  if (terminal && !quiet) {
+    // Until the bar is drawn.
+    while (std::fflush(out) == 0 && std::ftell(out) <= 0) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
   progress.end();
   std::rewind(out);
   std::string text;

@@ -1,0 +1,61 @@
+#include "studies/explore/explored_machines.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "studies/figures/derived_figures.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr std::array<std::string_view, 7> shown_figures = {
+    "end", "nodes", "speed_up", "efficiency", "hit_ratio", "interconnect_utilisation", "bank_utilisation"};
+
+std::string name_of(Settings settings) {
+  std::sort(settings.begin(), settings.end());
+  std::string name;
+  for (const auto& [key, value] : settings) {
+    name += (name.empty() ? "" : ", ") + key + " = " + value;
+  }
+  return name.empty() ? "as the configuration" : name;
+}
+
+}  // namespace
+
+void ExploredMachines::add(const Settings& settings, const RunResult& result) {
+  Machine machine{name_of(settings), {}};
+  for (const std::string_view figure : shown_figures) {
+    machine.figures.push_back(result.figure(figure));
+  }
+  const std::lock_guard lock(mutex_);
+  const bool known = std::any_of(machines_.begin(), machines_.end(),
+                                 [&](const Machine& other) { return other.name == machine.name; });
+  if (!known && machines_.size() < most) {
+    machines_.push_back(std::move(machine));
+  }
+}
+
+Table ExploredMachines::table() const {
+  std::vector<Column> columns = {{"settings", ColumnType::text, "", "what differs from the configuration"}};
+  for (const std::string_view name : shown_figures) {
+    const FigureEntry& figure = figure_named(name);
+    columns.push_back({figure.name, ColumnType::real, figure.unit, figure.description});
+  }
+  Table table("explored", "All machines that were simulated", std::move(columns));
+  const std::lock_guard lock(mutex_);
+  for (const Machine& machine : machines_) {
+    std::vector<Cell> row = {machine.name};
+    for (const std::optional<double>& value : machine.figures) {
+      Cell& cell = row.emplace_back();
+      if (value) {
+        cell = *value;
+      }
+    }
+    table.add_row(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,71 @@
+#include "studies/progress/progress_line.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace marti::studies {
+
+namespace {
+
+// So many characters leave the line one line.
+std::size_t columns_of(std::FILE* out) {
+  winsize size{};
+  const bool known = ioctl(fileno(out), TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  return known ? size.ws_col - 1U : 79U;
+}
+
+}  // namespace
+
+ProgressLine::ProgressLine(const Options& options, std::function<std::string()> text)
+    : options_(options), text_(std::move(text)), thread_([this] {
+        std::unique_lock lock(mutex_);
+        auto pause = options_.first;
+        while (!changed_.wait_for(lock, pause, [this] { return ended_; })) {
+          draw();
+          pause = options_.between;
+        }
+      }) {}
+
+ProgressLine::~ProgressLine() {
+  end();
+  thread_.join();
+}
+
+void ProgressLine::draw() {
+  std::string text = text_();
+  text.resize(std::min(text.size(), columns_of(options_.out)));
+  if (text.empty()) {
+    return;
+  }
+  // Blanks cover the rest of a longer line.
+  const std::size_t blank = drawn_ > text.size() ? drawn_ - text.size() : 0;
+  std::fprintf(options_.out, "\r%s%s", text.c_str(), std::string(blank, ' ').c_str());
+  std::fflush(options_.out);
+  drawn_ = text.size();
+}
+
+void ProgressLine::end() {
+  const std::lock_guard lock(mutex_);
+  ended_ = true;
+  changed_.notify_all();
+  if (drawn_ != 0) {
+    std::fprintf(options_.out, "\r%s\r", std::string(drawn_, ' ').c_str());
+    std::fflush(options_.out);
+    drawn_ = 0;
+  }
+}
+
+bool errors_go_to_a_terminal() { return isatty(STDERR_FILENO) == 1; }
+
+std::string progress_bar(std::uint64_t done, std::uint64_t of, std::size_t width) {
+  if (width == 0) {
+    return "";
+  }
+  const std::size_t full = of == 0 ? width : static_cast<std::size_t>(width * std::min(done, of) / of);
+  return "[" + std::string(full, '#') + std::string(width - full, '.') + "] ";
+}
+
+}  // namespace marti::studies

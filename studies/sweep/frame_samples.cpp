@@ -1,0 +1,113 @@
+#include "studies/sweep/frame_samples.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "studies/host/cpu_time.h"
+#include "studies/run/open_frame.h"
+#include "studies/run/prepared_frame.h"
+#include "studies/run/scene_hash.h"
+
+namespace marti::studies {
+
+namespace {
+
+constexpr double large_side = 96;
+constexpr double small_side = 48;
+constexpr std::size_t another_scene = 1'000'000;  // more than a frame has settings
+constexpr std::size_t unlike_all = 2 * another_scene;
+
+double rays_of(const processors::RenderOptions& options) {
+  return static_cast<double>(options.width) * options.height * options.samples;
+}
+
+// All that a frame is made by, but for the size of its image.
+std::vector<std::uint64_t> settings_of(const SweepFrame& frame) {
+  std::vector<std::uint64_t> settings;
+  for (const sim::EffectiveValue& value : frame.settings) {
+    if (value.key != "image.width" && value.key != "image.height") {
+      settings.push_back(std::hash<std::string>()(value.key + "=" + value.value));
+    }
+  }
+  std::sort(settings.begin(), settings.end());
+  return settings;
+}
+
+std::size_t unlike(const std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b) {
+  std::vector<std::uint64_t> different;
+  std::set_symmetric_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(different));
+  return different.size();
+}
+
+SmallLog log_of(const FunctionalRun& run) { return {run.frame.log, static_cast<double>(run.totals.bytes)}; }
+
+// As a worker of the sweep traces the frame, but small.
+FrameSample sample_of(const FrameConfig& frame) {
+  FrameConfig config = frame;
+  config.render = made_small(config.render, large_side);
+  config.render.voxel_cut = 0.0;  // a coarse image would cut more than the frame
+  const double begin = process_cpu_seconds();
+  const scenes::Scene scene = open_frame(config);
+  static_cast<void>(scene_hash(scene));
+  const PreparedFrame prepared(config, scene);
+  const double ready = process_cpu_seconds();
+  const FunctionalRun run = prepared.finish(prepared.trace());
+  FrameSample sample{log_of(run), {}, rays_of(config.render), ready - begin, process_cpu_seconds() - ready};
+  if (rays_of(config.render) != rays_of(frame.render)) {
+    sample.small = log_of(prepared.part(prepared.trace_small(small_side)));
+  }
+  return sample;
+}
+
+}  // namespace
+
+FrameSamples::FrameSamples(const SweepPlan& plan, std::vector<std::size_t> frames,
+                           const std::function<bool()>& enough)
+    : plan_(plan), frames_(std::move(frames)), unlike_(frames_.size(), unlike_all), nearest_(frames_.size()) {
+  for (const std::size_t frame : frames_) {
+    settings_.push_back(settings_of(plan_.frames[frame]));
+  }
+  do {
+    take_next();
+  } while (std::any_of(unlike_.begin(), unlike_.end(), [](std::size_t each) { return each != 0; }) &&
+           !enough());
+}
+
+void FrameSamples::take_next() {
+  const std::size_t most = *std::max_element(unlike_.begin(), unlike_.end());
+  // Of several the one in the middle, because the ends of an axis are the least like the others.
+  std::vector<std::size_t> candidates;
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    if (unlike_[i] == most) {
+      candidates.push_back(i);
+    }
+  }
+  const std::size_t chosen = candidates[candidates.size() / 2];
+  const SweepFrame& frame = plan_.frames[frames_[chosen]];
+  samples_.push_back(sample_of(frame.config));
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    const std::size_t distance =
+        unlike(settings_[i], settings_[chosen]) +
+        (plan_.frames[frames_[i]].config.scene == frame.config.scene ? 0 : another_scene);
+    if (distance < unlike_[i]) {
+      unlike_[i] = distance;
+      nearest_[i] = samples_.size() - 1;
+    }
+  }
+}
+
+std::vector<FrameEstimate> FrameSamples::estimates() const {
+  std::vector<FrameEstimate> estimates;
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    const FrameSample& sample = samples_[nearest_[i]];
+    const double scale = rays_of(plan_.frames[frames_[i]].config.render) / sample.rays;
+    estimates.push_back({nearest_[i], scale, sample.prepare_seconds, sample.trace_seconds * scale,
+                         sample.large.bytes * scale});
+  }
+  return estimates;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,28 @@
+// Some machines of a sweep, timed on the samples of its frames: what all of them will take.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "studies/sweep/frame_samples.h"
+#include "studies/sweep/plan/sweep_plan.h"
+
+namespace marti::studies {
+
+/// Seconds of processor time.
+struct MachinesEstimate {
+  std::vector<double>
+      of_frame;            ///< to time one machine, for each frame of the plan; 0 for frames without machines
+  double timing = 0.0;     ///< of all, one thread for each machine
+  double stripping = 0.0;  ///< on all threads
+};
+
+/// Times some of `machines`, chosen by chance, at least one; then none is begun any more when `enough()`.
+/// `frame_of[i]` is the estimate for the frame of machine i of the plan.
+[[nodiscard]] MachinesEstimate estimate_machines(
+    const SweepPlan& plan, const std::vector<std::size_t>& machines, const FrameSamples& samples,
+    const std::function<const FrameEstimate&(std::size_t frame)>& frame_of,
+    const std::function<bool()>& enough);
+
+}  // namespace marti::studies

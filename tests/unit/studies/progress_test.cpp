@@ -1,0 +1,135 @@
+// Progress: what a meter says, how its work is stopped, and that a line leaves nothing behind.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "sim/work_meter.h"
+#include "studies/progress/progress_line.h"
+#include "studies/progress/shown_meter.h"
+
+namespace marti::studies {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST(WorkMeter, CountsTheStepsOfItsPartFromAllThreads) {
+  sim::WorkMeter meter;
+  EXPECT_EQ(meter.state().part, "");
+  meter.begin("reading");
+  meter.count(7);
+  meter.begin("tracing", "rows", 4000);
+  std::vector<std::jthread> threads;
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back([&] {
+      for (int step = 0; step < 1000; ++step) {
+        meter.count();
+      }
+    });
+  }
+  threads.clear();
+  const sim::WorkMeter::State state = meter.state();
+  EXPECT_EQ(state.part, "tracing");
+  EXPECT_EQ(state.unit, "rows");
+  EXPECT_EQ(state.done, 4000U);
+  EXPECT_EQ(state.of, 4000U);
+}
+
+TEST(WorkMeter, StopsItsWorkAndThatOfItsParts) {
+  sim::WorkMeter whole;
+  sim::WorkMeter part(&whole);
+  sim::WorkMeter other;
+  part.count();
+  EXPECT_EQ(whole.state().done, 0U);
+  part.end_if_stopped();
+  whole.stop();
+  EXPECT_THROW(whole.count(), sim::Stopped);
+  EXPECT_THROW(whole.begin("more"), sim::Stopped);
+  EXPECT_THROW(part.count(), sim::Stopped);
+  EXPECT_THROW(sim::end_if_stopped(&part), sim::Stopped);
+  other.count();
+  sim::count_step(nullptr);
+  sim::begin_part(nullptr, "nobody waits");
+  sim::end_if_stopped(nullptr);
+}
+
+TEST(ShownMeter, SaysWhatIsDone) {
+  EXPECT_EQ(meter_text({}, 5.0), "");
+  EXPECT_EQ(meter_text({"building the octree"}, 5.0), "building the octree, 5.0 s");
+  EXPECT_EQ(meter_text({"tracing", "rows", 120, 240}, 65.0),
+            "[############............] tracing: 120 of 240 rows, 1 min 05 s");
+  // Steps that were not foreseen.
+  EXPECT_EQ(meter_text({"timing", "packets", 250, 240}, 65.0),
+            "[########################] timing: 240 of 240 packets, 1 min 05 s");
+}
+
+std::string content_of(std::FILE* file) {
+  std::rewind(file);
+  std::string text;
+  for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) {
+    text += static_cast<char>(c);
+  }
+  return text;
+}
+
+// What a terminal of one line shows after these characters.
+std::string screen_after(const std::string& text) {
+  std::string line;
+  std::size_t at = 0;
+  for (const char c : text) {
+    if (c == '\r') {
+      at = 0;
+    } else {
+      line.resize(std::max(line.size(), at + 1), ' ');
+      line[at++] = c;
+    }
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line;
+}
+
+TEST(ProgressLine, IsDrawnOverAndTakenAway) {
+  std::FILE* const out = std::tmpfile();
+  std::atomic<int> asked = 0;
+  {
+    ProgressLine line({out, milliseconds(1), milliseconds(1)}, [&] {
+      const int time = ++asked;
+      return time == 1 ? std::string("a long text") : time == 2 ? "short" : std::string(time, 'x');
+    });
+    while (asked < 100) {
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    line.end();
+    const int after = asked;
+    std::this_thread::sleep_for(milliseconds(20));
+    EXPECT_EQ(asked, after) << "nothing is drawn after the end";
+    line.end();
+  }
+  const std::string text = content_of(out);
+  std::fclose(out);
+  EXPECT_EQ(text.find('\n'), std::string::npos);
+  EXPECT_EQ(screen_after(text.substr(0, text.find("\rshort") + 12)), "short");
+  EXPECT_EQ(screen_after(text), "");
+  EXPECT_EQ(text.back(), '\r');
+  EXPECT_EQ(text.find(std::string(80, 'x')), std::string::npos) << "one line of a terminal of unknown width";
+}
+
+TEST(ProgressLine, WhatIsDoneSoonHasNone) {
+  std::FILE* const out = std::tmpfile();
+  {
+    const ProgressLine line({out, std::chrono::hours(1)}, [] { return std::string("never"); });
+  }
+  {
+    const ProgressLine line({out, milliseconds(1)}, [] { return std::string(); });
+  }
+  EXPECT_EQ(content_of(out), "");
+  std::fclose(out);
+}
+
+}  // namespace
+}  // namespace marti::studies
