@@ -130,6 +130,8 @@ class Sweep:
         """+1 if more of the figure is better, -1 if less is. SweepError where neither is."""
         self._column(figure)
         known = {"higher": 1, "lower": -1}.get(self.figures.get(figure, {}).get("better"))
+        if known is None and not any("better" in each for each in self.figures.values()):
+            raise SweepError(f"{self.path}: a store of an older marti does not say which values of {figure} are better")
         if known is None:
             raise SweepError(f"of {figure} neither a lower nor a higher value is better")
         return known
@@ -173,7 +175,7 @@ def _print_csv(points):
     writer = csv.writer(sys.stdout, lineterminator="\n")
     if points:
         writer.writerow(points[0])
-    writer.writerows(point.values() for point in points)
+    writer.writerows([str(value).lower() if isinstance(value, bool) else value for value in point.values()] for point in points)
 
 
 def _save(sweep, arguments):

@@ -69,7 +69,7 @@ std::string time_lines(const ComparedPair& pair) {
   const auto end = static_cast<double>(frame_time(pair.a));
   for (const ActivityTime& time : pair.times) {
     rows.push_back({time.activity, seconds(time.mean_a), seconds(time.mean_b),
-                    signed_seconds(std::llround(time.change)), change_percent(time.change / end)});
+                    signed_seconds(std::llround(time.change)), signed_percent(time.change / end)});
   }
   return lines_of(rows);
 }

@@ -60,7 +60,8 @@ std::string change_of(const Difference& difference) {
   if (*from == 0.0) {
     return *to == 0.0 ? "" : "from 0";
   }
-  return change_percent((*to - *from) / std::abs(*from));
+  const double change = (*to - *from) / std::abs(*from);
+  return *from > 0.0 ? change_percent(change) : signed_percent(change);
 }
 
 Differences differences_of(const ComparedResult& a, const ComparedResult& b) {

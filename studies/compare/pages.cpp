@@ -64,7 +64,7 @@ SortedTable times_table(const std::vector<ActivityTime>& times, double end) {
                           time_cell(time.mean_a),
                           time_cell(time.mean_b),
                           {signed_seconds(std::llround(time.change)), time.change},
-                          {change_percent(time.change / end), time.change / end}});
+                          {signed_percent(time.change / end), time.change / end}});
   }
   return table;
 }
@@ -210,7 +210,7 @@ ComparisonPage page_of(const TwoSweeps& found) {
     times.columns = {{"activity", false, "see docs/model.md, Accounting"},
                      {"of A's frame", true, "B less A by the frame time of A, mean of the points"}};
     for (const MeanChange& time : found.times) {
-      times.rows.push_back({{time.activity, {}}, {change_percent(time.of_frame), time.of_frame}});
+      times.rows.push_back({{time.activity, {}}, {signed_percent(time.of_frame), time.of_frame}});
     }
     page.parts.push_back({"time", "Where the time went", {}, {}, {std::move(times)}});
   }

@@ -27,8 +27,15 @@ struct Sweep {
   std::vector<StoredPoint> points;
 };
 
-// A value with its type, so that 1 and "1" differ.
-std::string typed(const Cell& cell) { return fmt::format("{}:{}", cell.index(), short_text(cell, "-")); }
+// A value with its type and all its digits, so that 1 and "1" differ.
+std::string typed(const Cell& cell) {
+  const auto* const text = std::get_if<std::string>(&cell);
+  const auto* const integer = std::get_if<std::int64_t>(&cell);
+  const std::string value = text != nullptr      ? *text
+                            : integer != nullptr ? std::to_string(*integer)
+                                                 : fmt::format("{}", number_of(cell).value_or(0.0));
+  return fmt::format("{}:{}", cell.index(), value);
+}
 
 std::map<std::string, std::string> settings_of(const SweepReader& reader, std::int64_t machine) {
   const auto list = reader.settings(machine);
@@ -246,10 +253,19 @@ TwoSweeps two_sweeps(const std::filesystem::path& file_a, const std::filesystem:
   found.version_a = a.reader.version();
   found.version_b = b.reader.version();
   found.axes = a.reader.axes();
-  const std::vector<std::string> axes = telling_axes(a);
-  const std::vector<std::string> other_axes = telling_axes(b);
-  found.by_axes = std::set<std::string>(axes.begin(), axes.end()) ==
-                  std::set<std::string>(other_axes.begin(), other_axes.end());
+  // An axis that tells points apart in one of them is compared in both.
+  std::vector<std::string> axes = telling_axes(a);
+  for (const std::string& axis : telling_axes(b)) {
+    if (std::find(axes.begin(), axes.end(), axis) == axes.end()) {
+      axes.push_back(axis);
+    }
+  }
+  const auto has = [](const Sweep& sweep, const std::string& axis) {
+    const std::vector<std::string>& there = sweep.reader.axes();
+    return std::find(there.begin(), there.end(), axis) != there.end();
+  };
+  found.by_axes = std::all_of(axes.begin(), axes.end(),
+                              [&](const std::string& axis) { return has(a, axis) && has(b, axis); });
   const Index from = index_of(a, found.by_axes ? &axes : nullptr);
   const Index to = index_of(b, found.by_axes ? &axes : nullptr);
   Sums sums;

@@ -48,7 +48,7 @@ std::string point_lines(const TwoSweeps& found, bool all) {
 std::string time_lines(const TwoSweeps& found) {
   std::string text = "\n  mean change of a node's time, of A's frame\n";
   for (const MeanChange& time : found.times) {
-    text += fmt::format("  {:<20}{:>12}\n", time.activity, change_percent(time.of_frame));
+    text += fmt::format("  {:<20}{:>12}\n", time.activity, signed_percent(time.of_frame));
   }
   return text;
 }

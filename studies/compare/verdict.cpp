@@ -146,7 +146,7 @@ std::string speed_text(std::int64_t a, std::int64_t b) {
   const double ratio = static_cast<double>(b) / static_cast<double>(a);
   return fmt::format("B is {}: its frame takes {}, that of A {}, {} times as {} ({})",
                      b < a ? "faster" : "slower", seconds(b), seconds(a), times(b < a ? 1.0 / ratio : ratio),
-                     b < a ? "fast" : "long", change_percent(ratio - 1.0));
+                     b < a ? "fast" : "long", signed_percent(ratio - 1.0));
 }
 
 std::vector<std::string> verdict_of(const ComparedPair& pair) {

@@ -43,14 +43,18 @@ std::string percent(double share) { return fmt::format("{:.2f} %", 100.0 * share
 
 std::string rough_percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
 
-std::string change_percent(double share) {
+std::string signed_percent(double share) {
   const double percents = 100.0 * share;
-  if (percents >= 999.995) {
+  return percents != 0.0 && std::abs(percents) < 0.005 ? fmt::format("{:+.1e} %", percents)
+                                                       : fmt::format("{:+.2f} %", percents);
+}
+
+std::string change_percent(double share) {
+  if (100.0 * share >= 999.995) {
     return share + 1.0 < 1000.0 ? times(share + 1.0) + " times"
                                 : grouped(std::llround(std::min(share + 1.0, 0x1p62))) + " times";
   }
-  return percents != 0.0 && std::abs(percents) < 0.005 ? fmt::format("{:+.1e} %", percents)
-                                                       : fmt::format("{:+.2f} %", percents);
+  return signed_percent(share);
 }
 
 std::string times(double ratio) { return fmt::format("{:.2f}", ratio); }

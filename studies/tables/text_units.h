@@ -23,8 +23,11 @@ namespace marti::studies {
 /// A share in a sentence, with one decimal: "24.9 %".
 [[nodiscard]] std::string rough_percent(double share);
 
-/// A relative change: "+69.02 %"; from +1000 % on "20.07 times"; one that two decimals do not
-/// show "+1.2e-05 %".
+/// A change as a share of anything: "+69.02 %"; one that two decimals do not show "+1.2e-05 %".
+[[nodiscard]] std::string signed_percent(double share);
+
+/// A relative change from a value above 0: "+69.02 %"; from +1000 % on "20.07 times"; one that two decimals
+/// do not show "+1.2e-05 %".
 [[nodiscard]] std::string change_percent(double share);
 
 /// How many times as much: "1.69" in a sentence, with two decimals.

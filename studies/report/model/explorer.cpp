@@ -81,7 +81,7 @@ struct ExplorerField {
 std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
   std::vector<ExplorerField> fields = {{"end", "ms", ps_a_ms, true, true, "frame time"},
                                        {"speed_up", "1", 1.0, true, true, "speed-up"},
-                                       {"price", "1", 1.0, false, true, sweep.priced ? "price" : "nodes"},
+                                       {"price", "1", 1.0, true, true, sweep.priced ? "price" : "nodes"},
                                        {"efficiency", "1", 1.0, true, true},
                                        {"times_faster"},
                                        {"energy", "mJ", 1.0, true, true},

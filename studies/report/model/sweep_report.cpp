@@ -242,7 +242,8 @@ ReportData sweep_report(const ReportPoints& sweep, std::optional<double> budget)
   const std::optional<std::size_t> axis = first_axis(sweep);
   ReportData report;
   report.kind = "sweep";
-  report.title = fmt::format("Sweep of {} machines", sweep.points.size());
+  report.title =
+      fmt::format("Sweep of {} machine{}", sweep.points.size(), sweep.points.size() == 1 ? "" : "s");
   report.about = about_sweep(sweep);
   report.answer = answer_of(sweep, chosen);
   report.explorer = explorer_json(sweep, models, chosen, axis);

@@ -131,18 +131,20 @@ marti.explorer = (() => {
   // Changes come faster than charts are drawn: only the latest counts.
   let pending = false;
   let running = 0;
+  let turn = Promise.resolve();  // what is changed by one update must not be changed by the next before it is drawn
+  async function next() {
+    pending = false;
+    running += 1;
+    try {
+      await update();
+    } finally {
+      running -= 1;
+    }
+  }
   function request() {
     if (pending) return;
     pending = true;
-    requestAnimationFrame(async () => {
-      pending = false;
-      running += 1;
-      try {
-        await update();
-      } finally {
-        running -= 1;
-      }
-    });
+    requestAnimationFrame(() => (turn = turn.then(next, next)));
   }
 
   // Whether the charts may not show yet what the controls say.
@@ -214,7 +216,7 @@ marti.explorer = (() => {
   /** The choices of an address; what it does not say, or says wrongly, is as the page begins. */
   function take(named) {
     const axisNamed = (name, other) => (axes.some((axis) => axis.name === name) ? axes.findIndex((axis) => axis.name === name) : other);
-    const point = explorer.ordinal.indexOf(Number(named.point ?? NaN));
+    const point = explorer.ordinal.indexOf(Number(named.point || NaN));
     table.set(named);
     if (state.axis === null) return;
     state.axis = axisNamed(named.along, first.axis);
@@ -225,7 +227,7 @@ marti.explorer = (() => {
       return at >= 0 ? at : explorer.place[a][point >= 0 ? point : explorer.start];
     });
     toSample();
-    const sample = samples().indexOf(Number(named.at ?? NaN));
+    const sample = samples().indexOf(Number(named.at || NaN));
     if (sample >= 0 && axes[state.axis].numeric) {
       state.x = sample;
       state.place[state.axis] = nearest(axes[state.axis], samples()[sample]);

@@ -139,7 +139,8 @@ std::string images_html(const ReportData& report) {
 std::string tables_html(const ReportData& report) {
   std::string html;
   for (const ReportTable& table : report.tables) {
-    html += folded(fmt::format("{} ({} rows)", table.table.title(), table.table.rows().size()),
+    html += folded(fmt::format("{} ({} row{})", table.table.title(), table.table.rows().size(),
+                               table.table.rows().size() == 1 ? "" : "s"),
                    table_html(table.table), !table.folded);
   }
   return html;

@@ -11,11 +11,14 @@ marti.filter = (() => {
     "<=": (a, b) => a <= b,
     ">=": (a, b) => a >= b,
   };
-  const units = { kib: 2 ** 10, mib: 2 ** 20, gib: 2 ** 30, "%": 1 };
+  const units = { b: 1, kib: 2 ** 10, mib: 2 ** 20, gib: 2 ** 30, hz: 1, khz: 1e3, mhz: 1e6, ghz: 1e9, "%": 0.01 };
 
-  function numberOf(text) {
-    const [, number, unit] = /^(.*?)(kib|mib|gib|%)?$/.exec(plain(text));
-    return number === "" ? NaN : Number(number) * (units[unit] ?? 1);
+  /** A number, with the column's unit or none, or with one of those above. NaN for any other text. */
+  function numberOf(text, column) {
+    const parts = /^([-+]?[0-9.]+(?:e[-+]?[0-9]+)?)([a-z%]*)$/.exec(plain(text));
+    if (!parts) return NaN;
+    const own = parts[2] === "" || parts[2] === plain(column.unit ?? "");
+    return Number(parts[1]) * (own ? 1 : units[parts[2]] ?? NaN);
   }
 
   /** A column's condition: by its numbers, or for equality by its texts. */
@@ -26,7 +29,7 @@ marti.filter = (() => {
       if (same.some((each) => each)) return (i) => same[column.place[i]];
     }
     const known = column.texts ? column.texts.findIndex((each) => plain(each) === text) : -1;
-    const number = known >= 0 && column.values.length > 0 ? column.values[known] : numberOf(wanted);
+    const number = known >= 0 && column.values.length > 0 ? column.values[known] : numberOf(wanted, column);
     if (!column.number || Number.isNaN(number)) throw new Error(`${wanted.trim()} is no value of ${column.name}`);
     return (i) => column.number(i) !== null && compare[sign](column.number(i), number);
   }

@@ -64,7 +64,7 @@ marti.table = (explorer, { choose, changed }) => {
     button.textContent = unit ? `${title}, ${unit}` : title;
     if (meaning) button.title = meaning;
     button.addEventListener("click", () => {
-      set({ ...state, sort: state.sort === name ? `-${name}` : name });
+      set({ ...state, sort: (state.sort || "ordinal") === name ? `-${name}` : name });
       changed();
     });
     cell.append(button);

@@ -54,7 +54,11 @@ std::string axis_text(const std::string& axis, const Cell& value) {
   if (integer != nullptr && is_boolean_axis(axis)) {
     return *integer != 0 ? "true" : "false";
   }
-  if (key == nullptr || (integer == nullptr && !is_real(*key)) || !is_printable(*key, *number)) {
+  // The key of an older store may have been a number and be a text now.
+  const bool text_key =
+      key != nullptr && (key->type == sim::ValueType::text || key->type == sim::ValueType::choice ||
+                         key->type == sim::ValueType::boolean);
+  if (key == nullptr || text_key || (integer == nullptr && !is_real(*key)) || !is_printable(*key, *number)) {
     return integer != nullptr ? std::to_string(*integer) : fmt::format("{}", *number);
   }
   std::string text = sim::print_value(key->type, is_real(*key) ? sim::Value(*number) : sim::Value(*integer));

@@ -151,7 +151,9 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
   Table table = table_of("best", "Points that no other beats in cost and " + metric, marked_names, marked);
   for (Row& row : front) {
     for (std::size_t axis = 0; axis < axes; ++axis) {
-      row.figures[axis] = axis_text(names[axis], row.figures[axis]);
+      if (!is_boolean_axis(names[axis])) {  // a table puts these in words itself
+        row.figures[axis] = axis_text(names[axis], row.figures[axis]);
+      }
     }
     if (time) {
       row.figures.back() = shown(row.figures.back());
