@@ -103,10 +103,11 @@ describe("the table of points", () => {
   it("shows what the filter lets through, and so do its CSV and the price chart", () =>
     withPage(async (page) => {
       const cases = [
-        ["machine.nodes >= 4, cache.ways = 2", (row) => row.machine_nodes >= 4 && row.cache_ways === 2],
+        ["machine.nodes >= 4, cache.ways = 2", (row) => row["machine.nodes"] >= 4 && row["cache.ways"] === 2],
         ["BOLD, efficiency < 50 %", (row) => row.point.includes("bold") && row.efficiency < 0.5],
         ["point = <script>alert(1)</script>", (row) => row.point === names[0]],
         ["no such text", () => false],
+        ["frame time < 1e6 ms, machine.nodes > 1", (row) => row["machine.nodes"] > 1],
       ];
       for (const [text, lets] of cases) {
         const expected = ordinals(points.filter(lets));
@@ -134,7 +135,7 @@ describe("the chosen point", () => {
         await page.locator(`#points-table tr[data-point="${wanted.ordinal}"] td`).nth(2).click();
         await settled(page);
         assert.deepEqual(await current(page), [wanted.ordinal]);
-        assert.ok((await summary(page)).includes(`point = ${wanted.point}, machine.nodes = ${wanted.machine_nodes}`));
+        assert.ok((await summary(page)).includes(`point = ${wanted.point}, machine.nodes = ${wanted["machine.nodes"]}`));
         assert.match(await page.textContent("#reading"), new RegExp(`exact, point ${wanted.ordinal}: `));
         const figures = await page.$$eval("#chosen dl div", (pairs) => pairs.map((pair) => pair.textContent));
         assert.ok(figures.includes(`frame time${wanted.end / 1e9} ms`), `${figures}`);
