@@ -61,10 +61,10 @@ marti completion zsh --
 marti completion fish --
 marti man --
 
-# No command is forgotten: the program lists its own.
+# No command is forgotten: the program lists its own. The words behind `help` are these commands again.
 commands_of() { "$program" __complete "$@" '' | grep -vE '^[:-]' || true; }
 for command in $(commands_of); do
-  for word in $(commands_of "$command" | grep -xE '[a-z]+' || true) ''; do
+  for word in $([ "$command" = help ] || commands_of "$command" | grep -xE '[a-z]+' || true) ''; do
     tried=no
     for name in "${done_commands[@]}"; do
       case "$name" in "$command${word:+ $word}" | "$command${word:+ $word} "*) tried=yes ;; esac
