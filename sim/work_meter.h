@@ -68,19 +68,19 @@ class WorkMeter {
   std::atomic<bool> stopped_ = false;
 };
 
-/// WorkMeter::begin() where somebody may wait: `meter` is null if nobody does.
+/// WorkMeter::begin(); does nothing if `meter` is null, because nobody waits.
 inline void begin_part(WorkMeter* meter, std::string part, std::string unit = {}, std::uint64_t of = 0) {
   if (meter != nullptr) {
     meter->begin(std::move(part), std::move(unit), of);
   }
 }
-/// WorkMeter::count(), likewise.
+/// WorkMeter::count(); does nothing if `meter` is null.
 inline void count_step(WorkMeter* meter, std::uint64_t steps = 1) {
   if (meter != nullptr) {
     meter->count(steps);
   }
 }
-/// WorkMeter::end_if_stopped(), likewise.
+/// WorkMeter::end_if_stopped(); does nothing if `meter` is null.
 inline void end_if_stopped(const WorkMeter* meter) {
   if (meter != nullptr) {
     meter->end_if_stopped();

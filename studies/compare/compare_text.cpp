@@ -23,9 +23,8 @@ using Json = nlohmann::ordered_json;
 
 // The value of a setting as JSON has it; null where the machine does not use the setting.
 Json typed(const std::string& key, const Cell& value) {
-  static const sim::Schema schema = sweep_schema();
   const auto* text = std::get_if<std::string>(&value);
-  return text == nullptr ? Json() : setting_value(schema, key, *text);
+  return text == nullptr ? Json() : setting_value(sweep_schema(), key, *text);
 }
 
 Json side_json(const ComparedResult& result) { return {{"name", result.name}, {"version", result.version}}; }
@@ -96,6 +95,10 @@ std::string count(std::size_t number, std::string_view what) {
   return fmt::format("{} {}{}", grouped(static_cast<std::int64_t>(number)), what, number == 1 ? "" : "s");
 }
 
+std::string differ(std::size_t number, std::string_view what) {
+  return count(number, what) + (number == 1 ? " differs" : " differ");
+}
+
 std::string setting_text(const Cell& value) {
   const auto* text = std::get_if<std::string>(&value);
   return printable(text == nullptr ? short_text(value, "-") : plain_setting(*text));
@@ -147,16 +150,15 @@ std::string differences_text(const ComparedPair& pair, bool all) {
   for (const std::string& sentence : helps_of(pair)) {
     fmt::format_to(out, "{:<15}{}\n", "", printable(sentence));
   }
-  fmt::format_to(out, "\nconfiguration  {} differ{}, {} equal\n", count(found.settings.size(), "setting"),
-                 found.settings.size() == 1 ? "s" : "", found.equal_settings);
+  fmt::format_to(out, "\nconfiguration  {}, {} equal\n", differ(found.settings.size(), "setting"),
+                 found.equal_settings);
   // What differs in the configuration is never cut off.
   text += settings_lines(found.settings);
   if (!pair.times.empty() && !found.numbers.empty()) {
     fmt::format_to(out, "\nwhere the time went\n{}", time_lines(pair));
   }
-  const std::size_t differ = found.numbers.size() + found.texts.size();
-  fmt::format_to(out, "\nresults        {} differ{}, {} equal\n", count(differ, "figure"),
-                 differ == 1 ? "s" : "", found.equal.size());
+  fmt::format_to(out, "\nresults        {}, {} equal\n",
+                 differ(found.numbers.size() + found.texts.size(), "figure"), found.equal.size());
   text += figure_lines(found.texts, true);
   text += figure_lines(found.numbers, all);
   if (!found.one_side.empty()) {

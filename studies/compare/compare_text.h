@@ -21,6 +21,8 @@ inline constexpr std::size_t most_lines = 20;
 
 /// "1 setting", "2 settings".
 [[nodiscard]] std::string count(std::size_t number, std::string_view what);
+/// "1 point differs", "3 points differ".
+[[nodiscard]] std::string differ(std::size_t number, std::string_view what);
 
 /// A setting's value as people write it, a text without the quotation marks that it has in a TOML file; "-"
 /// where the machine does not use the setting.

@@ -11,9 +11,8 @@ namespace marti::studies {
 namespace {
 
 std::optional<std::int64_t> count_of(const ComparedResult& result, const std::string& name) {
-  const auto at = result.figures.find(name);
-  const auto* count = at == result.figures.end() ? nullptr : std::get_if<std::int64_t>(&at->second);
-  return count != nullptr && *count >= 0 ? std::optional(*count) : std::nullopt;
+  const std::optional<std::int64_t> count = integer_figure(result, name);
+  return count && *count >= 0 ? count : std::nullopt;
 }
 
 // The nodes of a result whose times of all activities add up to those nodes' frame times; else 0.

@@ -88,10 +88,20 @@ void add_frame(const FrameRow& row, Figures& figures) {
   });
 }
 
+std::optional<std::int64_t> integer_figure(const ComparedResult& result, const std::string& name) {
+  const auto at = result.figures.find(name);
+  const auto* value = at == result.figures.end() ? nullptr : std::get_if<std::int64_t>(&at->second);
+  return value != nullptr ? std::optional(*value) : std::nullopt;
+}
+
+std::optional<std::int64_t> frame_time_if_any(const ComparedResult& result) {
+  const std::optional<std::int64_t> ticks = integer_figure(result, "end");
+  return ticks && *ticks > 0 ? ticks : std::nullopt;
+}
+
 std::int64_t frame_time(const ComparedResult& result) {
-  const auto end = result.figures.find("end");
-  const auto* ticks = end == result.figures.end() ? nullptr : std::get_if<std::int64_t>(&end->second);
-  if (ticks == nullptr || *ticks <= 0) {
+  const std::optional<std::int64_t> ticks = frame_time_if_any(result);
+  if (!ticks) {
     throw sim::UserError(result.name + ": has no frame time (a figure \"end\" above 0)");
   }
   return *ticks;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -43,6 +44,12 @@ void add_frame(const FrameRow& row, Figures& figures);
 /// them.
 void keep_what_sweeps_have(ComparedResult& result);
 
+/// The value of an integer figure; std::nullopt when the result has no such figure.
+[[nodiscard]] std::optional<std::int64_t> integer_figure(const ComparedResult& result,
+                                                         const std::string& name);
+
+/// The frame time in ps; std::nullopt when the result has none above 0.
+[[nodiscard]] std::optional<std::int64_t> frame_time_if_any(const ComparedResult& result);
 /// The frame time in ps. Throws UserError when the result has none above 0.
 [[nodiscard]] std::int64_t frame_time(const ComparedResult& result);
 

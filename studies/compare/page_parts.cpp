@@ -15,11 +15,6 @@ namespace marti::studies {
 
 namespace {
 
-const sim::Schema& keys() {
-  static const sim::Schema schema = sweep_schema();
-  return schema;
-}
-
 SortedCell setting_cell(const std::string& key, const Cell& value) {
   return {setting_text(value), setting_number(key, value)};
 }
@@ -34,11 +29,11 @@ SortedTable settings_table(const std::string& title, const std::vector<Differenc
                    {"B", false, "value in B; - where the machine does not use it"},
                    {"meaning", false, ""}};
   for (const Difference& setting : settings) {
-    const std::optional<std::size_t> key = keys().find(setting.name);
+    const std::optional<std::size_t> key = sweep_schema().find(setting.name);
     table.rows.push_back({{setting.name, {}},
                           setting_cell(setting.name, setting.a),
                           setting_cell(setting.name, setting.b),
-                          {key ? keys().keys()[*key].meaning : std::string(), {}}});
+                          {key ? sweep_schema().keys()[*key].meaning : std::string(), {}}});
   }
   return table;
 }
@@ -56,6 +51,8 @@ SortedCell change_cell(const Difference& figure) { return {change_of(figure), fi
 SortedCell time_cell(std::int64_t ps) { return {seconds(ps), static_cast<double>(ps)}; }
 
 SortedCell ratio_cell(double ratio) { return {fmt::format("{:.4f}", ratio), ratio}; }
+
+SortedCell integer_cell(std::int64_t number) { return {std::to_string(number), static_cast<double>(number)}; }
 
 SortedTable figures_table(const std::string& title, const std::vector<Difference>& figures) {
   SortedTable table;

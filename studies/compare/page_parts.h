@@ -25,6 +25,7 @@ inline constexpr std::size_t most_page_points = 20'000;
 [[nodiscard]] SortedCell change_cell(const Difference& figure);
 [[nodiscard]] SortedCell time_cell(std::int64_t ps);
 [[nodiscard]] SortedCell ratio_cell(double ratio);
+[[nodiscard]] SortedCell integer_cell(std::int64_t number);
 
 /// A point on the chart of ratios.
 struct RatioPoint {

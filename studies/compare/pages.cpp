@@ -16,8 +16,18 @@ namespace marti::studies {
 
 namespace {
 
-std::string title_of(const std::string& a, const std::string& b) {
-  return fmt::format("{} compared with {}", printable(b), printable(a));
+// What is compared, as on the command line, and the program that made it.
+struct Side {
+  const std::string& name;
+  std::string version{};
+};
+
+// A page that begins with these sentences and with who A and B are.
+ComparisonPage begin_page(std::vector<std::string> sentences, const Side& a, const Side& b) {
+  sentences.push_back(who_is("A", a.name, a.version));
+  sentences.push_back(who_is("B", b.name, b.version));
+  return {fmt::format("{} compared with {}", printable(b.name), printable(a.name)),
+          {{"answer", "The verdict", std::move(sentences), {}, {}}}};
 }
 
 void add_frame_part(const std::vector<Difference>& settings, ComparisonPage& page) {
@@ -72,21 +82,17 @@ SortedTable times_table(const std::vector<ActivityTime>& times, double end) {
 }  // namespace
 
 ComparisonPage page_of(const ComparedPair& pair) {
-  ComparisonPage page;
-  page.title = title_of(pair.a.name, pair.b.name);
-  ComparisonPart verdict{"answer", "The verdict", verdict_of(pair), {}, {}};
-  verdict.sentences.push_back(who_is("A", pair.a.name, pair.a.version));
-  verdict.sentences.push_back(who_is("B", pair.b.name, pair.b.version));
-  page.parts.push_back(std::move(verdict));
+  ComparisonPage page =
+      begin_page(verdict_of(pair), {pair.a.name, pair.a.version}, {pair.b.name, pair.b.version});
   std::vector<Difference> machine = pair.differences.settings;
   if (!pair.same_frame) {
     add_frame_part(frame_settings(machine), page);
     std::erase_if(machine, [](const Difference& setting) { return is_frame_setting(setting.name); });
   }
-  add_machine_part(machine,
-                   fmt::format("{} differ{}, {} are equal.", count(machine.size(), "setting"),
-                               machine.size() == 1 ? "s" : "", pair.differences.equal_settings),
-                   page);
+  add_machine_part(
+      machine,
+      fmt::format("{}, {} are equal.", differ(machine.size(), "setting"), pair.differences.equal_settings),
+      page);
   ComparisonPart time{"time", "Where the time went", helps_of(pair), {}, {}};
   if (!pair.times.empty()) {
     const auto end = static_cast<double>(frame_time(pair.a));
@@ -100,8 +106,8 @@ ComparisonPage page_of(const ComparedPair& pair) {
   std::vector<Difference> figures = found.texts;
   figures.insert(figures.end(), found.numbers.begin(), found.numbers.end());
   ComparisonPart counters{"counters", "Figures, the largest change first", {}, {}, {}};
-  counters.sentences.push_back(fmt::format("{} differ{}, {} are equal.", count(figures.size(), "figure"),
-                                           figures.size() == 1 ? "s" : "", found.equal.size()));
+  counters.sentences.push_back(
+      fmt::format("{}, {} are equal.", differ(figures.size(), "figure"), found.equal.size()));
   if (!figures.empty()) {
     counters.tables.push_back(figures_table("Figures that differ", figures));
   }
@@ -113,18 +119,13 @@ ComparisonPage page_of(const ComparedPair& pair) {
 }
 
 ComparisonPage page_of(const ResultAndSweep& found) {
-  ComparisonPage page;
-  page.title = title_of(found.a, found.b);
-  ComparisonPart verdict{"answer", "The verdict", verdict_of(found), {}, {}};
-  verdict.sentences.push_back(who_is("A", found.a, {}));
-  verdict.sentences.push_back(who_is("B", found.b, {}));
-  page.parts.push_back(std::move(verdict));
+  ComparisonPage page = begin_page(verdict_of(found), {found.a}, {found.b});
   add_frame_part(found.frame, page);
-  add_machine_part(found.alike,
-                   fmt::format("{} differ{} in every point alike, {} from point to point, {} are equal.",
-                               count(found.alike.size(), "setting"), found.alike.size() == 1 ? "s" : "",
-                               found.varied.size(), found.equal_settings),
-                   page);
+  add_machine_part(
+      found.alike,
+      fmt::format("{} in every point alike, {} from point to point, {} are equal.",
+                  differ(found.alike.size(), "setting"), found.varied.size(), found.equal_settings),
+      page);
   SortedTable table;
   table.title = found.same_frame ? "Points, the shortest frame first" : "Points, the nearest machine first";
   table.columns = {{"point", true, "its number in the sweep"},
@@ -137,11 +138,11 @@ ComparisonPage page_of(const ResultAndSweep& found) {
     const ComparedPoint& point = found.points[i];
     const std::string name =
         (point.name.empty() ? "" : point.name + ": ") + values_text(point.settings, found.of_sweep(), false);
-    table.rows.push_back({{std::to_string(point.ordinal), static_cast<double>(point.ordinal)},
+    table.rows.push_back({integer_cell(point.ordinal),
                           {name, {}},
                           time_cell(point.end),
                           found.same_frame ? ratio_cell(point.ratio) : SortedCell(),
-                          {std::to_string(point.distance), static_cast<double>(point.distance)}});
+                          integer_cell(static_cast<std::int64_t>(point.distance))});
     ratios.push_back({point.ordinal, name, found.sweep_is_a() ? point.end : found.end,
                       found.sweep_is_a() ? found.end : point.end});
   }
@@ -157,19 +158,14 @@ ComparisonPage page_of(const ResultAndSweep& found) {
 }
 
 ComparisonPage page_of(const TwoSweeps& found) {
-  ComparisonPage page;
-  page.title = title_of(found.a, found.b);
-  ComparisonPart verdict{"answer", "The verdict", verdict_of(found), {}, {}};
-  verdict.sentences.push_back(fmt::format(
+  std::vector<std::string> verdict = verdict_of(found);
+  verdict.push_back(fmt::format(
       "{} in both, joined by {}; {} only in A, {} only in B.", count(found.both, "point"),
       found.by_axes ? "the values of their axes" : "all settings", found.only_a.size(), found.only_b.size()));
-  verdict.sentences.push_back(who_is("A", found.a, found.version_a));
-  verdict.sentences.push_back(who_is("B", found.b, found.version_b));
-  page.parts.push_back(std::move(verdict));
+  ComparisonPage page =
+      begin_page(std::move(verdict), {found.a, found.version_a}, {found.b, found.version_b});
   add_frame_part(found.frame, page);
-  add_machine_part(found.alike,
-                   fmt::format("{} differ{} at every joined point alike.",
-                               count(found.alike.size(), "setting"), found.alike.size() == 1 ? "s" : ""),
+  add_machine_part(found.alike, differ(found.alike.size(), "setting") + " at every joined point alike.",
                    page);
   if (found.points.empty()) {
     return page;
@@ -186,8 +182,7 @@ ComparisonPage page_of(const TwoSweeps& found) {
   std::vector<RatioPoint> ratios;
   for (std::size_t i = 0; i < std::min(found.points.size(), most_page_points); ++i) {
     const JoinedPoint& point = found.points[i];
-    std::vector<SortedCell> row = {{std::to_string(point.a), static_cast<double>(point.a)},
-                                   {std::to_string(point.b), static_cast<double>(point.b)}};
+    std::vector<SortedCell> row = {integer_cell(point.a), integer_cell(point.b)};
     for (std::size_t axis = 0; axis < found.axes.size(); ++axis) {
       row.push_back({point.texts[axis], number_of(point.values[axis])});
     }
@@ -226,16 +221,15 @@ ComparisonPage page_of(const TwoSweeps& found) {
   for (const CounterDifference& counter : found.differing) {
     const std::string& name = counter.largest.name;
     counters.rows.push_back({{name, {}},
-                             {std::to_string(counter.points), static_cast<double>(counter.points)},
+                             integer_cell(static_cast<std::int64_t>(counter.points)),
                              figure_cell(counter.largest.a, name),
                              figure_cell(counter.largest.b, name),
                              change_cell(counter.largest),
-                             {std::to_string(counter.a), static_cast<double>(counter.a)},
+                             integer_cell(counter.a),
                              {meaning_of_figure(name), {}}});
   }
   ComparisonPart part{"counters", "Counters, the largest change first", {}, {}, {}};
-  part.sentences.push_back(fmt::format("{} differ{}, {} are equal.", count(found.differing.size(), "counter"),
-                                       found.differing.size() == 1 ? "s" : "",
+  part.sentences.push_back(fmt::format("{}, {} are equal.", differ(found.differing.size(), "counter"),
                                        found.counters - found.differing.size()));
   if (!counters.rows.empty()) {
     part.tables.push_back(std::move(counters));

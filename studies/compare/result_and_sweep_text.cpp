@@ -110,9 +110,8 @@ std::string text_of(const ResultAndSweep& found, bool all) {
     fmt::format_to(out, "frame          {} of {} timed points render another frame and are left out\n{}\n",
                    found.other_frames, found.timed, settings_lines(found.frame));
   }
-  fmt::format_to(out, "configuration  {} differ{} in every point alike, {} from point to point, {} equal\n",
-                 count(found.alike.size(), "setting"), found.alike.size() == 1 ? "s" : "",
-                 found.varied.size(), found.equal_settings);
+  fmt::format_to(out, "configuration  {} in every point alike, {} from point to point, {} equal\n",
+                 differ(found.alike.size(), "setting"), found.varied.size(), found.equal_settings);
   text += settings_lines(found.alike);
   const ComparedPoint& nearest = found.nearest();
   if (found.same_frame) {

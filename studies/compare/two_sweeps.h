@@ -20,7 +20,7 @@ struct JoinedPoint {
   std::int64_t b = 0;
   std::string name;                ///< the values of A's axes: "machine.nodes 8, cache.size 4 KiB"
   std::vector<Cell> values;        ///< of A's axes
-  std::vector<std::string> texts;  ///< the same as people write them: "4 KiB"
+  std::vector<std::string> texts;  ///< these values as people write them: "4 KiB"
   std::int64_t end_a = 0;          ///< ps
   std::int64_t end_b = 0;
   bool same_frame = false;           ///< only then its times can be compared
@@ -72,7 +72,7 @@ struct TwoSweeps {
 /// Of points with the same machine only the first is joined by settings.
 [[nodiscard]] TwoSweeps two_sweeps(const std::filesystem::path& a, const std::filesystem::path& b);
 
-/// The geometric mean of the ratios B / A of comparable points; std::nullopt when there is none.
+/// The geometric mean of the ratios B / A of comparable points; std::nullopt without a comparable point.
 [[nodiscard]] std::optional<double> mean_ratio(const TwoSweeps& found);
 
 /// The most important sentence first.

@@ -143,9 +143,8 @@ std::string text_of(const TwoSweeps& found, bool all) {
   text += whose_points("A", found.only_a, all);
   text += whose_points("B", found.only_b, all);
   if (!found.alike.empty()) {
-    fmt::format_to(out, "configuration  {} differ{} at every joined point alike\n{}",
-                   count(found.alike.size(), "setting"), found.alike.size() == 1 ? "s" : "",
-                   settings_lines(found.alike));
+    fmt::format_to(out, "configuration  {} at every joined point alike\n{}",
+                   differ(found.alike.size(), "setting"), settings_lines(found.alike));
   }
   fmt::format_to(out, "results        {} equal in every counter, {} not\n", found.equal,
                  found.points.size() - found.equal);

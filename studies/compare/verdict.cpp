@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 #include "studies/compare/compare_text.h"
 #include "studies/compare/frames.h"
+#include "studies/report/model/answer_text.h"
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_units.h"
 
@@ -27,17 +27,6 @@ constexpr double most_against = 0.25;
 std::optional<double> figure(const ComparedResult& result, const std::string& name) {
   const auto at = result.figures.find(name);
   return at == result.figures.end() ? std::nullopt : number_of(at->second);
-}
-
-std::optional<std::int64_t> end_of(const ComparedResult& result) {
-  const auto at = result.figures.find("end");
-  const auto* ticks = at == result.figures.end() ? nullptr : std::get_if<std::int64_t>(&at->second);
-  return ticks != nullptr && *ticks > 0 ? std::optional(*ticks) : std::nullopt;
-}
-
-std::string words(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
 }
 
 std::string joined(const std::vector<std::string>& parts) {
@@ -150,8 +139,8 @@ std::string speed_text(std::int64_t a, std::int64_t b) {
 }
 
 std::vector<std::string> verdict_of(const ComparedPair& pair) {
-  const std::optional<std::int64_t> a = end_of(pair.a);
-  const std::optional<std::int64_t> b = end_of(pair.b);
+  const std::optional<std::int64_t> a = frame_time_if_any(pair.a);
+  const std::optional<std::int64_t> b = frame_time_if_any(pair.b);
   if (!a || !b) {
     return {};
   }

@@ -48,7 +48,7 @@ class Turns {
   /// Stops the one that has its turn; those that wait and those that come get none.
   void stop();
 
-  /// How far the one is that has its turn; nothing has begun if there is none.
+  /// How far the work of the present turn is; an empty state while no turn is taken.
   [[nodiscard]] sim::WorkMeter::State state() const;
 
  private:

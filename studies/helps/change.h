@@ -11,8 +11,9 @@
 
 namespace marti::studies {
 
-/// A key and its values before and after, as one would write them in a TOML file. They are equal where a
-/// value that followed from other keys must be given to stay as it is.
+/// A key and its values before and after, as one would write them in a TOML file. Both are equal for a key
+/// that was not given: its value followed from other keys, and must now be given so that it does not change
+/// with them.
 struct KeyChange {
   std::string key;
   std::string from;

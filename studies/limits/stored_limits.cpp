@@ -57,7 +57,7 @@ class DifferingKeys {
 }  // namespace
 
 StoredLimits::StoredLimits(const SweepReader& sweep, const std::optional<Prices>& prices) {
-  const sim::Schema schema = sweep_schema();
+  const sim::Schema& schema = sweep_schema();
   DifferingKeys differing;
   std::vector<LimitPoint> points;
   std::map<std::int64_t, std::optional<PointFigures>> one_node;  // by the id of a base machine

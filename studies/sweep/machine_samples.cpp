@@ -147,7 +147,7 @@ class Sampling {
   double fixed_seconds_ = 0.0;
   double growing_seconds_ = 0.0;
   double growing_bytes_ = 0.0;
-  // Of the logs that were stripped, likewise.
+  // Of the logs that were stripped: processor time and bytes, at their frames' own size.
   double stripped_seconds_ = 0.0;
   double stripped_bytes_ = 0.0;
 };

@@ -104,7 +104,7 @@ std::string figure_text(const Cell& cell, std::string_view unit, std::string_vie
   if (!number || !std::isfinite(*number)) {
     return short_text(cell, missing);
   }
-  constexpr double longest = 0x1p62;  // beyond it a time is none that a machine took
+  constexpr double longest = 0x1p62;  // no machine takes longer; a larger number is no time
   if (unit == "ps" && std::abs(*number) <= longest) {
     const auto* ticks = std::get_if<std::int64_t>(&cell);
     const std::string text = signed_seconds(ticks != nullptr ? *ticks : std::llround(*number));

@@ -53,7 +53,7 @@ TEST(CompareCommand, ListsWhatDiffersBetweenTwoRuns) {
   EXPECT_NE(all.output.find("image_hash"), std::string::npos) << all.output;
 }
 
-// A run and the same with a smaller cache.
+// Runs of two machines, of which the second has a smaller cache.
 class ComparePage : public testing::Test {
  protected:
   void SetUp() override {

@@ -167,7 +167,7 @@ PointCounters counters_of(const ReportPoint& point, double x) {
 }
 
 std::vector<AxisModel> model_sweep(const ReportPoints& sweep, std::size_t most_samples) {
-  const sim::Schema schema = sweep_schema();
+  const sim::Schema& schema = sweep_schema();
   std::vector<AxisModel> models;
   std::size_t samples = 0;
   for (std::size_t i = 0; i < sweep.axes.size(); ++i) {

@@ -15,7 +15,7 @@ namespace marti::studies {
 /// bytes. `scripts` are loaded before the page's own, in this order.
 [[nodiscard]] std::string report_page(const ReportData& report, std::span<const Script> scripts);
 
-/// The same with other sections than those of the report; of `report` only the title and the charts are used.
+/// A page with these sections; of `report` only the title and the charts are used.
 [[nodiscard]] std::string report_page(const ReportData& report, std::span<const PageSection> parts,
                                       std::span<const Script> scripts);
 

@@ -14,7 +14,7 @@ namespace {
 
 // Null for "point", and for an axis that another version of the program has made.
 const sim::Key* key_of(const std::string& axis) {
-  static const sim::Schema schema = sweep_schema();
+  const sim::Schema& schema = sweep_schema();
   const std::optional<std::size_t> index = schema.find(axis);
   return index ? &schema.keys()[*index] : nullptr;
 }

@@ -17,9 +17,12 @@ void declare_sweep_keys(sim::Schema& schema) {
   declare_price_keys(schema);
 }
 
-sim::Schema sweep_schema() {
-  sim::Schema schema = run_schema();
-  declare_sweep_keys(schema);
+const sim::Schema& sweep_schema() {
+  static const sim::Schema schema = [] {
+    sim::Schema keys = run_schema();
+    declare_sweep_keys(keys);
+    return keys;
+  }();
   return schema;
 }
 

@@ -10,8 +10,8 @@ namespace marti::studies {
 /// holds.
 void declare_sweep_keys(sim::Schema& schema);
 
-/// The schema of `marti sweep`.
-[[nodiscard]] sim::Schema sweep_schema();
+/// The schema of `marti sweep`, made once.
+[[nodiscard]] const sim::Schema& sweep_schema();
 
 /// Throws UserError when something is to be recorded: a sweep has no directory for each machine.
 void refuse_records(sim::Config& config);

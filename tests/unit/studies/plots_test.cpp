@@ -193,7 +193,7 @@ TEST_F(Plots, HaveBarsForNamesAndColoursForAnotherAxis) {
 }
 
 // A curve of the model with its bands, zones and saturation, worked out by hand: errors are factors of 1.25
-// between the points and of 2 beyond them; at a point there is none.
+// between the points and of 2 beyond them; at a point the band has no width.
 TEST_F(Plots, HaveTheCurveOfTheExplorer) {
   const ReportChart curve = live_chart("over_axis", "curve", "T", {{"rows", "explorer"}},
                                        {{"FIGURE", "ms"}, {"TITLE", "frame time, ms"}});
