@@ -223,6 +223,12 @@ void run(bench::Report& report, std::uint32_t size, int repeats) {
   print("64 nodes, 2x2 packets", same, render, 0.0);
   const Timing many = time_replay(*frame.log, machine_of(65536, 2), repeats);
   print("65,536 nodes, 2x2 packets", many, render, 1e9 * same.seconds / same.references);
+  const auto stripped = processors::StrippedLog::make(*frame.log, machine_of(64, 2));
+  const Timing same_stripped = time_replay(*frame.log, machine_of(64, 2), repeats, stripped.get());
+  print("64 nodes, 2x2, stripped log", same_stripped, render, 0.0);
+  const Timing many_stripped = time_replay(*frame.log, machine_of(65536, 2), repeats, stripped.get());
+  print("65,536 nodes, 2x2, stripped", many_stripped, render,
+        1e9 * same_stripped.seconds / same_stripped.references);
   std::printf("events a miss %.2f; %zu host bytes a simulated node beside its tags\n",
               base.events / base.misses, many.bytes_per_node);
   report.add(bench::against("a reference of 65,536 nodes", "ns", 1e9 * many.seconds / many.references,

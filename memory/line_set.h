@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "memory/cache_config.h"
 #include "sim/large_pages.h"
@@ -34,7 +33,7 @@ class LineSet {
 
  private:
   std::uint64_t words_;  // for each cache
-  sim::LargeVector<std::uint64_t> bits_;
+  sim::ZeroedTable<std::uint64_t> bits_;
 };
 
 }  // namespace marti::memory

@@ -24,8 +24,9 @@ class QuadTags {
         sets_of_caches_(std::size_t{caches} * shape.sets),
         states_(sets_of_caches_.size()) {}
 
+  // The complements of the lines' numbers, so that empty ways, no_line, are 0.
   struct alignas(16) Set {
-    std::uint32_t tags[4] = {no_line, no_line, no_line, no_line};
+    std::uint32_t tags[4];
   };
 
   /// One of the caches, with everything that a look-up needs in registers.
@@ -42,7 +43,7 @@ class QuadTags {
       states_[at] = lru_states.next[state + match];
       const bool hit = match != 0;
       if (!hit) [[unlikely]] {
-        sets_[at].tags[lru_states.victim[state / LruStates::matches]] = line;
+        sets_[at].tags[lru_states.victim[state / LruStates::matches]] = ~line;
       }
       return hit;
     }
@@ -67,7 +68,7 @@ class QuadTags {
         return false;
       }
       const auto way = static_cast<std::uint32_t>(std::countr_zero(match));
-      sets_[at].tags[way] = no_line;
+      sets_[at].tags[way] = ~no_line;
       states_[at] = lru_states.emptied[states_[at] / LruStates::matches * LruStates::ways + way];
       return true;
     }
@@ -86,20 +87,21 @@ class QuadTags {
  private:
   // One bit a way.
   static std::uint32_t ways_that_hold(const Set& set, std::uint32_t line) {
+    const std::uint32_t tag = ~line;
 #ifdef __SSE2__
     const __m128i tags = _mm_load_si128(reinterpret_cast<const __m128i*>(set.tags));
-    const __m128i equal = _mm_cmpeq_epi32(tags, _mm_set1_epi32(static_cast<int>(line)));
+    const __m128i equal = _mm_cmpeq_epi32(tags, _mm_set1_epi32(static_cast<int>(tag)));
     return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_castsi128_ps(equal)));
 #else
-    return (set.tags[0] == line ? 1U : 0U) | (set.tags[1] == line ? 2U : 0U) |
-           (set.tags[2] == line ? 4U : 0U) | (set.tags[3] == line ? 8U : 0U);
+    return (set.tags[0] == tag ? 1U : 0U) | (set.tags[1] == tag ? 2U : 0U) | (set.tags[2] == tag ? 4U : 0U) |
+           (set.tags[3] == tag ? 8U : 0U);
 #endif
   }
 
   SetIndex index_;
   std::uint32_t sets_;
-  sim::LargeVector<Set> sets_of_caches_;
-  sim::LargeVector<std::uint16_t> states_;  // of LruStates, one for each set
+  sim::ZeroedTable<Set> sets_of_caches_;
+  sim::ZeroedTable<std::uint16_t> states_;  // of LruStates, one for each set
 };
 
 }  // namespace marti::memory

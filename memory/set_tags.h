@@ -36,10 +36,7 @@ template <Replacement Policy, std::uint32_t Ways>
 class SetTags {
  public:
   SetTags(const CacheShape& shape, std::uint32_t caches, std::uint64_t seed)
-      : index_(shape.sets),
-        sets_(shape.sets),
-        ways_(shape.ways),
-        tags_(std::size_t{caches} * shape.lines(), no_line) {
+      : index_(shape.sets), sets_(shape.sets), ways_(shape.ways), tags_(std::size_t{caches} * shape.lines()) {
     if constexpr (Policy == Replacement::random) {
       const std::uint64_t all_sets = std::uint64_t{caches} * shape.sets;
       victims_.reserve(all_sets);
@@ -72,6 +69,8 @@ class SetTags {
   [[nodiscard]] View view(std::uint32_t cache) { return {*this, cache}; }
 
  private:
+  // Tags are the complements of the lines' numbers, so that empty ways are 0.
+  static constexpr std::uint32_t empty = ~no_line;
   // Whether lines stay in the way that they were brought into.
   static constexpr bool stays = Policy == Replacement::random || Policy == Replacement::plru;
 
@@ -79,12 +78,13 @@ class SetTags {
     const std::size_t set = std::size_t{cache} * sets_ + index_(line);
     const std::uint32_t ways = Ways == 0 ? ways_ : Ways;
     std::uint32_t* tags = tags_.data() + set * ways;
-    if (tags[0] == line) {
+    const std::uint32_t tag = ~line;
+    if (tags[0] == tag) {
       use(set, 0);
       return true;
     }
     std::uint32_t at = 1;
-    while (at < ways && tags[at] != line) {
+    while (at < ways && tags[at] != tag) {
       ++at;
     }
     if constexpr (stays) {
@@ -92,7 +92,7 @@ class SetTags {
         use(set, at);
         return true;
       }
-      replace(tags, ways, set, line);
+      replace(tags, ways, set, tag);
       return false;
     } else {
       const bool hit = at < ways;
@@ -102,7 +102,7 @@ class SetTags {
       for (std::uint32_t way = hit ? at : ways - 1; way > 0; --way) {
         tags[way] = tags[way - 1];
       }
-      tags[0] = line;
+      tags[0] = tag;
       return hit;
     }
   }
@@ -114,29 +114,29 @@ class SetTags {
   bool holds(std::uint32_t cache, std::uint32_t line) {
     const std::uint32_t* const tags = set_of(cache, line);
     const std::uint32_t* const end = tags + (Ways == 0 ? ways_ : Ways);
-    return std::find(tags, end, line) != end;
+    return std::find(tags, end, ~line) != end;
   }
 
   bool touch(std::uint32_t cache, std::uint32_t line) {
     const std::uint32_t* const tags = set_of(cache, line);
     const std::uint32_t ways = Ways == 0 ? ways_ : Ways;
     // access() brings nothing in here, because the line is found.
-    return std::find(tags, tags + ways, line) != tags + ways && access(cache, line);
+    return std::find(tags, tags + ways, ~line) != tags + ways && access(cache, line);
   }
 
   bool remove(std::uint32_t cache, std::uint32_t line) {
     std::uint32_t* const tags = set_of(cache, line);
     std::uint32_t* const end = tags + (Ways == 0 ? ways_ : Ways);
-    std::uint32_t* const at = std::find(tags, end, line);
+    std::uint32_t* const at = std::find(tags, end, ~line);
     if (at == end) {
       return false;
     }
     if constexpr (stays) {
-      *at = no_line;
+      *at = empty;
     } else {
       // Empty ways count as the oldest, so they are kept last.
       std::copy(at + 1, end, at);
-      *(end - 1) = no_line;
+      *(end - 1) = empty;
     }
     return true;
   }
@@ -156,22 +156,22 @@ class SetTags {
   }
 
   // Fills the first empty way; only if there is none, a victim is replaced.
-  void replace(std::uint32_t* tags, std::uint32_t ways, std::size_t set, std::uint32_t line) {
+  void replace(std::uint32_t* tags, std::uint32_t ways, std::size_t set, std::uint32_t tag) {
     std::uint32_t way = 0;
-    while (way < ways && tags[way] != no_line) {
+    while (way < ways && tags[way] != empty) {
       ++way;
     }
     if (way == ways) {
       way = victim(set, ways);
     }
-    tags[way] = line;
+    tags[way] = tag;
     use(set, way);
   }
 
   SetIndex index_;
   std::uint32_t sets_;
   std::uint32_t ways_;
-  sim::LargeVector<std::uint32_t> tags_;
+  sim::ZeroedTable<std::uint32_t> tags_;
   std::vector<VictimStream> victims_;
   PlruTrees trees_;
 };

@@ -1,10 +1,13 @@
-// An allocator for tables that are accessed at random and exceed the reach of the host's TLBs: it asks the
-// system for large pages. Where there are none it is an ordinary allocator.
+// Memory for tables that are accessed at random and exceed the reach of the host's TLBs: the system is asked
+// for large pages. Where there are none it is ordinary memory.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <memory>
 #include <new>
+#include <type_traits>
 #include <vector>
 
 #ifdef __linux__
@@ -52,5 +55,53 @@ class LargePageAllocator {
 
 template <class T>
 using LargeVector = std::vector<T, LargePageAllocator<T>>;
+
+/// A table of fixed size whose bytes are all 0 at first. What is never accessed takes no memory on Linux,
+/// where the system makes pages when they are touched.
+template <class T>
+class ZeroedTable {
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+
+ public:
+  ZeroedTable() = default;
+  explicit ZeroedTable(std::size_t count) : size_(count) {
+    if (count > static_cast<std::size_t>(-1) / 2 / sizeof(T)) {
+      throw std::bad_alloc();
+    }
+    // A large block comes from the system as it is; the C library knows that its bytes are 0.
+    block_.reset(std::calloc(count * sizeof(T) + alignment, 1));
+    if (block_ == nullptr) {
+      throw std::bad_alloc();
+    }
+    const std::size_t bytes = count * sizeof(T);
+    void* begin = block_.get();
+    std::size_t space = bytes + alignment;
+    first_ = static_cast<T*>(std::align(alignment, bytes, begin, space));
+#ifdef __linux__
+    // madvise takes whole pages: the first that begins within the table.
+    constexpr std::size_t page = std::size_t{4} << 10U;
+    space = bytes;
+    if (bytes >= large_page && std::align(page, bytes - page, begin, space) != nullptr) {
+      (void)madvise(begin, space, MADV_HUGEPAGE);
+    }
+#endif
+  }
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] T* data() { return first_; }
+  T& operator[](std::size_t at) { return first_[at]; }
+
+ private:
+  static constexpr std::size_t large_page = std::size_t{2} << 20U;
+  static constexpr std::size_t alignment = 64;  // a cache line
+  static_assert(alignof(T) <= alignment);
+  struct Free {
+    void operator()(void* block) const { std::free(block); }
+  };
+
+  std::unique_ptr<void, Free> block_;
+  T* first_ = nullptr;
+  std::size_t size_ = 0;
+};
 
 }  // namespace marti::sim

@@ -125,6 +125,10 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
 
   static bool for_pixel(const Cursor& /*cursor*/) { return true; }
 
+  void begin_packet(std::uint32_t node, Cursor& cursor) requires requires(Walker walker) {
+    walker.begin_packet(node, cursor);
+  }
+  { walker_.begin_packet(node, cursor); }
   void begin_pixel(Cursor& cursor) const { walker_.begin_pixel(cursor); }
 
   // Takes the node's caches through the packets left out before its next one.

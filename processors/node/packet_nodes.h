@@ -197,6 +197,9 @@ class PacketNodes : public NodeArray {
     cursor.packet = input_.packets[grant->packet];
     cursor.y = cursor.packet.y0;
     cursor.x = cursor.packet.x0;
+    if constexpr (requires { derived().begin_packet(node, cursor); }) {
+      derived().begin_packet(node, cursor);
+    }
     derived().begin_pixel(cursor);
     derived().run(node);
   }

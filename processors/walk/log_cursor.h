@@ -12,6 +12,10 @@
 
 namespace marti::processors {
 
+/// What the tags of a node hold, for a walk of a stripped log: nothing, as before its first packet; still
+/// nothing, although it has begun its first packet; or what it has asked for.
+enum class Tags : std::uint8_t { empty, late, present };
+
 /// Where a node is in its packet: the pixel, the word of the pixel's log, and within a step either a line of
 /// a planned visit, or a byte of a record and, for a leaf, the objects still to be tested.
 struct alignas(64) Cursor {
@@ -23,6 +27,9 @@ struct alignas(64) Cursor {
   std::uint32_t x = 0;
   std::uint32_t y = 0;
   Packet packet;
+  std::uint32_t first_x = 0;  ///< of the node's first packet, with Tags::late
+  std::uint32_t first_y = 0;
+  Tags tags = Tags::empty;
 
   const std::uint32_t* word = nullptr;
   const std::uint32_t* word_end = nullptr;

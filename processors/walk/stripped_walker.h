@@ -1,4 +1,8 @@
 // Walks a node through a stripped log (processors/walk/stripped_log.h), in LogWalker's place.
+//
+// The cache of a node is empty when it begins its first packet. References of LRU caches that would be looked
+// up are first ones of the packet, so all of them miss then, and the tags are not touched. They get the lines
+// of the first packet when the node begins its second; a node that never does takes no memory for tags.
 #pragma once
 
 #include <bit>
@@ -25,36 +29,40 @@ class StrippedWalker {
         line_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
         clock_(input.config.clock),
         ticks_(step_ticks(input.config, input.log)),
-        behind_(input) {}
+        behind_(input),
+        tags_may_be_late_(stripped_.ways() != 0 && input.sample == nullptr) {}
 
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
   [[nodiscard]] const BehindCache& behind() const { return behind_; }
 
-  /// A packet's words come in the order of its pixels, so only the first pixel has to be looked for.
-  void begin_pixel(Cursor& cursor) const {
-    if (cursor.x == cursor.packet.x0 && cursor.y == cursor.packet.y0) {
-      cursor.stripped = stripped_.packet(cursor.x, cursor.y).words.data();
+  /// The node begins the packet at its cursor.
+  void begin_packet(std::uint32_t node, Cursor& cursor) {
+    if (cursor.tags == Tags::empty && tags_may_be_late_) {
+      cursor.tags = Tags::late;
+      cursor.first_x = cursor.x;
+      cursor.first_y = cursor.y;
+    } else if (cursor.tags != Tags::present) [[unlikely]] {
+      if (cursor.tags == Tags::late) {
+        warm_up(node, cursor.first_x, cursor.first_y);
+      }
+      cursor.tags = Tags::present;
     }
+    cursor.stripped = stripped_.packet(cursor.x, cursor.y).words.data();
   }
 
+  /// A packet's words come in the order of its pixels.
+  static void begin_pixel(const Cursor& /*cursor*/) {}
+
   /// As LogWalker::warm_up.
-  void warm_up(std::uint32_t node, const Packet& packet) {
-    const StrippedLog::StrippedPacket stripped = stripped_.packet(packet.x0, packet.y0);
-    const auto cache = caches_.view(node);
-    for (const std::uint64_t word : stripped.words) {
-      if (const auto what = static_cast<std::uint32_t>(word >> 32U); (what & StrippedLog::sure_miss) == 0) {
-        (void)look_up(cache, what);
-      }
-    }
-    end_packet(cache, stripped);
-  }
+  void warm_up(std::uint32_t node, const Packet& packet) { warm_up(node, packet.x0, packet.y0); }
 
   /// Continues `node` from its cursor to its next miss or the end of its pixel. Hits are counted with the
   /// packet's totals, when the packet is finished.
   template <bool RunAhead>
   Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
     static_assert(RunAhead);
-    const Stop stop = walk(node, cursor, statistics);
+    const Stop stop = cursor.tags == Tags::late ? walk<true>(node, cursor, statistics)
+                                                : walk<false>(node, cursor, statistics);
     behind_.count_bytes(node);
     return stop;
   }
@@ -70,7 +78,9 @@ class StrippedWalker {
     for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
       statistics.references.hits[kind] += stripped.totals.references[kind];
     }
-    end_packet(caches_.view(node), stripped);
+    if (cursor.tags != Tags::late) {
+      end_packet(caches_.view(node), stripped);
+    }
   }
 
   [[nodiscard]] static memory::Address missed_address(const Cursor& cursor) { return cursor.at; }
@@ -89,12 +99,26 @@ class StrippedWalker {
     return cache.access(kind_of(what), what >> StrippedLog::what_bits);
   }
 
+  // Takes the node's cache through the packet at (x, y).
+  void warm_up(std::uint32_t node, std::uint32_t x, std::uint32_t y) {
+    const StrippedLog::StrippedPacket stripped = stripped_.packet(x, y);
+    const View cache = caches_.view(node);
+    for (const std::uint64_t word : stripped.words) {
+      if (const auto what = static_cast<std::uint32_t>(word >> 32U); (what & StrippedLog::sure_miss) == 0) {
+        (void)look_up(cache, what);
+      }
+    }
+    end_packet(cache, stripped);
+  }
+
   static void end_packet(const View& cache, const StrippedLog::StrippedPacket& packet) {
     for (const std::uint32_t what : packet.at_end) {
       (void)look_up(cache, what);
     }
   }
 
+  // `Empty`: no reference is looked up, because the cache held nothing when the packet began.
+  template <bool Empty>
   Stop walk(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
     const View cache = caches_.view(node);
     const std::uint64_t* word = cursor.stripped;
@@ -104,7 +128,7 @@ class StrippedWalker {
       const auto what = static_cast<std::uint32_t>(*word >> 32U);
       ++word;
       if ((what & StrippedLog::sure_miss) == 0) {
-        if (look_up(cache, what)) [[likely]] {
+        if (!Empty && look_up(cache, what)) [[likely]] {
           time = sim::add_ticks(time, ticks_.hit);
           continue;
         }
@@ -137,6 +161,7 @@ class StrippedWalker {
   sim::Clock clock_;
   StepTicks ticks_;
   BehindCache behind_;
+  bool tags_may_be_late_;
 };
 
 }  // namespace marti::processors
