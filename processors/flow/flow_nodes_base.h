@@ -3,10 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "processors/flow/flow_parts.h"
+#include "processors/walk/cause_observer.h"
 #include "processors/walk/log_walker.h"
 #include "processors/walk/observer.h"
 #include "sim/large_pages.h"
@@ -74,8 +76,15 @@ class FlowNodesBase : public FlowNodes {
       watched_[node].until = service.done;
     }
   }
-  // Tells the observer of work for a ray since the last time told, and of the misses in it.
-  void watch_work(std::uint32_t node, sim::Ticks to, PixelPlace place) {
+  // Tells the observer of work for a ray since the last time told, and of the misses in it. `word`: the ray's
+  // first step that is not taken yet.
+  void watch_work(std::uint32_t node, sim::Ticks to, PixelPlace place, const std::uint32_t* word) {
+    if (input_.causes != nullptr) {
+      const std::span<const std::uint32_t> words = input_.log.pixel(place.x, place.y);
+      input_.causes->worked(
+          node, statistics_[node],
+          {place.y * input_.log.width + place.x, static_cast<std::uint32_t>(word - words.data())});
+    }
     watch(node, NodeState::working, to, place);
     if (input_.observer != nullptr) {
       const std::int64_t all = statistics_[node].references.all_misses();
@@ -85,26 +94,37 @@ class FlowNodesBase : public FlowNodes {
     }
   }
 
-  // Sends a ray to another node; returns its time of arrival.
-  sim::Ticks send_ray(std::uint32_t from, std::uint32_t to, sim::Ticks now) {
+  // Sends ray number `ray` to another node; returns its time of arrival. `aside`: it was set aside.
+  sim::Ticks send_ray(std::uint32_t from, std::uint32_t to, std::uint32_t ray, sim::Ticks now,
+                      bool aside = false) {
     const std::uint32_t bytes = input_.config.messages.ray_bytes;
     ++counts_[from].passed_on;
     counts_[from].bytes_sent += bytes;
-    return networks_[cluster_of(from)]->send(now, port_of(from), port_of(to), bytes).arrival;
+    const sim::Ticks arrival =
+        networks_[cluster_of(from)]->send(now, port_of(from), port_of(to), bytes).arrival;
+    tell_sent({ray, from, to, bytes, aside, now, arrival});
+    return arrival;
   }
   // Sends the host what a ray adds to its pixel.
   void send_contribution(std::uint32_t from, sim::Ticks now) {
     const std::uint32_t bytes = input_.config.messages.contribution_bytes;
     ++counts_[from].contributions;
     counts_[from].bytes_sent += bytes;
-    host_.collect(networks_[cluster_of(from)]->send(now, port_of(from), input_.config.nodes, bytes).arrival);
+    const sim::Ticks arrival =
+        networks_[cluster_of(from)]->send(now, port_of(from), input_.config.nodes, bytes).arrival;
+    tell_sent({RayMessage::none, from, 0, bytes, false, now, arrival});
+    host_.collect(arrival);
   }
-  // Sends a camera ray to a node; returns its time of arrival.
-  sim::Ticks send_camera_ray(std::uint32_t to, sim::Ticks now) {
-    return networks_[cluster_of(to)]
-        ->send(now, input_.config.nodes, port_of(to), input_.config.messages.ray_bytes)
-        .arrival;
+  // As send_ray(), for a camera ray.
+  sim::Ticks send_camera_ray(std::uint32_t to, std::uint32_t ray, sim::Ticks now, bool aside = false) {
+    const std::uint32_t bytes = input_.config.messages.ray_bytes;
+    const sim::Ticks arrival =
+        networks_[cluster_of(to)]->send(now, input_.config.nodes, port_of(to), bytes).arrival;
+    tell_sent({ray, host_link(cluster_of(to)), to, bytes, aside, now, arrival});
+    return arrival;
   }
+  // The host as a sender of rays to a cluster, for who asks for causes.
+  std::uint32_t host_link(std::uint32_t cluster) const { return input_.config.all_nodes() + cluster; }
 
   // Completes the node's time: adds what follows from counts, and the idle time after its `finish`.
   void finish_node(std::uint32_t node, const StepTicks& ticks) {
@@ -123,6 +143,12 @@ class FlowNodesBase : public FlowNodes {
   sim::Ticks end_ = 0;  // of the nodes' work so far
 
  private:
+  void tell_sent(const RayMessage& message) {
+    if (input_.causes != nullptr) {
+      input_.causes->sent(message);
+    }
+  }
+
   // One cluster's ports, with port numbers turned into node numbers. Pixels are kept by the host, so there
   // are no writes to memory.
   class Client final : public memory::InterconnectClient {

@@ -22,7 +22,7 @@ class DistributedCourse final : public MemoryCourse {
         ports_per_node_(config.ports_of_node()),
         access_(config_.clock.cycles(config_.access_cycles)),
         beat_(config_.clock.cycles(config_.cycles_per_beat)),
-        network_(make_network_course(config_.network, config.nodes, pieces)),
+        network_(make_network_course(config_.network, config.nodes, pieces, PathKind::transfer)),
         homes_(config.nodes),
         ports_(std::size_t{config.nodes} * ports_per_node_) {}
 

@@ -6,9 +6,9 @@
 
 #include "memory/arbitrated_bus.h"
 #include "memory/link.h"
-#include "memory/network.h"
 #include "processors/path/bank_courses.h"
 #include "processors/path/fifo.h"
+#include "processors/path/network_course.h"
 #include "processors/walk/second_level.h"
 #include "sim/error.h"
 
@@ -179,12 +179,12 @@ std::uint64_t course_bytes(const MachineConfig& config) {
   // An entry of a Fifo may take the place of four: half of them may be taken out, and its vector half full.
   constexpr std::uint64_t bytes_a_write = 4 * bytes_a_request;
   constexpr std::uint64_t bytes_a_port = 2 * bytes_a_request + bytes_a_write;
-  const std::uint64_t links = memory::network_bytes(config.network, config.nodes) / sizeof(Ticks);
-  const std::uint64_t places = config.placement == Placement::distributed
-                                   ? config.nodes + links
-                                   : 2 * std::uint64_t{banks_of(config).banks()};
+  const std::uint64_t bytes_a_cluster =
+      config.placement == Placement::distributed
+          ? config.nodes * sizeof(PathTip) + network_course_bytes(config.network, config.nodes)
+          : 2 * std::uint64_t{banks_of(config).banks()} * sizeof(PathTip);
   return config.all_nodes() * (config.ports_of_node() * bytes_a_port + config.write_buffer * bytes_a_write) +
-         config.clusters * places * sizeof(PathTip);
+         config.clusters * bytes_a_cluster;
 }
 
 }  // namespace marti::processors

@@ -13,15 +13,16 @@ using sim::Ticks;
 
 class IdealNetworkCourse final : public NetworkCourse {
  public:
-  IdealNetworkCourse(const NetworkConfig& config, PathPieces& pieces)
-      : pieces_(pieces), hop_(config.clock.cycles(config.hop_cycles)) {}
+  IdealNetworkCourse(const NetworkConfig& config, PathPieces& pieces, PathKind kind)
+      : pieces_(pieces), kind_(kind), hop_(config.clock.cycles(config.hop_cycles)) {}
   PathTip send(const PathTip& sent, std::uint32_t from, std::uint32_t to, std::uint32_t /*bytes*/,
                const PathOwner& owner) override {
-    return from == to ? sent : pieces_.append(sent, hop_, owner, PathKind::transfer);
+    return from == to ? sent : pieces_.append(sent, hop_, owner, kind_);
   }
 
  private:
   PathPieces& pieces_;
+  PathKind kind_;
   Ticks hop_;
 };
 
@@ -29,8 +30,9 @@ class IdealNetworkCourse final : public NetworkCourse {
 template <class Routes, bool holds_hop>
 class RoutedNetworkCourse final : public NetworkCourse {
  public:
-  RoutedNetworkCourse(const NetworkConfig& config, std::uint32_t nodes, PathPieces& pieces)
+  RoutedNetworkCourse(const NetworkConfig& config, std::uint32_t nodes, PathPieces& pieces, PathKind kind)
       : pieces_(pieces),
+        kind_(kind),
         hop_(config.clock.cycles(config.hop_cycles)),
         beat_(config.clock.cycles(config.cycles_per_beat)),
         width_(config.width),
@@ -47,14 +49,15 @@ class RoutedNetworkCourse final : public NetworkCourse {
     PathTip head = sent;
     routes_.route(from, to, [&](std::size_t link) {
       const PathTip before = later_of(head, links_[link]);
-      links_[link] = pieces_.append(before, held, owner, PathKind::transfer);
-      head = pieces_.append(before, hop_, owner, PathKind::transfer);
+      links_[link] = pieces_.append(before, held, owner, kind_);
+      head = pieces_.append(before, hop_, owner, kind_);
     });
-    return pieces_.append(head, data, owner, PathKind::transfer);
+    return pieces_.append(head, data, owner, kind_);
   }
 
  private:
   PathPieces& pieces_;
+  PathKind kind_;
   Ticks hop_;
   Ticks beat_;
   std::int64_t width_;
@@ -65,21 +68,26 @@ class RoutedNetworkCourse final : public NetworkCourse {
 }  // namespace
 
 std::unique_ptr<NetworkCourse> make_network_course(const NetworkConfig& config, std::uint32_t nodes,
-                                                   PathPieces& pieces) {
+                                                   PathPieces& pieces, PathKind kind) {
   using namespace memory;
   switch (config.kind) {
     case NetworkKind::ideal:
-      return std::make_unique<IdealNetworkCourse>(config, pieces);
+      return std::make_unique<IdealNetworkCourse>(config, pieces, kind);
     case NetworkKind::bus:
-      return std::make_unique<RoutedNetworkCourse<BusRoutes, true>>(config, nodes, pieces);
+      return std::make_unique<RoutedNetworkCourse<BusRoutes, true>>(config, nodes, pieces, kind);
     case NetworkKind::crossbar:
-      return std::make_unique<RoutedNetworkCourse<CrossbarRoutes, false>>(config, nodes, pieces);
+      return std::make_unique<RoutedNetworkCourse<CrossbarRoutes, false>>(config, nodes, pieces, kind);
     case NetworkKind::hypercube:
-      return std::make_unique<RoutedNetworkCourse<WithHost<HypercubeRoutes>, false>>(config, nodes, pieces);
+      return std::make_unique<RoutedNetworkCourse<WithHost<HypercubeRoutes>, false>>(config, nodes, pieces,
+                                                                                     kind);
     case NetworkKind::mesh:
       break;
   }
-  return std::make_unique<RoutedNetworkCourse<WithHost<MeshRoutes>, false>>(config, nodes, pieces);
+  return std::make_unique<RoutedNetworkCourse<WithHost<MeshRoutes>, false>>(config, nodes, pieces, kind);
+}
+
+std::uint64_t network_course_bytes(const NetworkConfig& config, std::uint32_t nodes) {
+  return memory::network_bytes(config, nodes) / sizeof(Ticks) * sizeof(PathTip);
 }
 
 }  // namespace marti::processors

@@ -19,8 +19,11 @@ class NetworkCourse {
                        const PathOwner& owner) = 0;
 };
 
-/// The course of memory::make_network's network.
+/// The course of memory::make_network's network. What its links do are pieces of `kind`.
 [[nodiscard]] std::unique_ptr<NetworkCourse> make_network_course(const memory::NetworkConfig& config,
-                                                                 std::uint32_t nodes, PathPieces& pieces);
+                                                                 std::uint32_t nodes, PathPieces& pieces,
+                                                                 PathKind kind);
+/// At most so many bytes of the host are taken by such a course, without pieces.
+[[nodiscard]] std::uint64_t network_course_bytes(const memory::NetworkConfig& config, std::uint32_t nodes);
 
 }  // namespace marti::processors

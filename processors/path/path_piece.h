@@ -21,14 +21,15 @@ enum class PathKind : std::uint8_t {
   messaging,
   own_memory,    ///< a node's reads and writes of a memory that no other node uses
   transfer,      ///< over the bus, crossbar, ideal interconnect or network, and the beats of a home's memory
+  network,       ///< a ray, or what it adds to its pixel, on its way between nodes or to or from the host
   shared_cache,  ///< hits in the cache before the banks
   bank_access,   ///< a bank or a home's memory at work for an access, until it can begin the next one
-  dispatch,      ///< the host at work for a node's request
+  dispatch,      ///< the host at work for a node's request, or until it can send the next camera ray
 };
-inline constexpr std::size_t path_kinds = 12;
+inline constexpr std::size_t path_kinds = 13;
 inline constexpr std::array<std::string_view, path_kinds> path_kind_names = {
-    "traversal", "intersection", "shading",  "building",     "cache_access", "switching",
-    "messaging", "own_memory",   "transfer", "shared_cache", "bank_access",  "dispatch"};
+    "traversal",  "intersection", "shading", "building",     "cache_access", "switching", "messaging",
+    "own_memory", "transfer",     "network", "shared_cache", "bank_access",  "dispatch"};
 /// Whether a node does this by itself.
 [[nodiscard]] constexpr bool is_own_work(PathKind kind) { return kind <= PathKind::own_memory; }
 

@@ -23,12 +23,6 @@ sim::Ticks of_memory(const TimeDivision& time) {
 }  // namespace
 
 void check_critical_path(const MachineConfig& config) {
-  if (config.scheme != Scheme::image) {
-    throw sim::KeyError(
-        key,
-        "it is recorded with machine.scheme = \"image\" only: where rays move, a node waits for other "
-        "nodes' rays, and which ray it was that it waited for is not recorded");
-  }
   if (config.banks.dram && config.banks.dram->policy == memory::DramPolicy::frfcfs) {
     throw sim::KeyError(key,
                         "with dram.policy = \"frfcfs\" an access waits for whatever is chosen before it, "
@@ -42,7 +36,8 @@ void PathRecorder::begin(const ReplayInput& input) {
   sim::ensure(input.causes == this && input.stripped == nullptr && input.sample == nullptr,
               "a critical path is recorded of whole frames only, step by step");
   builds_ = input.tree != nullptr;
-  asks_host_ = config.host.assignment == Assignment::dynamic;
+  const bool rays_move = config.scheme != Scheme::image;
+  asks_host_ = !rays_move && config.host.assignment == Assignment::dynamic;
   contexts_ = config.contexts;
   ports_ = config.ports_of_node();
   write_buffer_ = config.write_buffer;
@@ -59,6 +54,9 @@ void PathRecorder::begin(const ReplayInput& input) {
   due_.resize(nodes * ports_);
   writes_.resize(nodes * write_buffer_);
   releases_.resize(nodes * workers);
+  if (rays_move) {
+    rays_.emplace(config, pieces_);
+  }
 }
 
 void PathRecorder::worked(std::uint32_t node, const NodeStatistics& statistics, LogPlace place) {
@@ -185,7 +183,57 @@ PathRequest PathRecorder::request(std::uint32_t port, const memory::Transaction&
   return {transaction, tip, {node, write ? LogPlace{} : nodes_[node].place}, write};
 }
 
-void PathRecorder::read_done(std::uint32_t port, PathTip done) { due_[port] = std::move(done); }
+void PathRecorder::sent_camera_ray(std::uint32_t cluster, std::uint32_t to, sim::Ticks now) {
+  rays_->send_camera_ray(cluster, to, now);
+}
+
+const PathTip& PathRecorder::sending(std::uint32_t sender, sim::Ticks now) {
+  return rays_->is_host(sender) ? rays_->sending(sender) : tip_at(sender, now);
+}
+
+void PathRecorder::set_aside(std::uint32_t ray, std::uint32_t sender, sim::Ticks now) {
+  rays_->ray(ray) = sending(sender, now);
+}
+
+void PathRecorder::sent(const RayMessage& message) {
+  if (message.ray == RayMessage::none) {
+    (void)rays_->send(sending(message.sender, message.sent), message);
+    return;
+  }
+  PathTip& ray = rays_->ray(message.ray);
+  if (!message.was_set_aside) {
+    ray = sending(message.sender, message.sent);
+  } else if (ray.end() != message.sent) {
+    ray = tip_at(message.to, message.sent);
+  }
+  ray = rays_->send(ray, message);
+}
+
+void PathRecorder::took(std::uint32_t node, std::uint32_t ray, sim::Ticks now) {
+  go_on(node, std::exchange(rays_->ray(ray), {}), now);
+}
+
+void PathRecorder::let_go(std::uint32_t waiter, std::uint32_t by, sim::Ticks now) {
+  const PathTip& freed = tip_at(by, now);
+  if (rays_->is_host(waiter)) {
+    rays_->let_go(waiter, freed, now);
+  } else {
+    go_on(waiter, freed, now);
+  }
+}
+
+void PathRecorder::go_on(std::uint32_t node, const PathTip& cause, sim::Ticks now) {
+  Node& n = nodes_[node];
+  if (n.tip.end() != now) {
+    sim::ensure(cause.end() == now, "a node's wait for a ray or slot has ended for no known cause");
+    n.tip = cause;
+  }
+}
+
+void PathRecorder::read_done(std::uint32_t port, PathTip done) {
+  // Where rays move a node waits for the read that it has asked for last, and does nothing else.
+  (rays_ ? nodes_[port].tip : due_[port]) = std::move(done);
+}
 
 void PathRecorder::write_done(std::uint32_t port, PathTip done) {
   const auto node = static_cast<std::uint32_t>(port / ports_);
@@ -205,7 +253,9 @@ PathTip PathRecorder::first_that_ends_at(sim::Ticks time) const {
       return *tip;
     }
   }
-  throw sim::InternalError("nothing is known to end at the end of the frame");
+  sim::ensure(rays_ && rays_->last_contribution().end() == time,
+              "nothing is known to end at the end of the frame");
+  return rays_->last_contribution();
 }
 
 void PathRecorder::end(sim::Ticks time) {
@@ -213,6 +263,7 @@ void PathRecorder::end(sim::Ticks time) {
   path_ = add_up(pieces_, last_, static_cast<std::uint32_t>(nodes_.size()), *levels_);
   levels_.reset();
   host_ = {};
+  rays_.reset();
   for (std::vector<PathTip>* const tips : {&due_, &writes_, &releases_}) {
     tips->clear();
   }

@@ -1,5 +1,4 @@
-// Records the critical path of a frame of the image scheme while a replay is observed (docs/model.md, The
-// critical path).
+// Records the critical path of a frame while a replay is observed (docs/model.md, The critical path).
 #pragma once
 
 #include <array>
@@ -11,6 +10,7 @@
 #include "processors/path/critical_path.h"
 #include "processors/path/memory_course.h"
 #include "processors/path/path_pieces.h"
+#include "processors/path/ray_courses.h"
 #include "processors/walk/cause_observer.h"
 #include "processors/walk/observer.h"
 
@@ -36,6 +36,11 @@ class PathRecorder final : public Observer, public CauseObserver {
   void wait_ended(std::uint32_t node, std::uint32_t context, std::uint32_t slot) override;
   void began_frame(sim::Ticks start_up) override;
   void published(std::uint32_t builder, std::uint32_t waiter) override;
+  void sent_camera_ray(std::uint32_t cluster, std::uint32_t to, sim::Ticks now) override;
+  void set_aside(std::uint32_t ray, std::uint32_t sender, sim::Ticks now) override;
+  void sent(const RayMessage& message) override;
+  void took(std::uint32_t node, std::uint32_t ray, sim::Ticks now) override;
+  void let_go(std::uint32_t waiter, std::uint32_t by, sim::Ticks now) override;
 
   /// A transaction that a port, numbered through all clusters, asks for at `now`.
   [[nodiscard]] PathRequest request(std::uint32_t port, const memory::Transaction& transaction, bool write,
@@ -76,8 +81,12 @@ class PathRecorder final : public Observer, public CauseObserver {
   // The chain of what ended the node's last wait.
   [[nodiscard]] const PathTip& end_of_wait(std::uint32_t node) const;
   void add_work(std::uint32_t node, sim::Ticks from, sim::Ticks to);
+  // The chain of a node or of the host, up to `now`, at which it sends a ray or sets it aside.
+  const PathTip& sending(std::uint32_t sender, sim::Ticks now);
+  // The node goes on at `now`. If it has waited, that ended with `cause`.
+  void go_on(std::uint32_t node, const PathTip& cause, sim::Ticks now);
   // The first chain that ends at `time`: a node's work, then a write, then a read that no node waits for; of
-  // these that of the lowest node.
+  // these that of the lowest node. Where rays move: a node's work, then a contribution.
   [[nodiscard]] PathTip first_that_ends_at(sim::Ticks time) const;
   [[nodiscard]] std::size_t entry_of(std::uint32_t node, std::uint64_t write) const {
     return node * write_buffer_ + write % write_buffer_;
@@ -94,10 +103,11 @@ class PathRecorder final : public Observer, public CauseObserver {
   sim::Ticks host_occupancy_ = 0;
   std::optional<LogLevels> levels_;  // during the replay
   std::vector<Node> nodes_;
-  std::vector<PathTip> due_;       // by port: the last read or prefetch, or grant of a packet to a context
-  std::vector<PathTip> writes_;    // node by node: the writes in its write buffer
-  std::vector<PathTip> releases_;  // by worker: the write that published the branch it waited for last
-  PathTip host_;                   // the request that the host has served last
+  std::vector<PathTip> due_;        // by port: the last read or prefetch, or grant of a packet to a context
+  std::vector<PathTip> writes_;     // node by node: the writes in its write buffer
+  std::vector<PathTip> releases_;   // by worker: the write that published the branch it waited for last
+  PathTip host_;                    // the request that the host has served last
+  std::optional<RayCourses> rays_;  // where rays move, during the replay
   PathTip last_;
   CriticalPath path_;
 };

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "processors/path/path_recorder.h"
 #include "processors/replay/bounds.h"
 #include "processors/replay/replay_parts.h"
 #include "processors/walk/observer.h"
@@ -25,6 +26,9 @@ MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const
   std::vector<std::unique_ptr<memory::Network>> networks;
   ReplayInput input{log, config, layout, packets, rank, options.step_by_step};
   input.observer = options.observer;
+  input.causes = options.path;
+  sim::ensure(options.path == nullptr || options.observer != nullptr,
+              "a critical path is recorded of replays that are observed");
   if (input.observer != nullptr) {
     input.observer->begin(input);
   }
@@ -35,7 +39,7 @@ MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const
   }
   const std::unique_ptr<FlowNodes> nodes = make(parts);
   const Interconnects interconnects =
-      connect_memory(config, engine, static_cast<std::uint8_t>(FlowEvent::memory), *nodes);
+      connect_memory(config, engine, static_cast<std::uint8_t>(FlowEvent::memory), *nodes, options.path);
   for (const FlowEvent c : {FlowEvent::step, FlowEvent::reply, FlowEvent::read, FlowEvent::done,
                             FlowEvent::wake, FlowEvent::admit, FlowEvent::memory}) {
     engine.attach(static_cast<std::uint8_t>(c), *nodes);

@@ -74,10 +74,9 @@ FlowFigures flow_figures(const MachineConfig& machine, const MachineResult& resu
   for (std::size_t node = 0; node < result.nodes.size(); ++node) {
     add_node(result, node, figures.all);
     if (pipeline) {
-      const std::size_t port = node % machine.nodes;
-      const processors::PipelineConfig& split = machine.pipeline;
-      const std::size_t stage = port < split.search ? 0 : (port < split.search + split.nearest ? 1 : 2);
-      add_node(result, node, figures.stages[stage]);
+      const auto port = static_cast<std::uint32_t>(node % machine.nodes);
+      const processors::Stage stage = processors::stage_of_node(machine.pipeline, port);
+      add_node(result, node, figures.stages[static_cast<std::size_t>(stage)]);
     }
   }
   divide(figures.all);

@@ -25,8 +25,8 @@ void declare_record_keys(sim::Schema& schema) {
       "waits");
   schema.boolean(
       "record.critical_path", false,
-      "find the chain of computing, transfers, bank accesses and dispatches that sets the end of the "
-      "frame (docs/model.md); image scheme only");
+      "find the chain of computing, transfers, messages, bank accesses and dispatches that sets the end of "
+      "the frame (docs/model.md)");
 }
 
 RecordConfig read_record(sim::Config& config, bool has_directory) {

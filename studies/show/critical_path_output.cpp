@@ -6,7 +6,9 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <vector>
 
+#include "processors/flow/pipeline/stages.h"
 #include "sim/error.h"
 #include "studies/tables/text_units.h"
 
@@ -29,6 +31,31 @@ sim::Ticks own_work(const CriticalPath& path) {
   return own;
 }
 
+// Of a pipeline: the time on the path of the nodes of each stage; else none.
+std::vector<sim::Ticks> of_stages(const RunResult& result) {
+  const processors::MachineConfig& machine = result.machine;
+  if (machine.scheme != processors::Scheme::pipeline) {
+    return {};
+  }
+  std::vector<sim::Ticks> stages(processors::pipeline_stages);
+  for (std::size_t node = 0; node < result.critical_path->nodes.size(); ++node) {
+    const auto port = static_cast<std::uint32_t>(node % machine.nodes);
+    stages[static_cast<std::size_t>(processors::stage_of_node(machine.pipeline, port))] +=
+        result.critical_path->nodes[node];
+  }
+  return stages;
+}
+
+std::string stages_line(const RunResult& result) {
+  const std::vector<sim::Ticks> stages = of_stages(result);
+  std::string text;
+  for (std::size_t stage = 0; stage < stages.size(); ++stage) {
+    text += fmt::format("{}{} {}", stage == 0 ? "" : ", ", processors::stage_names[stage],
+                        share(stages[stage], result.critical_path->end));
+  }
+  return text.empty() ? text : fmt::format("  {:<12}{}\n", "by stage", text);
+}
+
 }  // namespace
 
 void add_critical_path(const RunResult& result, bool nodes, Json& machine) {
@@ -43,12 +70,14 @@ void add_critical_path(const RunResult& result, bool nodes, Json& machine) {
   for (std::size_t kind = 0; kind < processors::path_kinds; ++kind) {
     time[std::string(processors::path_kind_names[kind])] = path.time[kind];
   }
+  const std::vector<sim::Ticks> stages = of_stages(result);
   Json levels = Json::array();
   for (const processors::PathLevel& level : path.levels) {
     levels.push_back({{"traversal_ps", level.traversal}, {"reads_ps", level.reads}});
   }
   machine["critical_path"] = {{"time_ps", time},
                               {"nodes_ps", nodes ? Json(path.nodes) : Json(nullptr)},
+                              {"stages_ps", stages.empty() ? Json(nullptr) : Json(stages)},
                               {"levels", levels},
                               {"pieces", path.pieces},
                               {"node_changes", path.node_changes}};
@@ -74,9 +103,11 @@ std::string critical_path_lines(const RunResult& result) {
   return fmt::format(
       "\ncritical path {} pieces, {} of it work of single nodes, from node to node {} times\n"
       "  {:<12}{}\n"
-      "  {:<12}node {}, {}\n",
+      "  {:<12}node {}, {}\n"
+      "{}",
       grouped(path.pieces), share(own_work(path), path.end), grouped(path.node_changes), "largest",
-      largest.empty() ? "none" : largest, "most for", most - path.nodes.begin(), share(*most, path.end));
+      largest.empty() ? "none" : largest, "most for", most - path.nodes.begin(), share(*most, path.end),
+      stages_line(result));
 }
 
 }  // namespace marti::studies

@@ -54,7 +54,7 @@ TEST(MachineCommand, MoreNodesOfItsSlowestStageHelpAPipeline) {
       machine_with(" --set pipeline.search=12 --set pipeline.nearest=3 --set pipeline.shade=1");
   const nlohmann::json& helps = few["machine"]["what_helps"];
   EXPECT_EQ(helps["resources"][0]["resource"], "pipeline.nearest");
-  EXPECT_EQ(helps["resources"][0]["step"]["keys"]["pipeline.nearest"]["to"], "4");
+  EXPECT_EQ(helps["resources"][0]["step"]["keys"]["pipeline.nearest"]["to"], 4);
   EXPECT_TRUE(
       helps["sentence"].get<std::string>().starts_with("machine.nodes 16 -> 17, pipeline.nearest 3 -> 4"))
       << helps["sentence"];

@@ -19,6 +19,7 @@
 #include "tests/support/logged_samples.h"
 #include "tests/support/naive_caches.h"
 #include "tests/support/naive_counts.h"
+#include "tests/support/naive_flow_path.h"
 #include "tests/support/naive_program.h"
 
 namespace marti::test {
@@ -72,6 +73,7 @@ class NaivePipeline {
   }
 
   std::vector<Node> nodes;
+  NaiveFlowPath path;
   sim::Ticks end = 0;
   std::uint32_t most_in_flight_seen = 0;
   [[nodiscard]] const memory::NetworkStatistics& network() const { return network_->statistics(); }
@@ -87,6 +89,8 @@ class NaivePipeline {
     std::uint32_t number = 0;
     const std::uint32_t* word = nullptr;
     sim::Ticks arrival = 0;
+    std::uint32_t sender = 0;
+    NaivePiece message{};
     bool record_read = false;
     bool lit = false;
     [[nodiscard]] const processors::LoggedRay& logged() const { return (*tree)[number]; }
@@ -201,12 +205,15 @@ class NaivePipeline {
   void on_done(std::uint32_t who) {
     State& state = states_[who];
     switch (state.doing) {
-      case Doing::contributing:
+      case Doing::contributing: {
         ++nodes[who].counts.contributions;
-        end = std::max(
-            end, network_->send(now_, who, machine_.nodes, machine_.messages.contribution_bytes).arrival);
+        const sim::Ticks arrival =
+            network_->send(now_, who, machine_.nodes, machine_.messages.contribution_bytes).arrival;
+        path.contributed(who, now_, arrival);
+        end = std::max(end, arrival);
         end_ray(who);
         return;
+      }
       case Doing::ending:
         end_ray(who);
         return;
@@ -227,7 +234,7 @@ class NaivePipeline {
     }
     ++nodes[who].counts.passed_on;
     deliver(*state.ray, state.target,
-            network_->send(now_, who, state.target, machine_.messages.ray_bytes).arrival);
+            network_->send(now_, who, state.target, machine_.messages.ray_bytes).arrival, who);
     free(who);
   }
 
@@ -243,7 +250,7 @@ class NaivePipeline {
     nodes[who].counts.made += static_cast<std::int64_t>(children.size());
     if (children.empty()) {
       --in_flight_;
-      share_out();
+      share_out(who);
       free(who);
       return;
     }
@@ -256,7 +263,8 @@ class NaivePipeline {
         std::max(nodes[who].counts.most_set_aside, static_cast<std::int64_t>(state.aside.size()));
     send_next(who, Stage::search);
     post(now_ + send_, done, who);
-    share_out();
+    path.worked(who, {now_, now_ + send_, who});
+    share_out(who);
   }
 
   void free(std::uint32_t who) {
@@ -264,6 +272,7 @@ class NaivePipeline {
     states_[who].doing = Doing::nothing;
     states_[who].since = now_;
     nodes[who].finish = now_;
+    path.finished(who, now_);
     end = std::max(end, now_);
     look(who);
   }
@@ -281,6 +290,7 @@ class NaivePipeline {
       state.aside.pop_back();
       send_next(who, Stage::search);
       post(now_ + send_, done, who);
+      path.worked(who, {now_, now_ + send_, who});
       return;
     }
     if (state.queue.empty()) {
@@ -294,12 +304,14 @@ class NaivePipeline {
     state.ray = state.queue.front();
     state.queue.pop_front();
     --state.slots;
+    path.took(who, state.ray->sender, state.ray->message);
     ++node.counts.taken;
     node.counts.queued += now_ - state.ray->arrival;
     if (auto& waiting = waiting_[static_cast<std::size_t>(state.stage)]; !waiting.empty()) {
       const std::uint32_t first = waiting.front();
       waiting.pop_front();
       ++state.slots;
+      path.let_go(first, who, now_);
       if (first == machine_.nodes) {
         host_target_ = who;
         post(now_, admit, 0);
@@ -330,6 +342,7 @@ class NaivePipeline {
       state.doing = Doing::ending;
     }
     post(at, done, who);
+    path.worked(who, {now_, at, who});
   }
 
   std::optional<std::uint32_t> choose(Stage stage) const {
@@ -349,8 +362,10 @@ class NaivePipeline {
     nodes[who].counts.longest_queue =
         std::max(nodes[who].counts.longest_queue, std::int64_t{++states_[who].slots});
   }
-  void deliver(Ray ray, std::uint32_t who, sim::Ticks arrival) {
+  void deliver(Ray ray, std::uint32_t who, sim::Ticks arrival, std::uint32_t sender) {
     ray.arrival = arrival;
+    ray.sender = sender;
+    ray.message = {now_, arrival, sender == machine_.nodes ? who : sender, processors::PathKind::network};
     auto at = states_[who].queue.begin();
     while (at != states_[who].queue.end() && at->arrival <= arrival) {
       ++at;
@@ -361,15 +376,19 @@ class NaivePipeline {
 
   // ---- The host.
 
-  void share_out() {
+  void share_out(std::uint32_t by) {
     while (!requests_.empty() && in_flight_ < limit_) {
       enter();
       ++states_[requests_.front()].granted;
+      if (!states_[requests_.front()].ray) {
+        path.let_go(requests_.front(), by, now_);
+      }
       post(now_, wake, requests_.front());
       requests_.pop_front();
     }
     if (!host_busy_ && in_flight_ < limit_ && !cameras_.empty()) {
       host_busy_ = true;
+      path.let_go(machine_.nodes, by, now_);
       post(std::max(now_, host_ready_), admit, 0);
     }
   }
@@ -398,9 +417,15 @@ class NaivePipeline {
     host_busy_ = false;
   }
   void send_camera(std::uint32_t target) {
+    const std::uint32_t host = machine_.nodes;
+    if (!host_began_) {
+      path.worked(host, {0, host_ready_, target, processors::PathKind::dispatch});
+      host_began_ = true;
+    }
     host_ready_ = now_ + machine_.host.clock.cycles(machine_.host.occupancy_cycles);
-    deliver(cameras_.front(), target,
-            network_->send(now_, machine_.nodes, target, machine_.messages.ray_bytes).arrival);
+    path.worked(host, {now_, host_ready_, target, processors::PathKind::dispatch});
+    deliver(cameras_.front(), target, network_->send(now_, host, target, machine_.messages.ray_bytes).arrival,
+            host);
     cameras_.pop_front();
   }
 
@@ -421,6 +446,7 @@ class NaivePipeline {
   std::uint32_t limit_ = 0;
   std::uint32_t in_flight_ = 0;
   bool host_busy_ = false;
+  bool host_began_ = false;
   sim::Ticks now_ = 0;
 };
 

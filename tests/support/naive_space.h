@@ -20,6 +20,7 @@
 #include "tests/support/logged_samples.h"
 #include "tests/support/naive_caches.h"
 #include "tests/support/naive_counts.h"
+#include "tests/support/naive_flow_path.h"
 #include "tests/support/naive_program.h"
 
 namespace marti::test {
@@ -46,6 +47,8 @@ class NaiveSpace {
       cluster.ready_at = machine.host.clock.cycles(machine.host.latency_cycles);
     }
   }
+
+  NaiveFlowPath path;
 
   processors::MachineResult run() {
     for (std::uint32_t c = 0; c < machine_.clusters; ++c) {
@@ -83,6 +86,8 @@ class NaiveSpace {
     std::shared_ptr<std::vector<processors::LoggedRay>> tree;
     std::uint32_t number = 0;
     const std::uint32_t* word = nullptr;
+    std::uint32_t sender = 0;  // or who has freed a slot for it
+    NaivePiece message{};
     [[nodiscard]] const processors::LoggedRay& logged() const { return (*tree)[number]; }
     [[nodiscard]] bool over() const { return word == logged().end; }
     [[nodiscard]] bool contributes() const {
@@ -101,6 +106,7 @@ class NaiveSpace {
   struct Waiting {
     std::optional<std::uint32_t> from;  // std::nullopt: the host
     RayPointer ray;
+    sim::Ticks since = 0;
   };
   struct Node {
     std::deque<Queued> queue;
@@ -118,6 +124,7 @@ class NaiveSpace {
   struct Cluster {
     std::unique_ptr<memory::Network> network;
     sim::Ticks ready_at = 0;
+    bool began = false;  // has sent a ray
     std::int64_t in_flight = 0;
     std::deque<std::span<const std::uint32_t>> samples;  // of the packet it has drawn
   };
@@ -127,6 +134,7 @@ class NaiveSpace {
   }
   std::uint32_t base(std::uint32_t node) const { return node / machine_.nodes * machine_.nodes; }
   Cluster& cluster_of(std::uint32_t node) { return clusters_[node / machine_.nodes]; }
+  std::uint32_t host_of(std::uint32_t node) const { return machine_.all_nodes() + node / machine_.nodes; }
 
   std::optional<std::uint32_t> owner(const std::uint32_t* word) const {
     using processors::Step;
@@ -168,6 +176,7 @@ class NaiveSpace {
       const std::span<const std::uint32_t> words = cluster.samples.front();
       cluster.samples.pop_front();
       const sim::Ticks occupancy = machine_.host.clock.cycles(machine_.host.occupancy_cycles);
+      const sim::Ticks was_ready = cluster.ready_at;
       cluster.ready_at = now + occupancy;
       host_busy_ += occupancy;
       const auto ray = std::make_shared<Ray>();
@@ -180,7 +189,12 @@ class NaiveSpace {
         to = owner(w);
       }
       enter(cluster);
-      offer(std::nullopt, number * machine_.nodes + to.value_or(sent_ % machine_.nodes), ray, now);
+      const std::uint32_t target = number * machine_.nodes + to.value_or(sent_ % machine_.nodes);
+      if (!std::exchange(cluster.began, true)) {
+        path.worked(host_of(target), {0, was_ready, target, processors::PathKind::dispatch});
+      }
+      path.worked(host_of(target), {now, cluster.ready_at, target, processors::PathKind::dispatch});
+      offer(std::nullopt, target, ray, now);
       ++sent_;
     }
   }
@@ -198,10 +212,11 @@ class NaiveSpace {
 
   void offer(std::optional<std::uint32_t> from, std::uint32_t to, const RayPointer& ray, sim::Ticks now) {
     if (nodes_[to].slots < machine_.space.queue) {
+      ray->sender = from.value_or(host_of(to));
       send(from, to, ray, now);
       return;
     }
-    nodes_[to].waiting.push_back({from, ray});
+    nodes_[to].waiting.push_back({from, ray, now});
     if (from) {
       Node& sender = nodes_[*from];
       sender.counts.most_set_aside = std::max(sender.counts.most_set_aside, ++sender.set_aside);
@@ -218,7 +233,9 @@ class NaiveSpace {
       ++nodes_[*from].counts.passed_on;
       nodes_[*from].counts.bytes_sent += bytes;
     }
-    post(cluster_of(to).network->send(now, port, to - base(to), bytes).arrival, arrive_class, to, ray);
+    const sim::Ticks arrival = cluster_of(to).network->send(now, port, to - base(to), bytes).arrival;
+    ray->message = {now, arrival, from.value_or(to), processors::PathKind::network};
+    post(arrival, arrive_class, to, ray);
   }
 
   // --- nodes ---
@@ -234,6 +251,7 @@ class NaiveSpace {
     } else if (!node.queue.empty()) {
       node.current = node.queue.front().ray;
       node.counts.queued += now - node.queue.front().arrival;
+      path.took(number, node.current->sender, node.current->message);
       node.queue.pop_front();
       --node.slots;
       ++node.counts.taken;
@@ -247,6 +265,7 @@ class NaiveSpace {
         if (waited.from) {
           --nodes_[*waited.from].set_aside;
         }
+        waited.ray->sender = waited.since < now ? number : waited.from.value_or(host_of(number));
         send(waited.from, number, waited.ray, now);
       }
     } else {
@@ -266,12 +285,14 @@ class NaiveSpace {
       time += send;
     }
     post(time, done_class, number, {});
+    path.worked(number, {now, time, number});
   }
 
   void done(std::uint32_t number, sim::Ticks now) {
     Node& node = nodes_[number];
     const RayPointer ray = std::move(node.current);
     node.statistics.finish = now;
+    path.finished(number, now);
     node.free_at = now;
     if (!ray->over()) {
       offer(number, base(number) + owner(ray->word).value(), ray, now);
@@ -284,6 +305,7 @@ class NaiveSpace {
         node.counts.bytes_sent += bytes;
         const sim::Ticks arrival =
             cluster.network->send(now, number - base(number), machine_.nodes, bytes).arrival;
+        path.contributed(number, now, arrival);
         last_arrival_ = std::max(last_arrival_, arrival);
       }
       --cluster.in_flight;
@@ -295,6 +317,9 @@ class NaiveSpace {
         ++node.counts.made;
       }
       node.made.insert(node.made.end(), children.rbegin(), children.rend());
+      if (cluster.in_flight < processors::admission_limit(machine_)) {
+        path.let_go(host_of(number), number, now);
+      }
       post(now, admit_class, number / machine_.nodes, {});
     }
     look(number, now);

@@ -101,7 +101,7 @@ void PipelineCore::done(std::uint32_t node, sim::Ticks now) {
   if (at.phase == Phase::granted) {
     watch(node, NodeState::queue_full_wait, now, place_of(node));
   } else {
-    watch_work(node, now, place_of(node));
+    watch_ray(node, now, ray_of(node).word);
   }
   switch (at.phase) {
     case Phase::contributing:
@@ -139,7 +139,7 @@ void PipelineCore::done(std::uint32_t node, sim::Ticks now) {
 // Sends the node's ray to its target, where a slot is reserved for it.
 void PipelineCore::dispatch(std::uint32_t node, sim::Ticks now) {
   Node& at = nodes_[node];
-  put(at.ray, at.target, send_ray(node, at.target, now));
+  put(at.ray, at.target, send_ray(node, at.target, at.ray, now));
   at.ray = none;
   next_work(node, now);
 }
@@ -154,9 +154,8 @@ void PipelineCore::end_ray(std::uint32_t node, sim::Ticks now) {
     trees_.end_ray(tree);
     rays_.give_back(nodes_[node].ray);
     nodes_[node].ray = none;
-    const std::uint32_t cluster = cluster_of(node);
-    host_.leave(cluster);
-    give_credits(cluster, now);
+    host_.leave(cluster_of(node));
+    give_credits(node, now);
     next_work(node, now);
     return;
   }
@@ -178,9 +177,9 @@ void PipelineCore::end_ray(std::uint32_t node, sim::Ticks now) {
   start_ray(ray, tree, first);
   compose(node, stage_of(ray.word), now);
   if (more != 0) {
-    const std::uint32_t cluster = cluster_of(node);
-    clusters_[cluster].requests.insert(clusters_[cluster].requests.end(), more, node);
-    give_credits(cluster, now);
+    std::deque<std::uint32_t>& requests = clusters_[cluster_of(node)].requests;
+    requests.insert(requests.end(), more, node);
+    give_credits(node, now);
   }
 }
 
@@ -233,6 +232,9 @@ void PipelineCore::take(std::uint32_t node, sim::Ticks now) {
   spend(node, Activity::message_wait, now - at.since);
   watch(node, NodeState::message_wait, now);
   at.ray = at.queue.pop(rays_);
+  if (input_.causes != nullptr) {
+    input_.causes->took(node, at.ray, now);
+  }
   FlowRay& ray = rays_[at.ray];
   FlowCounts& counts = counts_[node];
   ++counts.taken;
@@ -267,8 +269,9 @@ void PipelineCore::post_wake(std::uint32_t node, sim::Ticks time) {
 
 // ---- Credits: how many rays may be in flight.
 
-// Rays set aside get credits before new camera rays.
-void PipelineCore::give_credits(std::uint32_t cluster, sim::Ticks now) {
+// Rays set aside get credits before new camera rays. Node `by` has ended a ray or asks for credits.
+void PipelineCore::give_credits(std::uint32_t by, sim::Ticks now) {
+  const std::uint32_t cluster = cluster_of(by);
   Cluster& at = clusters_[cluster];
   while (!at.requests.empty() && host_.has_credit(cluster)) {
     const std::uint32_t node = at.requests.front();
@@ -276,11 +279,13 @@ void PipelineCore::give_credits(std::uint32_t cluster, sim::Ticks now) {
     host_.enter(cluster);
     ++nodes_[node].granted;
     if (nodes_[node].phase == Phase::idle) {
+      tell_let_go(node, by, now);
       post_wake(node, now);
     }
   }
   if (at.host == Phase::idle && host_.has_credit(cluster) && host_.has_ray(cluster)) {
     at.host = Phase::sending;
+    tell_let_go(host_link(cluster), by, now);
     post(FlowEvent::admit, std::max(now, host_.ready_at(cluster)), cluster);
   }
 }
@@ -315,7 +320,10 @@ void PipelineCore::admit(std::uint32_t cluster, sim::Ticks now) {
 void PipelineCore::send_from_host(std::uint32_t cluster, std::uint32_t target, sim::Ticks now) {
   const std::uint32_t ray = rays_.take();
   start_ray(rays_[ray], trees_.open(host_.send(cluster, now)), 0);
-  put(ray, target, send_camera_ray(target, now));
+  if (input_.causes != nullptr) {
+    input_.causes->sent_camera_ray(cluster, target, now);
+  }
+  put(ray, target, send_camera_ray(target, ray, now));
 }
 
 // ---- Slots of the queues.
@@ -376,6 +384,7 @@ void PipelineCore::give_slot(std::uint32_t node, sim::Ticks now) {
   }
   state.first_waiter = next_waiter_of(waiter);
   ++nodes_[node].queue.count;
+  tell_let_go(waiter, node, now);  // the host's links are numbered alike
   const std::uint32_t nodes = input_.config.all_nodes();
   if (waiter < nodes) {
     nodes_[waiter].phase = Phase::granted;
@@ -385,6 +394,12 @@ void PipelineCore::give_slot(std::uint32_t node, sim::Ticks now) {
     clusters_[waiter - nodes].host = Phase::granted;
     clusters_[waiter - nodes].target = node;
     post(FlowEvent::admit, now, waiter - nodes);
+  }
+}
+
+void PipelineCore::tell_let_go(std::uint32_t waiter, std::uint32_t by, sim::Ticks now) const {
+  if (input_.causes != nullptr) {
+    input_.causes->let_go(waiter, by, now);
   }
 }
 

@@ -58,6 +58,10 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
   [[nodiscard]] const LoggedRay& logged(const FlowRay& ray) const { return trees_.ray(ray.tree, ray.number); }
   /// The pixel that the ray in service is for.
   [[nodiscard]] PixelPlace place_of(std::uint32_t node) { return trees_.place(ray_of(node).tree); }
+  /// Tells of the node's work up to `to` for its ray, which has come to `word`.
+  void watch_ray(std::uint32_t node, sim::Ticks to, const std::uint32_t* word) {
+    watch_work(node, to, place_of(node), word + (ray_of(node).record_read ? step_words(word) : 0));
+  }
 
   sim::LargeVector<Node> nodes_;
 
@@ -97,10 +101,11 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
   void next_work(std::uint32_t node, sim::Ticks now);
   void take(std::uint32_t node, sim::Ticks now);
   void send_set_aside(std::uint32_t node, sim::Ticks now);
-  void give_credits(std::uint32_t cluster, sim::Ticks now);
+  void give_credits(std::uint32_t by, sim::Ticks now);
   std::uint32_t slot_of(std::uint32_t cluster, Stage stage);
   void wait_for_slot(std::uint32_t cluster, Stage stage, std::uint32_t waiter);
   void give_slot(std::uint32_t node, sim::Ticks now);
+  void tell_let_go(std::uint32_t waiter, std::uint32_t by, sim::Ticks now) const;
   void reserve(std::uint32_t node);
   void put(std::uint32_t ray, std::uint32_t node, sim::Ticks arrival);
   void send_from_host(std::uint32_t cluster, std::uint32_t target, sim::Ticks now);

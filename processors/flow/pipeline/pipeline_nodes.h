@@ -100,7 +100,7 @@ class PipelineNodes final : public PipelineCore {
 
   void read(std::uint32_t node) override {
     const Cursor& cursor = cursors_[node];
-    watch_work(node, cursor.time, place_of(node));
+    watch_ray(node, cursor.time, cursor.word);
     interconnect_of(node).read({port_of(node), walker_.missed_address(cursor), walker_.missed_bytes(cursor)});
   }
 

@@ -16,6 +16,13 @@ namespace marti::processors {
 enum class Stage : std::uint8_t { search, nearest, shade };
 inline constexpr std::array<std::string_view, pipeline_stages> stage_names = {"search", "nearest", "shade"};
 
+/// The stage of the node with that number in its cluster.
+[[nodiscard]] constexpr Stage stage_of_node(const PipelineConfig& pipeline, std::uint32_t number) {
+  return number < pipeline.search                      ? Stage::search
+         : number < pipeline.search + pipeline.nearest ? Stage::nearest
+                                                       : Stage::shade;
+}
+
 /// How many entries of a leaf's list the visit at `word` (a leaf, partial_leaf or mailed_leaf) reads.
 [[nodiscard]] inline std::uint32_t entries_read(const std::uint32_t* word, const accel::Topology& topology) {
   return step_of(*word) == Step::leaf ? topology.nodes[operand_of(*word)].count : word[1];

@@ -165,7 +165,11 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
       host_.enter(cluster);
       const std::uint32_t tree = trees_.open(host_.send(cluster, now));
       const std::uint32_t ray = new_ray(tree, 0);
-      send_or_set_aside(from_host, cluster * input_.config.nodes + first_owner(rays_[ray]), ray, now);
+      const std::uint32_t to = cluster * input_.config.nodes + first_owner(rays_[ray]);
+      if (input_.causes != nullptr) {
+        input_.causes->sent_camera_ray(cluster, to, now);
+      }
+      send_or_set_aside(from_host, to, ray, now);
     }
   }
 
@@ -196,8 +200,11 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
 
   void send_or_set_aside(std::uint32_t from, std::uint32_t to, std::uint32_t ray, sim::Ticks now) {
     if (nodes_[to].queue.count < slots_) {
-      send(from, to, ray, now);
+      send(from, to, ray, now, false);
       return;
+    }
+    if (input_.causes != nullptr) {
+      input_.causes->set_aside(ray, from == from_host ? Base::host_link(cluster_of(to)) : from, now);
     }
     rays_[ray].from = from;
     rays_[ray].arrival = now;  // so rays wait in the order in which they were set aside
@@ -209,11 +216,12 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     }
   }
 
-  // Takes a slot at `to` and sends the ray there.
-  void send(std::uint32_t from, std::uint32_t to, std::uint32_t ray, sim::Ticks now) {
+  // Takes a slot at `to` and sends the ray there. `aside`: it was set aside.
+  void send(std::uint32_t from, std::uint32_t to, std::uint32_t ray, sim::Ticks now, bool aside) {
     RayQueue& queue = nodes_[to].queue;
     counts_[to].longest_queue = std::max<std::int64_t>(counts_[to].longest_queue, ++queue.count);
-    rays_[ray].arrival = from == from_host ? Base::send_camera_ray(to, now) : Base::send_ray(from, to, now);
+    rays_[ray].arrival = from == from_host ? Base::send_camera_ray(to, ray, now, aside)
+                                           : Base::send_ray(from, to, ray, now, aside);
     queue.insert(rays_, ray);
     if (nodes_[to].current == RayPool::none) {
       wake_for_first(to);
@@ -260,6 +268,9 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   // Takes the first ray of the queue. Its slot goes to the ray that has waited longest for one.
   void take(std::uint32_t number, sim::Ticks now) {
     const std::uint32_t ray = nodes_[number].queue.pop(rays_);
+    if (input_.causes != nullptr) {
+      input_.causes->took(number, ray, now);
+    }
     FlowCounts& counts = counts_[number];
     ++counts.taken;
     counts.queued = sim::add_ticks(counts.queued, now - rays_[ray].arrival);
@@ -273,7 +284,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
       if (from != from_host) {
         --nodes_[from].set_aside;
       }
-      send(from, number, waited, now);
+      send(from, number, waited, now, true);
     }
     serve(number, ray);
   }
@@ -345,7 +356,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
 
   void done(std::uint32_t number, sim::Ticks now) {
     const std::uint32_t ray = std::exchange(nodes_[number].current, RayPool::none);
-    watch_work(number, now, trees_.place(rays_[ray].tree));
+    watch_work(number, now, trees_.place(rays_[ray].tree), cursors_[number].word);
     statistics_[number].finish = now;
     end_ = std::max(end_, now);
     rays_[ray].word = cursors_[number].word;
@@ -370,6 +381,9 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     make_rays(number, ray);
     trees_.end_ray(ray.tree);
     if (host_.has_credit(cluster)) {
+      if (input_.causes != nullptr) {
+        input_.causes->let_go(Base::host_link(cluster), number, now);
+      }
       ask_for_rays(cluster, now);
     }
   }

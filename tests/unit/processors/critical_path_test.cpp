@@ -15,7 +15,9 @@
 #include "processors/replay/replay.h"
 #include "sim/key_error.h"
 #include "tests/support/equal_results.h"
-#include "tests/support/random_machine.h"
+#include "tests/support/naive_pipeline.h"
+#include "tests/support/naive_space.h"
+#include "tests/support/random_flow.h"
 #include "tests/unit/processors/naive_path.h"
 
 namespace marti::processors {
@@ -34,7 +36,8 @@ class Watched final : public Observer {
     recorder_.spent(node, state, from, to, pixel);
     if (state == NodeState::working) {
       work.push_back({node, from, to});
-    } else if (state == NodeState::lock_wait || state == NodeState::dispatch_wait) {
+    } else if (state == NodeState::lock_wait || state == NodeState::dispatch_wait ||
+               state == NodeState::message_wait || state == NodeState::queue_full_wait) {
       let_go.emplace(node, to);
     }
   }
@@ -79,6 +82,21 @@ Case random_case(test::Random& random) {
   return c;
 }
 
+// A random machine in which rays move.
+Case random_flow(test::Random& random) {
+  Case c;
+  c.log = test::random_log_with_tree(random);
+  c.machine = test::random_machine(random, 8);
+  random() % 2 == 0 ? test::make_random_pipeline(random, c.machine)
+                    : test::make_random_space(random, c.machine);
+  test::add_random_second_level(random, c.machine);
+  if (c.machine.scheme == Scheme::space && c.machine.l2.sharing == SecondLevel::shared) {
+    c.machine.l2.sharing = SecondLevel::none;  // nothing is shared
+  }
+  c.machine.count.attribution = random() % 4 == 0;
+  return c;
+}
+
 // A random machine that prefetches into its caches from private second levels which take long to answer, so
 // that a prefetch may end the frame.
 Case slow_second_level(test::Random& random) {
@@ -116,10 +134,12 @@ bool every_transaction_takes_time(const MachineConfig& machine) {
 }
 
 TEST(CriticalPath, ItsPiecesFollowEachOtherFromZeroToTheEnd) {
-  for (std::uint64_t seed = 0; seed < 1800; ++seed) {
+  for (std::uint64_t seed = 0; seed < 1700; ++seed) {
     SCOPED_TRACE(seed);
     test::Random random(seed);
-    const Case c = seed < 1500 ? random_case(random) : slow_second_level(random);
+    const Case c = seed < 1000   ? random_case(random)
+                   : seed < 1200 ? slow_second_level(random)
+                                 : random_flow(random);
     PathRecorder recorder(unlimited, PathPieces::no_fold);
     Watched watched(recorder);
     const MachineResult result = replay(c.log, c.machine, {.observer = &watched, .path = &recorder});
@@ -198,6 +218,74 @@ TEST(CriticalPath, OfOneNodeOnAnIdealInterconnectIsHowItsTimeDivides) {
   }
 }
 
+TEST(CriticalPath, OfOneNodeWithAllOfSpaceIsHowItsTimeDivides) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    test::Random random(seed);
+    const WorkLog log = test::random_ray_trees(random, 6, 6, 12, 4);
+    MachineConfig machine = test::random_machine(random, 1);
+    test::make_random_space(random, machine);
+    machine.clusters = 1;
+    machine.nodes = 1;
+    machine.network.kind = memory::NetworkKind::ideal;
+    machine.host.occupancy_cycles = 0;
+    machine.space.queue = machine.space.in_flight = 1000;  // all rays arrive at once
+    PathRecorder recorder(unlimited, PathPieces::no_fold);
+    const MachineResult result = replay(log, machine, {.observer = &recorder, .path = &recorder});
+    const TimeDivision& time = result.nodes[0].time;
+    const auto spent = [&](Activity activity) { return time[static_cast<std::size_t>(activity)]; };
+    const CriticalPath& path = recorder.path();
+    for (std::size_t kind = 0; kind <= static_cast<std::size_t>(Activity::messaging); ++kind) {
+      EXPECT_EQ(path.time[kind], time[kind]) << activity_names[kind];
+    }
+    EXPECT_EQ(of(path, PathKind::own_memory), spent(Activity::transfer) + spent(Activity::bank_access));
+    EXPECT_EQ(of(path, PathKind::dispatch), machine.host.clock.cycles(machine.host.latency_cycles));
+    EXPECT_EQ(of(path, PathKind::dispatch) + of(path, PathKind::network),
+              spent(Activity::message_wait) + spent(Activity::idle));
+    ASSERT_FALSE(::testing::Test::HasFailure());
+  }
+}
+
+// A pipeline of 4, 1 and 4 nodes for which nothing is slow.
+MachineConfig pipeline_of_nine() {
+  MachineConfig machine;
+  machine.scheme = Scheme::pipeline;
+  machine.pipeline = {4, 1, 4, 8, 0};
+  machine.nodes = 9;
+  machine.placement = Placement::replicated;
+  machine.network.kind = memory::NetworkKind::ideal;
+  return machine;
+}
+
+TEST(CriticalPath, OfAPipelineIsItsSlowestStageOrTheHost) {
+  test::Random random(5);
+  const WorkLog log = test::random_ray_trees(random, 20, 20, 12, 3);
+  MachineConfig machine = pipeline_of_nine();
+  PathRecorder slow_stage(unlimited);
+  const MachineResult result = replay(log, machine, {.observer = &slow_stage, .path = &slow_stage});
+  EXPECT_GT(slow_stage.path().nodes[4], result.end - result.end / 50);
+
+  machine.host.occupancy_cycles = 1'000'000;
+  PathRecorder slow_host(unlimited);
+  const MachineResult waiting = replay(log, machine, {.observer = &slow_host, .path = &slow_host});
+  EXPECT_EQ(of(slow_host.path(), PathKind::dispatch),
+            machine.host.clock.cycles(machine.host.latency_cycles + 399 * machine.host.occupancy_cycles));
+  EXPECT_GT(of(slow_host.path(), PathKind::dispatch), waiting.end - waiting.end / 50);
+}
+
+TEST(CriticalPath, OfANetworkThatTakesNoTimeHasNoMessages) {
+  for (const std::int64_t hop : {0, 50}) {
+    test::Random random(6);
+    const WorkLog log = test::random_ray_trees(random, 8, 8, 12, 3);
+    MachineConfig machine = pipeline_of_nine();
+    machine.network.hop_cycles = hop;
+    machine.pipeline.in_flight = 1;  // so that each message is waited for
+    PathRecorder recorder(unlimited);
+    (void)replay(log, machine, {.observer = &recorder, .path = &recorder});
+    EXPECT_EQ(of(recorder.path(), PathKind::network) > 0, hop > 0);
+  }
+}
+
 TEST(CriticalPath, OfABusThatIsAlwaysBusyIsItsTransfers) {
   test::Random random(3);
   const WorkLog log = test::random_log(random, 24, 24);
@@ -214,6 +302,14 @@ TEST(CriticalPath, OfABusThatIsAlwaysBusyIsItsTransfers) {
   EXPECT_GT(recorder.path().node_changes, 1000);
 }
 
+// The path as the second models describe theirs.
+std::vector<test::NaivePiece> pieces_of(const PathRecorder& recorder) {
+  std::vector<test::NaivePiece> path;
+  recorder.each_from_the_end(
+      [&](const PathPiece& piece) { test::add_piece(path, test::naive_piece(piece)); });
+  return path;
+}
+
 TEST(CriticalPath, ASecondWayToFindItFindsTheSame) {
   for (std::uint64_t seed = 0; seed < 120; ++seed) {
     SCOPED_TRACE(seed);
@@ -224,13 +320,49 @@ TEST(CriticalPath, ASecondWayToFindItFindsTheSame) {
     PathRecorder recorder(unlimited, PathPieces::no_fold);
     test::NaivePath naive(recorder, machine);
     const MachineResult result = replay(log, machine, {.observer = &naive, .path = &recorder});
-    std::vector<test::NaivePiece> path;
-    recorder.each_from_the_end([&](const PathPiece& piece) {
-      test::add_piece(path, {piece.from, piece.to, piece.owner.node, piece.kind == PathKind::transfer});
-    });
-    EXPECT_EQ(path, naive.path(result.end));
+    EXPECT_EQ(pieces_of(recorder), naive.path(result.end));
     ASSERT_FALSE(::testing::Test::HasFailure());
   }
+}
+
+// Makes a random machine in which rays move one whose path the second models find: nothing that is shared
+// makes anyone wait but queues, credits and the host, and whatever is done takes time.
+void make_plain_flow(test::Random& random, MachineConfig& machine) {
+  machine.l2.sharing = SecondLevel::none;
+  machine.count = {};
+  machine.operations = {1, 1, 1, 1, 1, 1, 1, 1};
+  machine.messages.send_cycles = test::pick(random, 1, 4);
+  machine.messages.receive_cycles = test::pick(random, 1, 4);
+  machine.network.kind = memory::NetworkKind::ideal;
+  if (machine.cache.cache.replacement == memory::Replacement::random) {
+    machine.cache.cache.replacement = memory::Replacement::fifo;  // victims are drawn for each node anew
+  }
+  if (machine.scheme == Scheme::pipeline) {
+    machine.clusters = 1;
+    machine.placement = Placement::replicated;
+  }
+}
+
+TEST(CriticalPath, OfMovingRaysIsThatOfASecondModel) {
+  std::int64_t others = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    SCOPED_TRACE(seed);
+    test::Random random(seed);
+    Case c = random_flow(random);
+    make_plain_flow(random, c.machine);
+    PathRecorder recorder(unlimited, PathPieces::no_fold);
+    const MachineResult result = replay(c.log, c.machine, {.observer = &recorder, .path = &recorder});
+    if (c.machine.scheme == Scheme::pipeline) {
+      const test::NaivePipeline naive(c.log, c.machine);
+      ASSERT_EQ(pieces_of(recorder), naive.path.path(result.end));
+    } else {
+      test::NaiveSpace naive(c.log, c.machine);
+      (void)naive.run();
+      ASSERT_EQ(pieces_of(recorder), naive.path.path(result.end));
+    }
+    others += recorder.path().node_changes;
+  }
+  EXPECT_GT(others, 1000);
 }
 
 // A frame of one row whose pixels are one ray and one visit of the root each.
@@ -280,7 +412,7 @@ TEST(CriticalPath, FoldingPiecesChangesNoSum) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(seed);
     test::Random random(seed);
-    const Case c = random_case(random);
+    const Case c = seed % 3 == 0 ? random_flow(random) : random_case(random);
     PathRecorder whole(unlimited, PathPieces::no_fold);
     PathRecorder folded(unlimited, static_cast<std::uint32_t>(test::pick(random, 0, 200)));
     (void)replay(c.log, c.machine, {.observer = &whole, .path = &whole});
@@ -321,6 +453,23 @@ TEST(CriticalPath, WhatIsKeptDoesNotGrowWithTheFrame) {
   }
 }
 
+TEST(CriticalPath, WhatIsKeptOfMovingRaysDoesNotGrowWithTheFrame) {
+  for (const Scheme scheme : {Scheme::pipeline, Scheme::space}) {
+    std::uint64_t kept = 0;
+    for (const std::uint32_t size : {32U, 128U}) {
+      test::Random random(5);
+      const WorkLog log = test::random_ray_trees(random, size, size, 12, 3);
+      MachineConfig machine = pipeline_of_nine();
+      machine.scheme = scheme;
+      machine.space.in_flight = 20;
+      PathRecorder recorder(unlimited, 1000);
+      (void)replay(log, machine, {.observer = &recorder, .path = &recorder});
+      kept = size == 32 ? recorder.pieces().most_kept() : recorder.pieces().most_kept() - kept;
+    }
+    EXPECT_LT(kept, 200U);
+  }
+}
+
 TEST(CriticalPath, IsRefusedWhereItDoesNotFitOrIsNotDefined) {
   const WorkLog log = row_of_visits(4);
   MachineConfig machine;
@@ -339,7 +488,7 @@ TEST(CriticalPath, IsRefusedWhereItDoesNotFitOrIsNotDefined) {
   } catch (const sim::KeyError& error) {
     EXPECT_NE(std::string(error.what()).find("record.timeline"), std::string::npos) << error.what();
   }
-  machine.scheme = Scheme::pipeline;
+  machine.banks.dram.emplace().policy = memory::DramPolicy::frfcfs;
   EXPECT_THROW(check_critical_path(machine), sim::KeyError);
 }
 

@@ -13,6 +13,7 @@
 #include "processors/machine/machine_config.h"
 #include "processors/walk/observer.h"
 #include "sim/error.h"
+#include "tests/support/naive_flow_path.h"
 #include "tests/support/random_machine.h"
 
 namespace marti::test {
@@ -34,24 +35,6 @@ inline void make_plain(Random& random, processors::MachineConfig& machine) {
   machine.operations = {1, 1, 1, 1, 1, 1, 1, 1};  // no pixel is traced in no time
   machine.host.assignment =
       random() % 2 == 0 ? processors::Assignment::interleaved : processors::Assignment::blocks;
-}
-
-/// A stretch of the bus's or of a node's own work.
-struct NaivePiece {
-  sim::Ticks from = 0;
-  sim::Ticks to = 0;
-  std::uint32_t node = 0;
-  bool bus = false;
-  friend bool operator==(const NaivePiece&, const NaivePiece&) = default;
-};
-
-/// Adds a piece that ends where the last one begins; pieces of one kind and node become one.
-inline void add_piece(std::vector<NaivePiece>& path, const NaivePiece& piece) {
-  if (!path.empty() && path.back().node == piece.node && path.back().bus == piece.bus) {
-    path.back().from = piece.from;
-  } else {
-    path.push_back(piece);
-  }
 }
 
 class NaivePath final : public processors::Observer {
@@ -86,10 +69,10 @@ class NaivePath final : public processors::Observer {
       if (tenure) {
         node = tenure->node;
         at = tenure->start;
-        add_piece(path, {at, tenure->end, node, true});
+        add_piece(path, {at, tenure->end, node, processors::PathKind::transfer});
         tenure = at == tenure->ask ? std::nullopt : ending(tenures, at, std::nullopt);
       } else if (const Span* const work = work_ending(node, at)) {
-        add_piece(path, {work->from, at, node, false});
+        add_piece(path, {work->from, at, node});
         at = work->from;
       } else {
         tenure = ending(tenures, at, node);
