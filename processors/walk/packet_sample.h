@@ -55,6 +55,7 @@ class PacketSample {
 /// What a packet took at its node, from its start to the node's next request to the host.
 struct PacketFigures {
   sim::Ticks time = 0;
+  sim::Ticks busy = 0;  ///< of it, not waiting for anything
   std::int64_t references = 0;
   std::int64_t misses = 0;
   friend bool operator==(const PacketFigures&, const PacketFigures&) = default;
@@ -69,14 +70,17 @@ class PacketMeter {
 
   [[nodiscard]] bool on() const { return !figures_.empty(); }
   void begin(std::uint32_t node, std::uint64_t packet, sim::Ticks start, const NodeStatistics& statistics) {
-    open_[node] = {
-        true, packet, {start, statistics.references.references(), statistics.references.all_misses()}};
+    open_[node] = {true,
+                   packet,
+                   {start, start - sum_of(statistics.time), statistics.references.references(),
+                    statistics.references.all_misses()}};
   }
-  /// The node asks for its next packet, which ends the one it has, if any.
+  /// The node asks for its next packet, which ends the one it has, if any. During a replay `statistics` have
+  /// the time of waits only.
   void end(std::uint32_t node, sim::Ticks now, const NodeStatistics& statistics) {
     const Open& open = open_[node];
     if (open.any) {
-      figures_[open.packet] = {now - open.before.time,
+      figures_[open.packet] = {now - open.before.time, now - sum_of(statistics.time) - open.before.busy,
                                statistics.references.references() - open.before.references,
                                statistics.references.all_misses() - open.before.misses};
     }

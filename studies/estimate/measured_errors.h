@@ -19,10 +19,10 @@ namespace marti::studies {
 inline constexpr std::array<double, 3> load_classes = {0.3, 0.7, 1.0};
 /// The class of an interconnect's use, a share from 0 on.
 [[nodiscard]] std::size_t load_class_of(double use);
-/// The fewest windows of a sample of a machine of each class. Where nodes wait for one another, the nodes of
-/// two windows that follow one another in the sample, but not in the frame, meet at their border, and small
-/// samples were further off than their spread says.
-inline constexpr std::array<std::uint64_t, load_classes.size()> least_windows = {16, 64, 64};
+/// The fewest windows of a sample of a machine of each class: smaller ones were further off than their spread
+/// says. They may miss the few places where most misses are. And where nodes wait for one another, the nodes
+/// of two windows that follow one another in the sample, but not in the frame, meet at their border.
+inline constexpr std::array<std::uint64_t, load_classes.size()> least_windows = {32, 32, 64};
 
 /// The share of cases that a stated interval is to cover.
 inline constexpr double stated_confidence = 0.95;

@@ -1,6 +1,8 @@
 #include "studies/estimate/packet_windows.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "sim/error.h"
@@ -85,46 +87,83 @@ PixelLattice::Axis::Axis(std::uint32_t size) {
     places.push_back(place);
   }
   for (std::uint32_t place = 0; place < size; ++place) {
-    const std::size_t cell = std::min<std::size_t>(place / lattice_step, places.size() - 1);
-    next_to.push_back(places[cell]);
+    next_to.push_back(std::min(place / lattice_step, static_cast<std::uint32_t>(places.size()) - 1));
   }
 }
 
 PixelLattice::PixelLattice(std::uint32_t width, std::uint32_t height) : columns_(width), rows_(height) {}
 
-void PixelLattice::add_to(processors::PixelSet& pixels) const {
+std::vector<processors::PixelPlace> PixelLattice::pixels() const {
+  std::vector<processors::PixelPlace> pixels;
+  pixels.reserve(size());
   for (const std::uint32_t y : rows_.places) {
     for (const std::uint32_t x : columns_.places) {
-      pixels.add(x, y);
+      pixels.push_back({x, y});
     }
+  }
+  return pixels;
+}
+
+void PixelLattice::add_to(processors::PixelSet& pixels) const {
+  for (const processors::PixelPlace& pixel : this->pixels()) {
+    pixels.add(pixel.x, pixel.y);
   }
 }
 
-std::vector<std::uint64_t> PixelLattice::expected_words(const processors::WorkLog& log,
-                                                        const processors::PacketList& packets) const {
-  std::vector<std::uint64_t> words(packets.size());
+std::vector<sim::Ticks> PixelLattice::expected_times(std::span<const sim::Ticks> times,
+                                                     const processors::PacketList& packets) const {
+  sim::ensure(times.size() == size(), "times of another lattice");
+  std::vector<sim::Ticks> expected(packets.size());
   for (std::uint64_t packet = 0; packet < packets.size(); ++packet) {
     for_each_pixel(packets[packet], [&](std::uint32_t x, std::uint32_t y) {
-      words[packet] += log.pixel(columns_.next_to[x], rows_.next_to[y]).size();
+      const sim::Ticks time = times[columns_.places.size() * rows_.next_to[y] + columns_.next_to[x]];
+      expected[packet] = sim::add_ticks(expected[packet], time);
     });
   }
-  return words;
+  return expected;
+}
+
+double PixelLattice::half_width(std::span<const sim::Ticks> times) const {
+  sim::ensure(times.size() == size(), "times of another lattice");
+  const std::size_t columns = columns_.places.size();
+  double sum = 0.0;
+  double squares = 0.0;
+  double pairs = 0.0;
+  const auto compare = [&](std::size_t a, std::size_t b) {
+    const auto difference = static_cast<double>(times[a] - times[b]);
+    squares += difference * difference;
+    pairs += 1.0;
+  };
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    sum += static_cast<double>(times[i]);
+    if (i % columns != 0) {
+      compare(i, i - 1);
+    }
+    if (i >= columns) {
+      compare(i, i - columns);
+    }
+  }
+  if (pairs == 0.0 || sum == 0.0) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const auto n = static_cast<double>(times.size());
+  const double in_sample =
+      n / (static_cast<double>(columns_.next_to.size()) * static_cast<double>(rows_.next_to.size()));
+  constexpr double normal_95 = 1.959963984540054;
+  return normal_95 * std::sqrt(n * (1.0 - in_sample) * 0.5 * squares / pairs) / sum;
 }
 
 PixelLattice::ImageWork PixelLattice::expected_of_image(const processors::WorkLog& log) const {
   ImageWork work;
-  for (const std::uint32_t y : rows_.places) {
-    for (const std::uint32_t x : columns_.places) {
-      const std::span<const std::uint32_t> words = log.pixel(x, y);
-      work.words += static_cast<double>(words.size());
-      for (std::size_t at = 0; at < words.size(); at += processors::step_words(&words[at])) {
-        work.rays += processors::step_of(words[at]) == processors::Step::ray ? 1.0 : 0.0;
-      }
+  for (const processors::PixelPlace& pixel : pixels()) {
+    const std::span<const std::uint32_t> words = log.pixel(pixel.x, pixel.y);
+    work.words += static_cast<double>(words.size());
+    for (std::size_t at = 0; at < words.size(); at += processors::step_words(&words[at])) {
+      work.rays += processors::step_of(words[at]) == processors::Step::ray ? 1.0 : 0.0;
     }
   }
-  const double pixels =
-      static_cast<double>(rows_.places.size()) * static_cast<double>(columns_.places.size());
-  const double scale = static_cast<double>(log.width) * static_cast<double>(log.height) / pixels;
+  const double scale =
+      static_cast<double>(log.width) * static_cast<double>(log.height) / static_cast<double>(size());
   return {scale * work.rays, scale * work.words};
 }
 

@@ -3,8 +3,8 @@
 // The packets, in the order in which the host hands them out, are cut into windows of equal length, long
 // enough for every node to have a packet of each, so that nodes contend as they do in the frame. The windows
 // are cut into strata, and two windows of each stratum are drawn: two are the fewest that show how windows of
-// a stratum differ. Beside the windows a lattice of pixels is traced all over the image. It tells what work
-// each packet is likely to be, and takes the nodes' caches from one window to the next.
+// a stratum differ. Beside the windows a lattice of pixels is traced all over the image. It tells how much
+// work the frame and each of its packets are, and takes the nodes' caches from one window to the next.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,8 @@
 #include "processors/machine/packets.h"
 #include "processors/program/pixel_set.h"
 #include "processors/program/work_log.h"
+#include "processors/walk/observer.h"
+#include "sim/time.h"
 
 namespace marti::studies {
 
@@ -77,10 +79,17 @@ class PixelLattice {
   PixelLattice(std::uint32_t width, std::uint32_t height);
 
   void add_to(processors::PixelSet& pixels) const;
-  /// The words that each packet would have if each of its pixels had as many as the lattice's pixel next to
-  /// it. The lattice's pixels must be in the log.
-  [[nodiscard]] std::vector<std::uint64_t> expected_words(const processors::WorkLog& log,
-                                                          const processors::PacketList& packets) const;
+  /// Row by row.
+  [[nodiscard]] std::vector<processors::PixelPlace> pixels() const;
+  /// The time that each packet would take if each of its pixels took as long as the lattice's pixel next to
+  /// it. `times` are those of pixels(), in their order.
+  [[nodiscard]] std::vector<sim::Ticks> expected_times(std::span<const sim::Ticks> times,
+                                                       const processors::PacketList& packets) const;
+  /// Half of the 95 % interval of the mean of all the image's pixels, relative to that of `times`, which are
+  /// those of pixels(). The variance of a systematic sample is estimated by the differences of neighbours
+  /// (K. M. Wolter, "Introduction to variance estimation", 2nd ed. 2007, section 8.2). Infinite for a single
+  /// pixel, and where nothing takes time.
+  [[nodiscard]] double half_width(std::span<const sim::Ticks> times) const;
   /// Rays and words of the whole image, by those of the lattice's pixels.
   struct ImageWork {
     double rays = 0.0;
@@ -89,12 +98,13 @@ class PixelLattice {
   [[nodiscard]] ImageWork expected_of_image(const processors::WorkLog& log) const;
 
  private:
-  // The lattice's columns (or rows) and, for each column of the image, the one that it takes.
+  // The lattice's columns (or rows) and, for each column of the image, the number of the one next to it.
   struct Axis {
     explicit Axis(std::uint32_t size);
     std::vector<std::uint32_t> places;
     std::vector<std::uint32_t> next_to;
   };
+  [[nodiscard]] std::size_t size() const { return columns_.places.size() * rows_.places.size(); }
   Axis columns_;
   Axis rows_;
 };

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
+#include "processors/passes/hit_times.h"
 #include "processors/replay/replay.h"
 #include "sim/key_error.h"
 #include "studies/estimate/error_metrics.h"
@@ -57,22 +57,26 @@ double variance_of(std::span<const Stratum> strata, std::span<const double> know
 
 // What the windows drawn took.
 struct WindowTotals {
+  std::vector<double> hit_times;  // what they would have taken had every reference hit
   std::vector<double> times;
   std::vector<double> misses;
   std::vector<double> references;
 };
 
-WindowTotals totals_of_windows(const PacketWindows& windows,
+WindowTotals totals_of_windows(const PacketWindows& windows, const processors::MachineConfig& machine,
                                std::span<const processors::PacketFigures> packets) {
+  const auto hit = static_cast<double>(machine.clock.cycles(machine.cache.hit_cycles));
   WindowTotals totals;
   std::size_t at = 0;
   windows.for_each_drawn([&](std::uint64_t window) {
     processors::PacketFigures sum;
     for (std::uint64_t packet = windows.first(window); packet < windows.end(window); ++packet, ++at) {
       sum.time = sim::add_ticks(sum.time, packets[at].time);
+      sum.busy = sim::add_ticks(sum.busy, packets[at].busy);
       sum.misses += packets[at].misses;
       sum.references += packets[at].references;
     }
+    totals.hit_times.push_back(static_cast<double>(sum.busy) + hit * static_cast<double>(sum.misses));
     totals.times.push_back(static_cast<double>(sum.time));
     totals.misses.push_back(static_cast<double>(sum.misses));
     totals.references.push_back(static_cast<double>(sum.references));
@@ -80,24 +84,20 @@ WindowTotals totals_of_windows(const PacketWindows& windows,
   return totals;
 }
 
-// What is known of every packet, and of the windows drawn.
+// What the packets would take if every reference hit, by the pixels of the lattice.
 struct KnownWork {
-  std::vector<std::uint64_t> words;  // of each packet
-  double all_words = 0.0;
-  std::vector<double> of_windows;
+  std::vector<sim::Ticks> of_packets;
+  double all = 0.0;
+  double half_width = 0.0;  // of `all`, relative
 };
 
-KnownWork known_work(const processors::WorkLog& log, const PacketWindows& windows,
-                     const PixelLattice& lattice) {
-  KnownWork known;
-  known.words = lattice.expected_words(log, windows.packets());
-  known.all_words =
-      static_cast<double>(std::accumulate(known.words.begin(), known.words.end(), std::uint64_t{0}));
-  windows.for_each_drawn([&](std::uint64_t window) {
-    const auto first = known.words.begin() + static_cast<std::ptrdiff_t>(windows.first(window));
-    const auto end = known.words.begin() + static_cast<std::ptrdiff_t>(windows.end(window));
-    known.of_windows.push_back(static_cast<double>(std::accumulate(first, end, std::uint64_t{0})));
-  });
+KnownWork known_work(const processors::WorkLog& log, const processors::MachineConfig& machine,
+                     const PacketWindows& windows, const PixelLattice& lattice) {
+  const std::vector<sim::Ticks> times = processors::hit_times(log, machine, lattice.pixels());
+  KnownWork known{lattice.expected_times(times, windows.packets()), 0.0, lattice.half_width(times)};
+  for (const sim::Ticks time : known.of_packets) {
+    known.all += static_cast<double>(time);
+  }
   return known;
 }
 
@@ -115,27 +115,24 @@ SampledMachine sample_machine(const processors::WorkLog& log, const processors::
   const processors::MachineResult result = processors::replay(log, machine, {.sample = &sample});
   SampledMachine sampled;
   Estimate& estimate = sampled.estimate;
-  WindowTotals totals = totals_of_windows(windows, result.packet_figures);
+  WindowTotals totals = totals_of_windows(windows, machine, result.packet_figures);
   estimate.value = figures_of(machine, result);
   estimate.events = result.events;
-  estimate.references =
-      ratio_estimate(windows.strata(), known.of_windows, totals.references, known.all_words).total;
+  const auto total_of = [&](const std::vector<double>& measured) {
+    return ratio_estimate(windows.strata(), totals.hit_times, measured, known.all);
+  };
+  estimate.references = total_of(totals.references).total;
   if (windows.has_all()) {
     sampled.window_times = std::move(totals.times);
     return sampled;
   }
-  const RatioEstimate time =
-      ratio_estimate(windows.strata(), known.of_windows, totals.times, known.all_words);
-  const RatioEstimate missed =
-      ratio_estimate(windows.strata(), known.of_windows, totals.misses, known.all_words);
+  const RatioEstimate time = total_of(totals.times);
+  const RatioEstimate missed = total_of(totals.misses);
 
-  const double each_word = known.all_words > 0.0 ? time.total / known.all_words : 0.0;
-  std::vector<sim::Ticks> packet_times(known.words.size());
+  const double stretch = known.all > 0.0 ? time.total / known.all : 0.0;
+  std::vector<sim::Ticks> packet_times(known.of_packets.size());
   for (std::size_t packet = 0; packet < packet_times.size(); ++packet) {
-    packet_times[packet] = std::llround(each_word * static_cast<double>(known.words[packet]));
-  }
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    packet_times[chosen[i]] = result.packet_figures[i].time;
+    packet_times[packet] = std::llround(stretch * static_cast<double>(known.of_packets[packet]));
   }
   auto end = static_cast<double>(schedule_packets(machine.host, machine.all_nodes(), packet_times));
   // The frame cannot end before the links have carried all of its transfers: misses and pixels.
@@ -144,13 +141,13 @@ SampledMachine sample_machine(const processors::WorkLog& log, const processors::
   const double whole = missed.total + static_cast<double>(log.width) * static_cast<double>(log.height);
   const double busy = estimate.value[Figure::use] * static_cast<double>(result.end) * whole / part;
   sampled.full = busy > end;
-  estimate.half_width[Figure::end] =
-      sampled.full ? std::max(time.half_width, missed.half_width) : time.half_width;
+  estimate.half_width[Figure::end] = std::hypot(
+      known.half_width, sampled.full ? std::max(time.half_width, missed.half_width) : time.half_width);
   end = std::max(end, busy);
   estimate.value[Figure::use] = end > 0.0 ? busy / end : 0.0;
   estimate.value[Figure::end] = end;
   estimate.value[Figure::misses] = missed.total;
-  estimate.half_width[Figure::misses] = missed.half_width;
+  estimate.half_width[Figure::misses] = std::hypot(known.half_width, missed.half_width);
   if (busy > 0.0) {
     estimate.half_width[Figure::use] =
         estimate.value[Figure::use] * std::max(time.half_width, missed.half_width);
@@ -195,9 +192,9 @@ void check_sample(const processors::MachineConfig& machine) {
 SampledRun estimate_by_sample(const processors::WorkLog& log, const processors::MachineConfig& machine,
                               const PacketWindows& windows, const PixelLattice& lattice) {
   check_sample(machine);
-  const KnownWork known = known_work(log, windows, lattice);
+  const KnownWork known = known_work(log, machine, windows, lattice);
   SampledMachine sampled = sample_machine(log, machine, windows, known);
-  SampledRun run{sampled.estimate, sampled.estimate};
+  SampledRun run{sampled.estimate, sampled.estimate, windows.has_all() ? 0.0 : known.half_width};
   if (machine.all_nodes() > 1) {
     SampledMachine one = sample_machine(log, processors::one_node_of(machine), windows, known);
     run.one_node = one.estimate;

@@ -33,13 +33,17 @@ struct RatioEstimate {
 struct SampledRun {
   Estimate machine;
   Estimate one_node;
+  double lattice =
+      0.0;  ///< what the lattice has of the half-width of the time: more windows do not lessen it
 };
 
-/// Replays the packets of the windows drawn, on the machine and on one node. `log` must hold the pixels of
-/// the windows and of the lattice; its other pixels are not looked at, or have no words. Before a node begins
-/// a packet it takes its caches through what the log has of the packets left out since its last one
-/// (processors/walk/packet_sample.h). The frame time is that of a host that hands out packets of the
-/// estimated times, or the time that the interconnect needs for all transfers, if that is longer. If all
+/// A sample in two phases (Cochran 1977, section 12.8). The lattice's pixels, which are many, say what the
+/// frame would take if every reference hit. The packets of the windows drawn are replayed on the machine and
+/// on one node, and say how much longer they take, and how many misses they have, for such a time. `log` must
+/// hold the pixels of the windows and of the lattice; its other pixels are not looked at, or have no words.
+/// Before a node begins a packet it takes its caches through what the log has of the packets left out since
+/// its last one (processors/walk/packet_sample.h). The frame time is that of a host that hands out packets of
+/// the estimated times, or the time that the interconnect needs for all transfers, if that is longer. If all
 /// windows are drawn and the log is whole, the result is exact. Throws UserError for a machine that
 /// check_sample() refuses.
 [[nodiscard]] SampledRun estimate_by_sample(const processors::WorkLog& log,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -108,8 +109,8 @@ WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& 
   const std::vector<MeasuredError> errors = parse_measured_errors(measured_errors_csv());
   const auto not_known = [&](double allowance) {
     return fmt::format(
-        "errors of samples of such machines have been measured to be up to {:.2g} % beside "
-        "what a larger sample lessens",
+        "samples of such machines are known to have errors of up to {:.2g} % beside what a larger sample "
+        "lessens",
         100.0 * allowance);
   };
   const std::uint32_t nodes = machine.all_nodes();
@@ -153,11 +154,15 @@ WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& 
       if (nodes == 1 && figure == Figure::speed_up) {
         continue;
       }
+      // More windows do not lessen what is measured, nor what comes from the lattice.
       const double left = tolerance - measured.allowance[figure];
-      if (left <= 0.0) {
-        return {std::nullopt, not_known(measured.allowance[figure])};
+      const double fixed = figure == Figure::end ? run.sampled.lattice : 0.0;
+      if (left <= fixed) {
+        return {std::nullopt, not_known(measured.allowance[figure] + fixed)};
       }
-      wanted_share = std::max(wanted_share, share_for(drawn, margin * own[figure], left));
+      const double of_windows = std::sqrt(std::max(0.0, own[figure] * own[figure] - fixed * fixed));
+      wanted_share = std::max(wanted_share,
+                              share_for(drawn, margin * of_windows, std::sqrt(left * left - fixed * fixed)));
     }
     if (wanted_share > most_share) {
       return {std::nullopt, fmt::format("a sample that is large enough would trace {:.0f} % of the pixels",

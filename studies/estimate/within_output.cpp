@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "studies/keys/setting_value.h"
 #include "studies/show/json_parts.h"
 #include "studies/tables/json_table.h"
 #include "studies/tables/text_units.h"

@@ -109,7 +109,7 @@ TEST(RunWithin, GivesTheSameToPrograms) {
   const auto json = nlohmann::json::parse(wide.output);
   const auto& estimate = json["estimate"];
   EXPECT_EQ(estimate["tolerance"], 0.6);
-  EXPECT_EQ(json["config"]["keys"]["image.width"]["value"], "256");
+  EXPECT_EQ(json["config"]["keys"]["image.width"]["value"], 256);
   EXPECT_FALSE(estimate["one_node"].contains("speed_up"));
   for (const char* figure : {"end", "speed_up", "misses", "use", "wait"}) {
     const auto& bar = estimate["machine"][figure];

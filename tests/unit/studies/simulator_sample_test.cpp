@@ -15,8 +15,10 @@
 #include <vector>
 
 #include "plain_machine.h"
+#include "processors/passes/hit_times.h"
 #include "processors/replay/replay.h"
 #include "sim/error.h"
+#include "sim/mix.h"
 #include "studies/estimate/sampled_frame.h"
 #include "tests/support/random_machine.h"
 
@@ -191,7 +193,7 @@ std::uint32_t nearest(std::uint32_t at, const std::vector<bool>& marked) {
   return *best;
 }
 
-RC_GTEST_PROP(Lattice, ExpectsTheWordsOfThePixelNextToEach, (std::uint64_t seed)) {
+RC_GTEST_PROP(Lattice, ExpectsTheTimeOfThePixelNextToEach, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_log(random, static_cast<std::uint32_t>(test::pick(random, 1, 30)),
                                        static_cast<std::uint32_t>(test::pick(random, 1, 30)));
@@ -200,27 +202,97 @@ RC_GTEST_PROP(Lattice, ExpectsTheWordsOfThePixelNextToEach, (std::uint64_t seed)
   lattice.add_to(set);
   std::vector<bool> columns(log.width);
   std::vector<bool> rows(log.height);
+  std::vector<sim::Ticks> of_image(std::size_t{log.width} * log.height);
+  std::vector<sim::Ticks> times;
   double words_of_lattice = 0.0;
-  for (std::uint32_t y = 0; y < log.height; ++y) {
-    for (std::uint32_t x = 0; x < log.width; ++x) {
-      columns[x] = columns[x] || set.has(x, y);
-      rows[y] = rows[y] || set.has(x, y);
-      words_of_lattice += set.has(x, y) ? static_cast<double>(log.pixel(x, y).size()) : 0.0;
-    }
+  for (const processors::PixelPlace& pixel : lattice.pixels()) {
+    RC_ASSERT(set.has(pixel.x, pixel.y));
+    columns[pixel.x] = true;
+    rows[pixel.y] = true;
+    words_of_lattice += static_cast<double>(log.pixel(pixel.x, pixel.y).size());
+    times.push_back(test::pick(random, 0, 1000));
+    of_image[std::size_t{pixel.y} * log.width + pixel.x] = times.back();
   }
+  RC_ASSERT(set.count() == times.size());
   RC_ASSERT(set.count() == static_cast<std::uint64_t>(std::count(columns.begin(), columns.end(), true) *
                                                       std::count(rows.begin(), rows.end(), true)));
   const PacketList packets(log.width, log.height, {1, 1});
-  const std::vector<std::uint64_t> words = lattice.expected_words(log, packets);
+  const std::vector<sim::Ticks> expected = lattice.expected_times(times, packets);
   for (std::uint64_t packet = 0; packet < packets.size(); ++packet) {
     const processors::Packet at = packets[packet];
     // A cell's first column, and row, is as far from the pixel of the cell before.
     if (at.x0 % 8 != 0 && at.y0 % 8 != 0) {
-      RC_ASSERT(words[packet] == log.pixel(nearest(at.x0, columns), nearest(at.y0, rows)).size());
+      const std::size_t next = std::size_t{nearest(at.y0, rows)} * log.width + nearest(at.x0, columns);
+      RC_ASSERT(expected[packet] == of_image[next]);
     }
   }
-  const double expected = words_of_lattice / static_cast<double>(set.count()) * log.width * log.height;
-  RC_ASSERT(std::abs(lattice.expected_of_image(log).words - expected) <= 1e-9 * expected);
+  const double words = words_of_lattice / static_cast<double>(set.count()) * log.width * log.height;
+  RC_ASSERT(std::abs(lattice.expected_of_image(log).words - words) <= 1e-9 * words);
+}
+
+// Images of patches of random sizes, times and places, with noise: the lattice's mean and the image's.
+TEST(Lattice, ItsIntervalCoversTheMeanOfTheImage) {
+  std::mt19937_64 random(3);
+  constexpr std::uint32_t side = 160;
+  const PixelLattice lattice(side, side);
+  int covered = 0;
+  double widest = 0.0;
+  constexpr int trials = 200;
+  for (int trial = 0; trial < trials; ++trial) {
+    std::vector<sim::Ticks> image(side * side);
+    double sum = 0.0;
+    const std::uint32_t patch = 1 + static_cast<std::uint32_t>(random() % 60);
+    const std::uint64_t shift = random() % 60;
+    const std::uint64_t salt = random();
+    for (std::uint32_t y = 0; y < side; ++y) {
+      for (std::uint32_t x = 0; x < side; ++x) {
+        const std::uint64_t cell = (x + shift) / patch * 1000 + (y + 2 * shift) / patch;
+        const auto time = static_cast<sim::Ticks>(sim::mix(cell ^ salt) % 900 + random() % 300);
+        image[y * side + x] = time;
+        sum += static_cast<double>(time);
+      }
+    }
+    std::vector<sim::Ticks> times;
+    double of_lattice = 0.0;
+    for (const processors::PixelPlace& pixel : lattice.pixels()) {
+      times.push_back(image[pixel.y * side + pixel.x]);
+      of_lattice += static_cast<double>(times.back());
+    }
+    const double estimate = of_lattice / static_cast<double>(times.size()) * side * side;
+    const double half_width = lattice.half_width(times);
+    covered += std::abs(estimate / sum - 1.0) <= half_width ? 1 : 0;
+    widest = std::max(widest, half_width);
+  }
+  EXPECT_GE(covered, trials * 93 / 100);
+  EXPECT_LT(widest, 0.06);  // without patches the spread of 400 pixels would give some 0.045
+  EXPECT_TRUE(std::isinf(PixelLattice(3, 3).half_width(std::vector<sim::Ticks>{5})));
+}
+
+// What each packet of a machine with caches takes without its waits and misses is what a walk without caches
+// says of its pixels.
+RC_GTEST_PROP(HitTimes, AreThePacketsTimesWithoutMisses, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = test::random_log(random, 14, 11);
+  const MachineConfig machine = test::plain_machine(random);
+  const PacketList packets(log.width, log.height, machine.packets);
+  std::vector<std::uint64_t> all(packets.size());
+  std::iota(all.begin(), all.end(), std::uint64_t{0});
+  const processors::PacketSample sample(all, all.size(), 0);
+  const processors::MachineResult result = processors::replay(log, machine, {.sample = &sample});
+  for (const std::uint64_t number : all) {
+    const processors::Packet packet = packets[number];
+    std::vector<processors::PixelPlace> pixels;
+    for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
+      for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
+        pixels.push_back({x, y});
+      }
+    }
+    const std::vector<sim::Ticks> times = processors::hit_times(log, machine, pixels);
+    const processors::PacketFigures& figures = result.packet_figures[number];
+    RC_ASSERT(std::accumulate(times.begin(), times.end(), sim::Ticks{0}) ==
+              figures.busy + figures.misses * machine.clock.cycles(machine.cache.hit_cycles));
+    RC_ASSERT(figures.busy <= figures.time);
+  }
 }
 
 RC_GTEST_PROP(Sample, OfEverythingIsExact, (std::uint64_t seed)) {
