@@ -7,18 +7,9 @@
 
 #include "sim/error.h"
 #include "studies/keys/machine_keys.h"
+#include "studies/keys/setting_value.h"
 
 namespace marti::studies {
-
-namespace {
-
-// `"16 KiB"` without its quotation marks.
-std::string_view unquoted(std::string_view text) {
-  const bool quoted = text.size() >= 2 && text.starts_with('"') && text.ends_with('"');
-  return quoted ? text.substr(1, text.size() - 2) : text;
-}
-
-}  // namespace
 
 std::optional<Change> Changer::with(const std::vector<NewValue>& values) const {
   std::vector<KeyChange> keys;
@@ -73,9 +64,9 @@ std::optional<Change> Changer::made(std::vector<KeyChange> keys, std::vector<sim
 std::string describe(const std::vector<KeyChange>& keys) {
   std::string text;
   for (const KeyChange& key : keys) {
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key.key, unquoted(key.from));
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key.key, plain_setting(key.from));
     if (key.from != key.to) {
-      text += fmt::format(" -> {}", unquoted(key.to));
+      text += fmt::format(" -> {}", plain_setting(key.to));
     }
   }
   return text;

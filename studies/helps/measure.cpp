@@ -18,10 +18,11 @@ constexpr std::size_t most_in_pairs = 4;
 // So many replays are begun together, on any number of cores. Which steps come next depends on them.
 constexpr std::size_t begun_together = 4;
 
-// A budget for fewer replays than this says too little about a machine.
-constexpr Work least_replays = 3;
+// With a budget for fewer replays than this all are of steps, and which these are is chosen by what limits
+// the machine.
+constexpr Work few_replays = 3;
 
-// This part of the budget is kept for resources at their best.
+// Else this part of the budget is kept for resources at their best.
 constexpr Work part_for_best = 4;
 
 double saved_of(sim::Ticks before, sim::Ticks after) {
@@ -46,6 +47,9 @@ class Measurement {
         limited_(budget != unlimited_work),
         budget_(budget) {
     what_.end = result.end;
+    const Work one = replay_work(result_, stripped_for(shared_, machine_));
+    few_ = limited_ && budget_ / few_replays < one;
+    what_.measured = !limited_ || budget_ >= one;
     for (Resource& resource : resources_of(changer, machine, facts_of(result))) {
       Case& made = cases_.emplace_back();
       made.help = {resource.name, resource.part, unmeasured(resource.step, resource),
@@ -55,8 +59,7 @@ class Measurement {
   }
 
   WhatHelps made() {
-    if (limited_ && budget_ / least_replays < replay_work(result_, stripped_for(shared_, machine_))) {
-      what_.measured = false;
+    if (!what_.measured) {
       for (const Replay& one : in_order()) {
         one.into->outcome = Outcome::work;
       }
@@ -84,7 +87,7 @@ class Measurement {
   struct Replay {
     const processors::MachineConfig* machine;
     MeasuredChange* into;
-    double share = 0.0;  // how busy the part is
+    double share = 0.0;  // how busy the resource is
   };
 
   // What is known of a change without a replay.
@@ -150,18 +153,22 @@ class Measurement {
   }
 
   // The steps, and the resources that have none at their best, in the order in which they are replayed: those
-  // first that can save most, by the nodes' own work; of equals those that are busiest.
+  // first that can save most, by the nodes' own work; of equals those that are busiest. Where only few can be
+  // replayed, those first that are busiest.
   std::vector<Replay> in_order() {
     std::vector<Replay> wanted;
     for (Case& one : cases_) {
       const std::optional<Change>& change = one.resource.step ? one.resource.step : one.resource.best;
       MeasuredChange& into = one.help.step ? *one.help.step : *one.help.best;
       if (into.outcome != Outcome::measured) {
-        wanted.push_back({&change->machine, &into, share_of(one.help.part, counts_)});
+        const double share =
+            few_ ? busy_share(one.help, machine_, result_, counts_) : share_of(one.help.part, counts_);
+        wanted.push_back({&change->machine, &into, share});
       }
     }
-    std::stable_sort(wanted.begin(), wanted.end(), [](const Replay& a, const Replay& b) {
-      return std::pair(a.into->most_saved, a.share) > std::pair(b.into->most_saved, b.share);
+    std::stable_sort(wanted.begin(), wanted.end(), [&](const Replay& a, const Replay& b) {
+      return few_ ? std::pair(a.share, a.into->most_saved) > std::pair(b.share, b.into->most_saved)
+                  : std::pair(a.into->most_saved, a.share) > std::pair(b.into->most_saved, b.share);
     });
     return wanted;
   }
@@ -186,8 +193,11 @@ class Measurement {
   }
 
   void measure_steps() {
-    const std::vector<Replay> wanted = in_order();
-    const Work kept = limited_ ? budget_ / part_for_best : 0;
+    std::vector<Replay> wanted = in_order();
+    if (few_) {  // and so not in the order of what they can save
+      std::erase_if(wanted, [](const Replay& one) { return one.into->most_saved < worth_naming; });
+    }
+    const Work kept = limited_ && !few_ ? budget_ / part_for_best : 0;
     std::size_t next = 0;
     tell(wanted.size());
     while (next < wanted.size() && wanted[next].into->most_saved >= least_wanted()) {
@@ -286,7 +296,8 @@ class Measurement {
   const Counts& counts_;
   const SharedLog& shared_;
   bool limited_;
-  Work budget_;  // what is left of it
+  bool few_ = false;  // the budget has room for few replays
+  Work budget_;       // what is left of it
   std::vector<Case> cases_;
   WhatHelps what_;
 };

@@ -64,7 +64,7 @@ struct HelpPair {
 
 struct WhatHelps {
   sim::Ticks end = 0;    ///< frame time of the unchanged machine
-  bool measured = true;  ///< false: the budget is too small for even a few replays
+  bool measured = true;  ///< false: the budget is too small for a single replay
   /// Those worth most first: by the share of the frame that the step saves. With prices, behind the steps
   /// that raise no price, the others by that share for each unit of the price. Behind them those whose step
   /// was not replayed or does not help.

@@ -135,6 +135,33 @@ double share_of(Part part, const Counts& counts) {
   return share(counts, {Activity::idle, Activity::message_wait});
 }
 
+double busy_share(const Help& help, const MachineConfig& machine, const MachineResult& result,
+                  const Counts& counts) {
+  if (machine.scheme == processors::Scheme::image) {
+    return share_of(help.part, counts);
+  }
+  const FlowFigures flow = flow_figures(machine, result);
+  switch (help.part) {
+    case Part::nodes:
+      for (const StageLoad& stage : flow.stages) {
+        if (help.name == "pipeline." + stage.name) {
+          return stage.busiest;
+        }
+      }
+      return flow.slowest().busy;
+    case Part::network:
+      return figure(counts, "network_utilisation");
+    case Part::messages:
+      return share(counts, {Activity::messaging});
+    case Part::host:
+      return flow.host;
+    case Part::regions:
+      return flow.all.busiest - flow.all.busy;
+    default:
+      return share_of(help.part, counts);
+  }
+}
+
 std::string why(const Help& help, const MachineConfig& machine, const MachineResult& result,
                 const Counts& counts) {
   switch (help.part) {

@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <map>
 
+#include "studies/figures/counted_figures.h"
 #include "studies/helps/least_time.h"
 #include "studies/helps/resources.h"
+#include "studies/helps/verdict.h"
 #include "studies/helps/what_helps.h"
 #include "studies/keys/machine_keys.h"
 #include "studies/run/run_result.h"
@@ -165,9 +167,9 @@ TEST(WhatHelps, KeepsToItsBudget) {
   ASSERT_GT(count_of(all.what, Outcome::measured), 6U);
   const SharedLog shared{made.log, nullptr, {}, {}};
   const Work replay = replay_work(all.result, nullptr);
-  for (const Work budget : {2 * replay, 4 * replay, 8 * replay}) {
+  for (const Work budget : {replay - 1, 2 * replay, 4 * replay, 8 * replay}) {
     const WhatHelps some = what_helps(all.config, std::nullopt, all.machine, all.result, shared, budget);
-    EXPECT_EQ(some.measured, budget > 2 * replay);
+    EXPECT_EQ(some.measured, budget >= replay);
     EXPECT_GT(unreplayed(some).work, 0U);
     // Three quarters of the budget are for steps.
     EXPECT_LE(count_of(some, Outcome::measured), 6U + count_of(all.what, Outcome::needless));
@@ -178,6 +180,40 @@ TEST(WhatHelps, KeepsToItsBudget) {
       }
     }
   }
+}
+
+// A budget for a single replay is enough for the advice of what limits a machine most.
+TEST(WhatHelps, ReplaysWhatIsBusiestWhereItCanReplayLittle) {
+  std::size_t advised = 0;
+  for (std::size_t seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(seed);
+    test::Random random(seed);
+    const test::TimedCase made = makers[seed % makers.size()](random);
+    sim::Config config = test::configuration_of(test::assignments_of(made.machine));
+    const MachineConfig machine = read_machine(config);
+    const MachineResult result = processors::replay(made.log, machine);
+    const SharedLog shared{made.log, nullptr, {}, {}};
+    const Work replay = replay_work(result, nullptr);
+    const WhatHelps some = what_helps(config, std::nullopt, machine, result, shared, replay);
+    ASSERT_TRUE(some.measured || result.end == 0);
+    std::size_t replayed = 0;
+    double busiest = 0.0;
+    double chosen = 0.0;
+    const Counts counts = counts_of(machine, result);
+    for (const Help& help : some.helps) {
+      const MeasuredChange& change = help.step ? *help.step : *help.best;
+      if (change.most_saved >= worth_naming) {  // else it is known to be needless
+        const double busy = busy_share(help, machine, result, counts);
+        busiest = std::max(busiest, busy);
+        chosen = change.end ? busy : chosen;
+        replayed += change.end ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(replayed, result.end > 0 ? 1U : 0U);
+    EXPECT_EQ(chosen, busiest);
+    advised += best_helps(some).size();
+  }
+  EXPECT_GT(advised, 20U);
 }
 
 TEST(WhatHelps, SaysThatMachinesTakeTooMuchMemory) {
