@@ -1,11 +1,13 @@
 #include "studies/sweep/frame_samples.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "sim/key_error.h"
 #include "studies/host/cpu_time.h"
 #include "studies/run/open_frame.h"
 #include "studies/run/prepared_frame.h"
@@ -16,8 +18,9 @@ namespace marti::studies {
 namespace {
 
 constexpr double large_side = 96;
-constexpr double small_side = 48;
-constexpr std::size_t another_scene = 1'000'000;  // more than a frame has settings
+constexpr double fewest_side = 16;
+constexpr std::uint64_t most_scene_bytes = std::uint64_t{100} << 20U;  // of most_sample_bytes
+constexpr std::size_t another_scene = 1'000'000;                       // more than a frame has settings
 constexpr std::size_t unlike_all = 2 * another_scene;
 
 double rays_of(const processors::RenderOptions& options) {
@@ -47,17 +50,24 @@ SmallLog log_of(const FunctionalRun& run) { return {run.frame.log, static_cast<d
 // As a worker of the sweep traces the frame, but small.
 FrameSample sample_of(const FrameConfig& frame) {
   FrameConfig config = frame;
-  config.render = made_small(config.render, large_side);
+  // As many rays as large_side has with one sample a pixel.
+  config.render =
+      made_small(config.render, std::max(fewest_side, large_side / std::sqrt(config.render.samples)));
+  const sim::MemoryBudget of_scene(std::min(config.memory.limit(), most_scene_bytes), true);
+  config.open.file.memory = of_scene;
+  config.memory = sim::MemoryBudget(std::min(config.memory.limit(), most_sample_bytes), true);
   config.render.voxel_cut = 0.0;  // a coarse image would cut more than the frame
   const double begin = process_cpu_seconds();
   const scenes::Scene scene = open_frame(config);
+  of_scene.require(scenes::host_bytes(scene) + scenes::host_bytes_of_facts(scene), "the scene takes", {});
   static_cast<void>(scene_hash(scene));
   const PreparedFrame prepared(config, scene);
   const double ready = process_cpu_seconds();
   const FunctionalRun run = prepared.finish(prepared.trace());
   FrameSample sample{log_of(run), {}, rays_of(config.render), ready - begin, process_cpu_seconds() - ready};
   if (rays_of(config.render) != rays_of(frame.render)) {
-    sample.small = log_of(prepared.part(prepared.trace_small(small_side)));
+    const double side = std::max(config.render.width, config.render.height);
+    sample.small = log_of(prepared.part(prepared.trace_small(side / 2.0)));
   }
   return sample;
 }
@@ -73,7 +83,7 @@ FrameSamples::FrameSamples(const SweepPlan& plan, std::vector<std::size_t> frame
   do {
     take_next();
   } while (std::any_of(unlike_.begin(), unlike_.end(), [](std::size_t each) { return each != 0; }) &&
-           !enough());
+           !too_large_ && !enough());
 }
 
 void FrameSamples::take_next() {
@@ -87,7 +97,16 @@ void FrameSamples::take_next() {
   }
   const std::size_t chosen = candidates[candidates.size() / 2];
   const SweepFrame& frame = plan_.frames[frames_[chosen]];
-  samples_.push_back(sample_of(frame.config));
+  try {
+    samples_.push_back(sample_of(frame.config));
+  } catch (const sim::KeyError& error) {
+    // The sweep itself may have more memory than a sample.
+    if (error.key() != sim::memory_limit_key || frame.config.memory.limit() <= most_scene_bytes) {
+      throw;
+    }
+    too_large_ = true;
+    return;
+  }
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     const std::size_t distance =
         unlike(settings_[i], settings_[chosen]) +

@@ -13,6 +13,10 @@
 
 namespace marti::studies {
 
+/// The most memory that a sample may take: scene and structure, or the machine that is timed on its log. It
+/// bounds the time that a sample takes by what is sampled, not by a clock.
+inline constexpr std::uint64_t most_sample_bytes = std::uint64_t{250} << 20U;
+
 /// A frame traced small.
 struct SmallLog {
   std::shared_ptr<const processors::WorkLog> log;
@@ -42,15 +46,19 @@ class FrameSamples {
  public:
   /// Of `frames`, at least one. Sampled next is the frame that has the most settings unlike those of every
   /// sample, where another scene counts more than all other settings. One is always sampled; then none is
-  /// begun any more when `enough()`.
+  /// begun any more when `enough()`, nor after a frame that takes more than most_sample_bytes.
   FrameSamples(const SweepPlan& plan, std::vector<std::size_t> frames, const std::function<bool()>& enough);
 
+  /// Whether a frame that was to be sampled takes more than most_sample_bytes.
+  [[nodiscard]] bool too_large() const { return too_large_; }
   [[nodiscard]] const std::vector<FrameSample>& samples() const { return samples_; }
-  /// One for each of `frames`.
+  /// One for each of `frames`, unless too_large().
   [[nodiscard]] std::vector<FrameEstimate> estimates() const;
 
  private:
   void take_next();
+
+  bool too_large_ = false;
 
   const SweepPlan& plan_;
   std::vector<std::size_t> frames_;

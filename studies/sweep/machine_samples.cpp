@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <random>
@@ -9,10 +10,12 @@
 #include <tuple>
 #include <utility>
 
+#include "processors/replay/host_bytes.h"
 #include "processors/replay/replay.h"
 #include "processors/walk/stripped_log.h"
 #include "sim/error.h"
 #include "studies/host/cpu_time.h"
+#include "studies/sweep/work/batches.h"
 #include "studies/sweep/work/stripped_log_cache.h"
 
 namespace marti::studies {
@@ -21,15 +24,6 @@ namespace {
 
 using processors::MachineConfig;
 using processors::StrippedLog;
-
-// Machines of a frame that share the pass that strips its log, as studies/sweep/work/schedule.h has them.
-struct Batch {
-  std::size_t sharing = 0;
-  std::vector<std::uint32_t> ways;  // ascending
-  [[nodiscard]] bool pays() const {
-    return StrippedLogCache::pays(sharing, !ways.empty() && ways.back() != 0);
-  }
-};
 
 // A machine whose energy does not fit is refused when it is timed, with the line of its key.
 MachineConfig without_energy(const MachineConfig& machine) {
@@ -42,34 +36,30 @@ class Sampling {
  public:
   Sampling(const SweepPlan& plan, const std::vector<std::size_t>& machines, const FrameSamples& samples,
            const std::function<const FrameEstimate&(std::size_t)>& frame_of)
-      : plan_(plan), machines_(machines), samples_(samples), frame_of_(frame_of), keys_(machines.size()) {
-    for (std::size_t i = 0; i < machines_.size(); ++i) {
-      const SweepMachine& machine = plan_.machines[machines_[i]];
-      keys_[i] = StrippedLog::key_of(machine.config);
-      if (!keys_[i].empty()) {
-        Batch& batch = batches_[{machine.frame, keys_[i]}];
-        ++batch.sharing;
-        const std::uint32_t ways = StrippedLog::ways_of(machine.config);
-        if (const auto at = std::lower_bound(batch.ways.begin(), batch.ways.end(), ways);
-            at == batch.ways.end() || *at != ways) {
-          batch.ways.insert(at, ways);
-        }
+      : plan_(plan),
+        machines_(machines),
+        samples_(samples),
+        frame_of_(frame_of),
+        batches_(batches_of(plan, machines)),
+        batch_of_(plan.machines.size()) {
+    for (std::size_t batch = 0; batch < batches_.size(); ++batch) {
+      for (const std::size_t machine : batches_[batch].machines) {
+        batch_of_[machine] = batch;
       }
     }
   }
 
-  // Times the machine `machines_[i]`.
-  void time(std::size_t i) {
-    const SweepMachine& machine = plan_.machines[machines_[i]];
+  void time(std::size_t number) {
+    const SweepMachine& machine = plan_.machines[number];
     const FrameEstimate& frame = frame_of_(machine.frame);
     const FrameSample& sample = samples_.samples()[frame.sample];
     const MachineConfig plain = without_energy(machine.config);
     try {
       // What is as long in a small image, such as to build a tree or to fill caches, is not scaled.
-      const double large = seconds_of(i, plain, sample.large, frame.scale);
+      const double large = seconds_of(number, plain, sample.large, frame.scale);
       double a_byte = large / sample.large.bytes;
       if (sample.small.log != nullptr) {
-        const double small = seconds_of(i, plain, sample.small, 0.0);
+        const double small = seconds_of(number, plain, sample.small, 0.0);
         a_byte = std::clamp((large - small) / (sample.large.bytes - sample.small.bytes), 0.0, a_byte);
       }
       ++timed_;
@@ -81,31 +71,36 @@ class Sampling {
     }
   }
 
-  [[nodiscard]] MachinesEstimate estimate() const {
+  [[nodiscard]] std::optional<MachinesEstimate> estimate() const {
+    if (timed_ == 0) {
+      return std::nullopt;
+    }
     MachinesEstimate all;
     all.of_frame.resize(plan_.frames.size());
     for (const std::size_t number : machines_) {
       const std::size_t frame = plan_.machines[number].frame;
-      if (timed_ != 0) {
-        all.of_frame[frame] = fixed_seconds_ / static_cast<double>(timed_) +
-                              growing_seconds_ / growing_bytes_ * frame_of_(frame).log_bytes;
-      }
+      all.of_frame[frame] = fixed_seconds_ / static_cast<double>(timed_) +
+                            growing_seconds_ / growing_bytes_ * frame_of_(frame).log_bytes;
       all.timing += all.of_frame[frame];
     }
-    for (const auto& [place, batch] : batches_) {
-      if (batch.pays() && stripped_bytes_ > 0.0) {
-        all.stripping += stripped_seconds_ / stripped_bytes_ * frame_of_(place.first).log_bytes;
+    for (const MachineBatch& batch : batches_) {
+      if (pays(batch) && stripped_bytes_ > 0.0) {
+        all.stripping += stripped_seconds_ / stripped_bytes_ * frame_of_(batch.frame).log_bytes;
       }
     }
     return all;
   }
 
  private:
-  // Processor time of machine `machines_[i]` on the log. Its stripping counts as that of a log so many times
-  // as large.
-  double seconds_of(std::size_t i, const MachineConfig& plain, const SmallLog& log, double scale) {
+  // Whether the sweep strips the log of these machines.
+  static bool pays(const MachineBatch& batch) {
+    return !batch.key.empty() && StrippedLogCache::pays(batch.machines.size(), batch.ways.back() != 0);
+  }
+
+  // Processor time of a machine on the log. Its stripping counts as that of a log so many times as large.
+  double seconds_of(std::size_t number, const MachineConfig& plain, const SmallLog& log, double scale) {
     processors::ReplayOptions options;
-    const std::shared_ptr<const StrippedLog> stripped = stripped_for(i, plain, log, scale);
+    const std::shared_ptr<const StrippedLog> stripped = stripped_for(number, plain, log, scale);
     options.stripped = stripped.get();
     options.keep_read_events = true;
     const double begin = thread_cpu_seconds();
@@ -114,14 +109,14 @@ class Sampling {
   }
 
   // The stripped log that the machine will have, of this log; null: none.
-  std::shared_ptr<const StrippedLog> stripped_for(std::size_t i, const MachineConfig& plain,
+  std::shared_ptr<const StrippedLog> stripped_for(std::size_t number, const MachineConfig& plain,
                                                   const SmallLog& log, double scale) {
-    const auto batch = batches_.find({plan_.machines[machines_[i]].frame, keys_[i]});
-    if (batch == batches_.end() || !batch->second.pays()) {
+    const MachineBatch& batch = batches_[batch_of_[number]];
+    if (!pays(batch)) {
       return nullptr;
     }
-    const std::vector<std::uint32_t>& ways = batch->second.ways;
-    const auto [made, is_new] = stripped_.try_emplace({log.log.get(), keys_[i], ways});
+    const std::vector<std::uint32_t>& ways = batch.ways;
+    const auto [made, is_new] = stripped_.try_emplace({log.log.get(), batch.key, ways});
     if (is_new) {
       const double begin = process_cpu_seconds();
       made->second = StrippedLog::make(*log.log, plain, ways);
@@ -136,8 +131,8 @@ class Sampling {
   const std::vector<std::size_t>& machines_;
   const FrameSamples& samples_;
   const std::function<const FrameEstimate&(std::size_t)>& frame_of_;
-  std::vector<std::string> keys_;  // StrippedLog::key_of each machine
-  std::map<std::pair<std::size_t, std::string>, Batch> batches_;
+  std::vector<MachineBatch> batches_;
+  std::vector<std::size_t> batch_of_;  // of each machine of the plan
   std::map<std::tuple<const processors::WorkLog*, std::string, std::vector<std::uint32_t>>,
            std::vector<std::shared_ptr<const StrippedLog>>>
       stripped_;
@@ -154,15 +149,15 @@ class Sampling {
 
 }  // namespace
 
-MachinesEstimate estimate_machines(const SweepPlan& plan, const std::vector<std::size_t>& machines,
-                                   const FrameSamples& samples,
-                                   const std::function<const FrameEstimate&(std::size_t frame)>& frame_of,
-                                   const std::function<bool()>& enough) {
+std::optional<MachinesEstimate> estimate_machines(
+    const SweepPlan& plan, const std::vector<std::size_t>& machines, const FrameSamples& samples,
+    const std::function<const FrameEstimate&(std::size_t frame)>& frame_of,
+    const std::function<bool()>& enough) {
   Sampling sampling(plan, machines, samples, frame_of);
-  std::vector<std::size_t> order(machines.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    order[i] = i;
-  }
+  std::vector<std::size_t> order;
+  std::copy_if(machines.begin(), machines.end(), std::back_inserter(order), [&](std::size_t number) {
+    return processors::host_bytes(plan.machines[number].config) <= most_sample_bytes;
+  });
   std::mt19937_64 chance(1);
   std::shuffle(order.begin(), order.end(), chance);
   for (std::size_t i = 0; i < order.size() && (i == 0 || !enough()); ++i) {

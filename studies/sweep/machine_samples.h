@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "studies/sweep/frame_samples.h"
@@ -18,9 +19,10 @@ struct MachinesEstimate {
   double stripping = 0.0;  ///< on all threads
 };
 
-/// Times some of `machines`, chosen by chance, at least one; then none is begun any more when `enough()`.
-/// `frame_of[i]` is the estimate for the frame of machine i of the plan.
-[[nodiscard]] MachinesEstimate estimate_machines(
+/// Times some of `machines`, chosen by chance from those that take at most `most_sample_bytes`, at least one;
+/// then none is begun any more when `enough()`. `frame_of(i)` is the estimate for frame i of the plan.
+/// std::nullopt when no machine could be timed.
+[[nodiscard]] std::optional<MachinesEstimate> estimate_machines(
     const SweepPlan& plan, const std::vector<std::size_t>& machines, const FrameSamples& samples,
     const std::function<const FrameEstimate&(std::size_t frame)>& frame_of,
     const std::function<bool()>& enough);

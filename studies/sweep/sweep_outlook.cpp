@@ -33,9 +33,14 @@ std::function<bool()> enough_after(Clock::duration most, std::size_t fewest) {
   };
 }
 
-double seconds_of(const SweepPlan& plan, const std::vector<std::size_t>& frames,
-                  const std::vector<std::size_t>& machines, std::size_t at_once, SweepOutlook& outlook) {
+// std::nullopt when no estimate is worth the time that it would take.
+std::optional<double> seconds_of(const SweepPlan& plan, const std::vector<std::size_t>& frames,
+                                 const std::vector<std::size_t>& machines, std::size_t at_once,
+                                 SweepOutlook& outlook) {
   const FrameSamples samples(plan, frames, enough_after(for_frames, fewest_frames));
+  if (samples.too_large()) {
+    return std::nullopt;
+  }
   const std::vector<FrameEstimate> estimates = samples.estimates();
   std::vector<const FrameEstimate*> of_frame(plan.frames.size());
   outlook.costs.tracing.resize(plan.frames.size());
@@ -52,9 +57,13 @@ double seconds_of(const SweepPlan& plan, const std::vector<std::size_t>& frames,
   outlook.log_bytes = static_cast<std::uint64_t>(most_bytes);
   MachinesEstimate timing;
   if (!machines.empty()) {
-    timing = estimate_machines(
+    const std::optional<MachinesEstimate> found = estimate_machines(
         plan, machines, samples, [&](std::size_t frame) -> const FrameEstimate& { return *of_frame[frame]; },
         enough_after(for_machines, fewest_machines));
+    if (!found) {
+      return std::nullopt;
+    }
+    timing = *found;
   }
   outlook.costs.timing = timing.of_frame;
   outlook.costs.timing.resize(plan.frames.size());
@@ -98,6 +107,7 @@ SweepOutlook outlook_of(const SweepPlan& plan, const std::vector<bool>& machines
   const std::size_t at_once =
       std::min<std::size_t>(std::max(1U, threads), std::max<std::size_t>(1, bytes.size()));
   outlook.seconds = seconds_of(plan, to_trace, left, at_once, outlook);
+  outlook.not_estimated = !outlook.seconds;
   const auto largest = bytes.begin() + static_cast<std::ptrdiff_t>(std::min(at_once, bytes.size()));
   std::partial_sort(bytes.begin(), largest, bytes.end(), std::greater<>());
   std::uint64_t together = 0;

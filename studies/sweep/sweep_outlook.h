@@ -7,9 +7,10 @@
 
 namespace marti::studies {
 
-/// An estimate for the machines that are not done, with so many of them timed at a time. Takes at most
-/// about 1.5 seconds, unless a single scene takes longer to be read and sorted: some frames are traced small
-/// (frame_samples.h), and some machines timed on these (machine_samples.h).
+/// An estimate for the machines that are not done, with so many of them timed at a time: some frames are
+/// traced small (frame_samples.h), and some machines timed on these (machine_samples.h). Samples are begun
+/// for 1.3 seconds at most, and none is large (most_sample_bytes); where only large ones could be taken, the
+/// time is not estimated.
 [[nodiscard]] SweepOutlook outlook_of(const SweepPlan& plan, const std::vector<bool>& machines_done,
                                       const std::vector<bool>& frames_done, unsigned threads);
 

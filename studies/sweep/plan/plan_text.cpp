@@ -77,6 +77,9 @@ std::string describe(const SweepPlan& plan, const SweepOutlook& outlook) {
   }
   if (outlook.seconds) {
     line("time", "about " + duration_text(*outlook.seconds));
+  } else if (outlook.not_estimated) {
+    line("time",
+         "not estimated: the scene or its machines are so large that an estimate would take long itself");
   }
   constexpr double worth_a_word = 1 << 20;
   const auto itself = static_cast<double>(plan_bytes(plan.points.size(), plan.axes.size()));
@@ -84,10 +87,11 @@ std::string describe(const SweepPlan& plan, const SweepOutlook& outlook) {
   if (large || outlook.log_bytes || outlook.machine_bytes) {
     const auto logs = static_cast<double>(outlook.log_bytes.value_or(0));
     const auto machines_in_flight = static_cast<double>(outlook.machine_bytes.value_or(0));
-    line("memory", fmt::format("about {}: {}work logs {}, machines {}",
-                               bytes(logs + machines_in_flight + (large ? itself : 0.0)),
-                               large ? "the plan " + bytes(itself) + ", " : "", bytes(logs),
-                               bytes(machines_in_flight)));
+    line("memory",
+         fmt::format("about {}: {}work logs {}, machines {}",
+                     bytes(logs + machines_in_flight + (large ? itself : 0.0)),
+                     large ? "the plan " + bytes(itself) + ", " : "",
+                     outlook.not_estimated ? "not estimated" : bytes(logs), bytes(machines_in_flight)));
   }
   for (const std::string& note : plan.notes) {
     line("note", note);

@@ -93,6 +93,7 @@ struct SweepOutlook {
   std::size_t machines_done = 0;  ///< whose results are there already
   std::size_t frames_done = 0;    ///< whose logs are kept, or that no machine needs any more
   std::optional<double> seconds;  ///< estimated time of what is left
+  bool not_estimated = false;     ///< because an estimate would take too long itself
   FrameCosts costs;
   std::optional<std::uint64_t> log_bytes;      ///< estimated memory of the work logs in use
   std::optional<std::uint64_t> machine_bytes;  ///< estimated memory of the machines that are timed at once

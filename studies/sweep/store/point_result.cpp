@@ -6,6 +6,7 @@
 
 #include "sim/error.h"
 #include "studies/figures/derived_figures.h"
+#include "studies/keys/setting_value.h"
 #include "studies/run/frame_figures.h"
 
 namespace marti::studies {
@@ -59,11 +60,11 @@ RunJson point_result(const SweepReader& sweep, std::int64_t ordinal, const std::
   if (!row || !frame) {
     throw sim::UserError(name + ": this point has not been run yet; run the sweep again to finish it");
   }
-  Json keys = Json::object();
+  std::vector<sim::EffectiveValue> settings;
   const std::vector<std::string>& axes = sweep.axes();
   for (const auto& [key, value] : sweep.settings(point.machine)) {
     const bool is_axis = std::find(axes.begin(), axes.end(), key) != axes.end();
-    keys[key] = {{"value", value}, {"given", is_axis}};
+    settings.push_back({key, value, is_axis, {}});
   }
   // The store has histograms of all clusters together.
   const Json waits = {{"interconnect", waits_json(*row, "interconnect_wait")},
@@ -71,8 +72,9 @@ RunJson point_result(const SweepReader& sweep, std::int64_t ordinal, const std::
                       {"distributed", {{"network", waits_json(*row, "network_wait")}}}};
   Json result = {
       {"marti", {{"version", sweep.version()}}},
-      {"config", {{"file", name}, {"keys", keys}}},
+      {"config", config_json(name, settings)},
       {"figures", {{"frame", frame_json(*frame)}, {"machine", machine_figures(sweep, *row, point.base)}}},
+      {"scene", {{"hash", frame->scene_hash}}},
       {"machine", {{"per_cluster", Json::array({waits})}}}};
   return {std::move(result), name, MadeBy::sweep};
 }

@@ -3,41 +3,35 @@
 #include <algorithm>
 #include <utility>
 
-#include "processors/walk/stripped_log.h"
 #include "sim/error.h"
+#include "studies/sweep/work/batches.h"
 
 namespace marti::studies {
 
 Schedule::Schedule(const SweepPlan& plan, const std::vector<bool>& machines_done,
                    const std::vector<bool>& frames_done, FrameCosts estimated)
     : estimated_(std::move(estimated)), frames_(plan.frames.size()), batch_of_(plan.machines.size()) {
-  std::map<std::pair<std::size_t, std::string>, std::size_t> known;
+  std::vector<std::size_t> left;
   for (std::size_t machine = 0; machine < plan.machines.size(); ++machine) {
-    if (machines_done[machine]) {
-      continue;
+    if (!machines_done[machine]) {
+      left.push_back(machine);
     }
-    const std::size_t frame = plan.machines[machine].frame;
-    const auto [entry, is_new] = known.try_emplace(
-        {frame, processors::StrippedLog::key_of(plan.machines[machine].config)}, batches_.size());
-    if (is_new) {
-      batches_.emplace_back().frame = frame;
-      frames_[frame].batches.push_back(entry->second);
-    }
-    Batch& batch = batches_[entry->second];
-    batch.machines.push_back(machine);
-    const std::uint32_t ways = processors::StrippedLog::ways_of(plan.machines[machine].config);
-    const auto place = std::lower_bound(batch.ways.begin(), batch.ways.end(), ways);
-    if (place == batch.ways.end() || *place != ways) {
-      batch.ways.insert(place, ways);
-    }
-    ++batch.size;
-    batch_of_[machine] = entry->second;
-    ++frames_[frame].left;
-    ++frames_[frame].to_hand_out;
-    ++machines_left_;
   }
-  for (Batch& batch : batches_) {
+  machines_left_ = left.size();
+  for (MachineBatch& made : batches_of(plan, left)) {
+    Batch& batch = batches_.emplace_back();
+    for (const std::size_t machine : made.machines) {
+      batch_of_[machine] = batches_.size() - 1;
+    }
+    batch.frame = made.frame;
+    batch.ways = std::move(made.ways);
+    batch.machines = std::move(made.machines);
+    batch.size = batch.machines.size();
     std::reverse(batch.machines.begin(), batch.machines.end());
+    Frame& frame = frames_[batch.frame];
+    frame.batches.push_back(batches_.size() - 1);
+    frame.left += batch.size;
+    frame.to_hand_out += batch.size;
   }
   for (std::size_t frame = 0; frame < frames_.size(); ++frame) {
     if (frames_[frame].left == 0 && frames_done[frame]) {

@@ -93,12 +93,35 @@ TEST(MachineSamples, NothingIsEstimatedForNothing) {
   const std::vector<FrameEstimate> estimates = samples.estimates();
   std::size_t asked = 0;
   const auto frame_of = [&](std::size_t frame) -> const FrameEstimate& { return estimates[frame]; };
-  const MachinesEstimate none = estimate_machines(plan, {}, samples, frame_of, [&] { return ++asked > 100; });
-  EXPECT_EQ(none.timing, 0.0);
-  EXPECT_EQ(none.stripping, 0.0);
-  const MachinesEstimate some = estimate_machines(plan, {0, 1, 2}, samples, frame_of, [] { return true; });
-  EXPECT_GT(some.timing, 0.0);
-  EXPECT_GT(some.stripping, 0.0) << "three machines of LRU caches share a stripped log";
+  EXPECT_FALSE(estimate_machines(plan, {}, samples, frame_of, [&] { return ++asked > 100; }));
+  const auto some = estimate_machines(plan, {0, 1, 2}, samples, frame_of, [] { return true; });
+  ASSERT_TRUE(some);
+  EXPECT_GT(some->timing, 0.0);
+  EXPECT_GT(some->stripping, 0.0) << "three machines of LRU caches share a stripped log";
+}
+
+SweepOutlook outlook_of_all(const std::string& text) {
+  const SweepPlan plan = planned(text);
+  return outlook_of(plan, std::vector<bool>(plan.machines.size()), std::vector<bool>(plan.frames.size()), 2);
+}
+
+// A scene of a million triangles, and caches of gigabytes, are too large for a sample: their time is not
+// estimated. Beside small machines large ones are not sampled.
+TEST(SweepOutlook, TheLargestScenesAndMachinesAreNotSampled) {
+  const std::string image = "[image]\nwidth = 8\nheight = 8\n";
+  const std::string caches = "scene.source = \"tetra:2\"\n" + image + "[sweep.axes]\ncache.size = ";
+  const SweepOutlook large = outlook_of_all(caches + "[\"2 GiB\", \"4 GiB\"]\n");
+  EXPECT_FALSE(large.seconds);
+  EXPECT_TRUE(large.not_estimated);
+  EXPECT_GT(large.machine_bytes, std::uint64_t{1} << 28U);
+  EXPECT_TRUE(outlook_of_all(caches + "[\"4 GiB\", \"1 KiB\"]\n").seconds);
+  const SweepPlan plan =
+      planned("scene.source = \"tetra:10\"\n" + image + "[sweep.axes]\nmachine.nodes = [1, 2]\n");
+  const SweepOutlook scene = outlook_of(plan, {false, false}, {false}, 2);
+  EXPECT_FALSE(scene.seconds);
+  EXPECT_TRUE(scene.not_estimated);
+  EXPECT_FALSE(scene.log_bytes);
+  EXPECT_NE(describe(plan, scene).find("not estimated"), std::string::npos);
 }
 
 TEST(SweepOutlook, WhatIsDoneCostsNothing) {

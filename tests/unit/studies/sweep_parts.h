@@ -45,7 +45,7 @@ inline studies::SweepPlan made_plan(std::size_t machines, std::size_t first = 0)
       }
     }
     settings[0].value = std::to_string(i % 64);
-    settings[6].value = std::to_string(i / 64) + " KiB";
+    settings[6].value = "\"" + std::to_string(i / 64) + " KiB\"";
     made.settings = pool.share(std::move(settings));
     plan.points.push_back({{std::string("named"), static_cast<std::int64_t>(i % 64),
                             0.5 * static_cast<double>(i), std::string("it's \"quoted\"; --"), i % 2 == 0},

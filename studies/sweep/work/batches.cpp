@@ -1,0 +1,33 @@
+#include "studies/sweep/work/batches.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "processors/walk/stripped_log.h"
+
+namespace marti::studies {
+
+std::vector<MachineBatch> batches_of(const SweepPlan& plan, std::span<const std::size_t> machines) {
+  using processors::StrippedLog;
+  std::vector<MachineBatch> batches;
+  std::map<std::pair<std::size_t, std::string>, std::size_t> known;
+  for (const std::size_t number : machines) {
+    const SweepMachine& machine = plan.machines[number];
+    const std::string key = StrippedLog::key_of(machine.config);
+    const auto [entry, is_new] = known.try_emplace({machine.frame, key}, batches.size());
+    if (is_new) {
+      batches.push_back({machine.frame, key, {}, {}});
+    }
+    MachineBatch& batch = batches[entry->second];
+    batch.machines.push_back(number);
+    const std::uint32_t ways = StrippedLog::ways_of(machine.config);
+    const auto place = std::lower_bound(batch.ways.begin(), batch.ways.end(), ways);
+    if (place == batch.ways.end() || *place != ways) {
+      batch.ways.insert(place, ways);
+    }
+  }
+  return batches;
+}
+
+}  // namespace marti::studies

@@ -1,0 +1,26 @@
+// Machines of a sweep whose logs are stripped in one pass (processors/walk/stripped_log.h).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "studies/sweep/plan/sweep_plan.h"
+
+namespace marti::studies {
+
+/// Machines of one frame with one StrippedLog::key_of.
+struct MachineBatch {
+  std::size_t frame = 0;
+  std::string key;                    ///< empty: their log cannot be stripped
+  std::vector<std::size_t> machines;  ///< indices into SweepPlan::machines
+  std::vector<std::uint32_t> ways;    ///< of the stripped logs of all of them, ascending
+};
+
+/// `machines` of the plan, sorted into batches; those of a batch are in the order of `machines`.
+[[nodiscard]] std::vector<MachineBatch> batches_of(const SweepPlan& plan,
+                                                   std::span<const std::size_t> machines);
+
+}  // namespace marti::studies
