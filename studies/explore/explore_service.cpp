@@ -23,6 +23,10 @@ using Json = nlohmann::ordered_json;
 // With its character set cpp-httplib does not know the type as one that it should compress.
 constexpr const char* json_type = "application/json; charset=utf-8";
 
+constexpr const char* html_type = "text/html; charset=utf-8";
+
+HttpResponse json_response(std::string json) { return {200, json_type, std::move(json)}; }
+
 HttpResponse nothing(int status) { return {.status = status}; }
 
 struct Request {
@@ -104,7 +108,7 @@ std::optional<HttpResponse> ExploreService::file(const std::string& name) const 
     return HttpResponse{.content_type = type, .body = std::string(text)};
   };
   if (name.empty()) {
-    return made("text/html; charset=utf-8", explore_page_html());
+    return made(html_type, explore_page_html());
   }
   if (name == "report.css") {
     return made("text/css; charset=utf-8", report_page_css().text);
@@ -140,7 +144,8 @@ std::optional<HttpResponse> ExploreService::answer_head(const HttpHead& head) {
   if (head.method == "GET") {
     return file(*name).value_or(nothing(404));
   }
-  if (head.method != "POST" || (*name != "time" && *name != "helps" && *name != "report" && *name != "end")) {
+  constexpr std::array<std::string_view, 5> posts = {"time", "helps", "model", "report", "end"};
+  if (head.method != "POST" || std::find(posts.begin(), posts.end(), *name) == posts.end()) {
     return nothing(404);
   }
   if (!is_json(head)) {
@@ -154,17 +159,23 @@ HttpResponse ExploreService::answer(const HttpHead& head, const std::string& bod
   try {
     if (name == "time") {
       return simulate(body, [&](const Settings& settings, sim::WorkMeter* meter) {
-        return session_.answer(settings, Measuring::none, meter);
+        return json_response(session_.answer(settings, Measuring::none, meter));
       });
     }
     if (name == "helps") {
       return simulate(body, [&](const Settings& settings, sim::WorkMeter* meter) {
-        return session_.answer(settings, Measuring::within_budget, meter);
+        return json_response(session_.answer(settings, Measuring::within_budget, meter));
       });
+    }
+    if (name == "model") {  // beside the simulation whose answer it stands for
+      const std::optional<Request> request = parse(body);
+      return request ? json_response(session_.modelled(request->settings)) : nothing(400);
     }
     if (name == "report") {
       return simulate(body, [&](const Settings& settings, sim::WorkMeter* meter) {
-        return session_.report(settings, meter);
+        std::string refused;
+        std::optional<std::string> page = session_.report(settings, refused, meter);
+        return page ? HttpResponse{200, html_type, std::move(*page)} : json_response(std::move(refused));
       });
     }
   } catch (const sim::Stopped&) {
@@ -188,9 +199,7 @@ HttpResponse ExploreService::simulate(const std::string& body, const Simulate& w
   if (!turn) {
     return nothing(409);
   }
-  std::string answer = what(request->settings, &turn->meter());
-  const char* const type = answer.starts_with("{") ? json_type : "text/html; charset=utf-8";
-  return {200, type, std::move(answer)};
+  return what(request->settings, &turn->meter());
 }
 
 void ExploreService::wait_for_end(double seconds) {

@@ -39,8 +39,8 @@ class ExploreService : public HttpService {
   [[nodiscard]] bool is_own(const HttpHead& head) const;
   [[nodiscard]] std::optional<std::string> below_token(const std::string& path) const;
   [[nodiscard]] std::optional<HttpResponse> file(const std::string& name) const;
-  using Simulate = std::function<std::string(const Settings& settings, sim::WorkMeter* meter)>;
-  // What `what` gives when it is its turn: JSON or a page.
+  using Simulate = std::function<HttpResponse(const Settings& settings, sim::WorkMeter* meter)>;
+  // What `what` gives when it is its turn.
   [[nodiscard]] HttpResponse simulate(const std::string& body, const Simulate& what);
 
   const Session& session_;

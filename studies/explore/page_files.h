@@ -12,6 +12,7 @@ namespace marti::studies {
 // Scripts.
 [[nodiscard]] std::string_view explore_state_js();
 [[nodiscard]] std::string_view explore_server_js();
+[[nodiscard]] std::string_view explore_values_js();
 [[nodiscard]] std::string_view explore_sliders_js();
 [[nodiscard]] std::string_view explore_controls_js();
 [[nodiscard]] std::string_view explore_answer_js();
@@ -20,9 +21,10 @@ namespace marti::studies {
 [[nodiscard]] std::string_view explore_main_js();
 
 /// Each script and the name by which the page asks for it.
-[[nodiscard]] inline std::array<std::pair<std::string_view, std::string_view>, 8> explore_scripts() {
+[[nodiscard]] inline std::array<std::pair<std::string_view, std::string_view>, 9> explore_scripts() {
   return {{{"state.js", explore_state_js()},
            {"server.js", explore_server_js()},
+           {"values.js", explore_values_js()},
            {"sliders.js", explore_sliders_js()},
            {"controls.js", explore_controls_js()},
            {"answer.js", explore_answer_js()},

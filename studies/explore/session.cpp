@@ -12,9 +12,12 @@
 #include "sim/error.h"
 #include "sim/files.h"
 #include "sim/nearest.h"
+#include "studies/explore/modelled_frame.h"
 #include "studies/keys/config_file.h"
 #include "studies/keys/frame_keys.h"
+#include "studies/keys/machine_keys.h"
 #include "studies/keys/price_keys.h"
+#include "studies/keys/setting_value.h"
 #include "studies/report/model/chart_library.h"
 #include "studies/report/page/report_page.h"
 #include "studies/report/plots/vega_bundle.h"
@@ -56,7 +59,7 @@ Json key_json(const sim::Config& config, std::size_t index) {
           {"maximum", json_of_bound(key.maximum)},
           {"unit", key.unit},
           {"meaning", key.meaning},
-          {"value", sim::print_values(key, config.values_at(index))}};
+          {"value", setting_value(key.name, sim::print_values(key, config.values_at(index)))}};
 }
 
 std::string keys_json(const sim::Config& config) {
@@ -130,7 +133,7 @@ std::string Session::refused_or(const Make& make) const {
   }
 }
 
-std::string Session::timed(const Settings& settings, Measuring what_helps, sim::WorkMeter* meter) const {
+sim::Config Session::config_with(const Settings& settings) const {
   std::vector<std::string> assignments = assignments_;
   for (const auto& [key, value] : settings) {
     const std::optional<std::size_t> index = schema_.find(key);
@@ -146,7 +149,11 @@ std::string Session::timed(const Settings& settings, Measuring what_helps, sim::
     }
     assignments.push_back(key + "=" + value);
   }
-  sim::Config config = sim::Config::from_text(schema_, text_, name_, assignments);
+  return sim::Config::from_text(schema_, text_, name_, assignments);
+}
+
+std::string Session::timed(const Settings& settings, Measuring what_helps, sim::WorkMeter* meter) const {
+  sim::Config config = config_with(settings);
   RunOptions options;
   options.prices = read_given_prices(config);
   options.what_helps = what_helps;
@@ -162,8 +169,23 @@ std::string Session::answer(const Settings& settings, Measuring what_helps, sim:
   return refused_or([&] { return timed(settings, what_helps, meter); });
 }
 
-std::string Session::report(const Settings& settings, sim::WorkMeter* meter) const {
+std::string Session::modelled(const Settings& settings) const {
   return refused_or([&] {
+    sim::Config config = config_with(settings);
+    const std::optional<ModelledFrame> frame = modelled_frame(*functional_.frame.log, read_machine(config));
+    return frame ? Json({{"end", frame->end},
+                         {"end_of_one", frame->end_of_one},
+                         {"packets", frame->packets},
+                         {"of_packets", frame->of_packets}})
+                       .dump()
+                 : std::string("null");
+  });
+}
+
+std::optional<std::string> Session::report(const Settings& settings, std::string& refused,
+                                           sim::WorkMeter* meter) const {
+  bool made = false;
+  std::string text = refused_or([&] {
     if (!have_vega_scripts()) {
       throw sim::UserError(no_vega_scripts);
     }
@@ -175,8 +197,15 @@ std::string Session::report(const Settings& settings, sim::WorkMeter* meter) con
       report.charts.insert(report.charts.begin(), make_chart("explored", machines));
     }
     report.tables.insert(report.tables.begin(), {machines, false});
-    return report_page(report, vega_scripts());
+    std::string page = report_page(report, vega_scripts());
+    made = true;
+    return page;
   });
+  if (!made) {
+    refused = std::move(text);
+    return std::nullopt;
+  }
+  return text;
 }
 
 }  // namespace marti::studies

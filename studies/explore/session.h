@@ -3,11 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "sim/config.h"
 #include "sim/schema.h"
 #include "sim/work_meter.h"
 #include "studies/explore/explored_machines.h"
@@ -37,14 +39,22 @@ class Session {
   [[nodiscard]] std::string answer(const Settings& settings, Measuring what_helps,
                                    sim::WorkMeter* meter = nullptr) const;
 
+  /// The machine's frame time by a model, in a fraction of the time that answer() takes: {"end",
+  /// "end_of_one"} in ps, and how many "packets" it was made of, "of_packets"; null for a machine that the
+  /// model does not describe; else as answer().
+  [[nodiscard]] std::string modelled(const Settings& settings) const;
+
   /// The page of `marti report` for the machine with these settings, with a table of all machines that were
-  /// simulated; else as answer().
-  [[nodiscard]] std::string report(const Settings& settings, sim::WorkMeter* meter = nullptr) const;
+  /// simulated; std::nullopt, and `refused` as answer() says it, when the machine is refused.
+  [[nodiscard]] std::optional<std::string> report(const Settings& settings, std::string& refused,
+                                                  sim::WorkMeter* meter = nullptr) const;
 
  private:
   // What `make` returns, or what is wrong as answer() says it.
   template <class Make>
   [[nodiscard]] std::string refused_or(const Make& make) const;
+  // The configuration with these settings. Throws UserError for one that is none of the machine.
+  [[nodiscard]] sim::Config config_with(const Settings& settings) const;
   [[nodiscard]] std::string timed(const Settings& settings, Measuring what_helps,
                                   sim::WorkMeter* meter) const;
 

@@ -131,8 +131,13 @@ describe("the page of marti explore", () => {
       await page.waitForFunction((text) => document.getElementById("helps").textContent === text, machine.what_helps.sentence);
       const best = machine.what_helps.resources.find(({ step }) => step?.saved > 0);
       await page.locator("#steps button").first().click();
-      const settings = Object.fromEntries(Object.entries(best.step.keys).map(([key, { to }]) => [key, to.replaceAll('"', "")]));
-      assert.equal((await answer_of(page, settings)).figures.end, best.step.frame_time_ps);
+      await page.waitForFunction((end) => explore.answered.answer.figures.end === end, best.step.frame_time_ps);
+      // The settings of that step, and nothing else, typed as the result has them.
+      const typed = await page.evaluate(() => Object.entries(explore.answered.settings).map(([name, text]) => {
+        const { key } = explore.controls.of(name);
+        return [name, explore.values.is_number(key) ? explore.values.number_of(key, text) : text];
+      }));
+      assert.deepEqual(Object.fromEntries(typed), Object.fromEntries(Object.entries(best.step.keys).map(([key, { to }]) => [key, to])));
     }));
 
   it("is the same again by its address", () =>
@@ -191,14 +196,18 @@ describe("the page of marti explore", () => {
         const keys = await explore.server.keys();
         const wrong = [];
         const tried = new Set();
-        for (const key of keys.controls.filter(({ type, list }) => explore.controls.numbers.includes(type) && !list)) {
-          const numbers = explore.sliders.numbers_of({ ...key, plain: explore.controls.plain(key.value) });
+        for (const key of keys.controls.filter(explore.values.is_number)) {
+          const numbers = explore.sliders.numbers_of(key);
           if (numbers.some((number, i) => i > 0 && number <= numbers[i - 1])) wrong.push(`${key.name}: not ascending`);
           if (key.minimum !== null && numbers.some((number) => number < key.minimum)) wrong.push(`${key.name}: too low`);
           if (key.maximum !== null && numbers.some((number) => number > key.maximum * (1 + 1e-9))) wrong.push(`${key.name}: too high`);
           if (key.type === "size" && numbers.some((number) => number > 0 && number !== key.minimum && !Number.isInteger(Math.log2(number)))) wrong.push(`${key.name}: no power of two`);
+          const own = explore.values.text_of_value(key, key.value);
+          if (explore.values.number_of(key, own) !== key.value) wrong.push(`${key.name}: ${key.value} becomes ${own}`);
           for (const number of numbers) {
-            const read = explore.sliders.number_of(key, explore.sliders.text_of(key, number));
+            const exact = explore.values.text_of(key, number);
+            if (explore.values.number_of(key, exact) !== (key.type === "real" || key.type === "percentage" || key.type === "frequency" ? number : Math.round(number))) wrong.push(`${key.name}: ${number} becomes ${exact}`);
+            const read = explore.values.number_of(key, explore.sliders.text_of(key, number));
             if (!(Math.abs(read - number) <= 0.005 * Math.abs(number))) wrong.push(`${key.name}: ${number} becomes ${read}`);
           }
           if (numbers.length && !tried.has(key.type)) {
@@ -228,7 +237,13 @@ describe("the page of marti explore", () => {
         explore.state.set({ "machine.nodes": "3" });
       });
       await page.waitForFunction(() => /^simulating for .* s: timing, 3 of 9 packets;/.test(document.getElementById("state").textContent));
-      await answer_of(page, { "machine.nodes": "3" });
+      // Meanwhile there is a figure, and it says that it is modelled.
+      await page.waitForFunction(() => /^frame about .* modelled, from \d+ of \d+ packets$/.test(document.getElementById("answer").textContent));
+      const { end } = await page.evaluate(() => explore.server.model({ "machine.nodes": "3" }));
+      const exact = await answer_of(page, { "machine.nodes": "3" });
+      assert.ok(Math.abs(end / exact.figures.end - 1) < 0.25, `${end} and ${exact.figures.end}`);
+      assert.match(await page.locator("#answer").textContent(), /^frame (?!about)/);
+      assert.equal(await page.locator("#answer.old, #shares.old").count(), 0);
     }));
 
   it("saves a report of all machines", () =>

@@ -2,7 +2,7 @@
 "use strict";
 
 explore.answer = (() => {
-  const { element, plain } = explore.controls;
+  const { element, of } = explore.controls;
   const most_steps = 6;
   const svg = "http://www.w3.org/2000/svg";
   const at = (id) => document.getElementById(id);
@@ -66,11 +66,12 @@ explore.answer = (() => {
     const worth = (helps?.resources ?? []).filter(({ step }) => step?.saved > 0).slice(0, most_steps);
     at("steps").replaceChildren(
       ...worth.map(({ step }) => {
-        const keys = Object.entries(step.keys);
-        const text = keys.map(([key, { from, to }]) => `${key} ${plain(from)} → ${plain(to)}`).join(", ");
+        const written = (name, value) => explore.values.text_of_value(of(name).key, value);
+        const keys = Object.entries(step.keys).map(([name, { from, to }]) => [name, written(name, from), written(name, to)]);
+        const text = keys.map(([name, from, to]) => `${name} ${from} → ${to}`).join(", ");
         const button = element("button", { type: "button", textContent: "Try" });
         button.setAttribute("aria-label", `Try ${text}`);
-        button.addEventListener("click", () => explore.state.set(Object.fromEntries(keys.map(([key, { to }]) => [key, plain(to)]))));
+        button.addEventListener("click", () => explore.state.set(Object.fromEntries(keys.map(([name, , to]) => [name, to]))));
         return element("li", {}, `${text}: frame ${percent(step.saved)} shorter `, button);
       }),
     );
@@ -82,7 +83,7 @@ explore.answer = (() => {
     show_helps,
     /** `base`: figures of the configuration itself. */
     show(answer, base) {
-      at("answer").classList.toggle("old", "error" in answer);
+      for (const id of ["answer", "shares", "lost"]) at(id).classList.toggle("old", "error" in answer);
       if ("error" in answer) {
         at("state").textContent = `This machine cannot be: ${answer.error}`;
         return;
@@ -91,6 +92,12 @@ explore.answer = (() => {
       const lost = Object.entries(answer.figures).filter(([name]) => name.startsWith("lost_"));
       bars("shares", answer.figures, "share_", 1);
       bars("lost", answer.figures, "lost_", Math.max(1e-9, ...lost.map(([, value]) => Math.abs(value))));
+    },
+    /** A frame time by the model, shown until the exact answer is there; what else is shown is of the machine before. */
+    modelled({ end, end_of_one, packets, of_packets }) {
+      at("answer").textContent = `frame about ${time(end)}, speed-up about ${(end_of_one / end).toPrecision(2)}: modelled, from ${packets} of ${of_packets} packets`;
+      for (const id of ["answer", "shares", "lost"]) at(id).classList.add("old");
+      show_helps(null);
     },
     waiting: (text) => (at("state").textContent = text),
   };

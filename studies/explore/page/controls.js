@@ -3,8 +3,7 @@
 
 explore.controls = (() => {
   const byKey = new Map();
-  const numbers = ["integer", "real", "size", "frequency", "duration", "percentage"];
-  const sizes = { B: 1, KiB: 2 ** 10, MiB: 2 ** 20, GiB: 2 ** 30, TiB: 2 ** 40 };
+  const { is_number, number_of, text_of, text_of_value } = explore.values;
 
   const element = (name, properties = {}, ...children) => {
     const made = Object.assign(document.createElement(name), properties);
@@ -12,24 +11,13 @@ explore.controls = (() => {
     return made;
   };
 
-  const is_number = (key) => numbers.includes(key.type) && !key.list;
-
-  /** A value of a configuration without its quotation marks. */
-  const plain = (value) => (value.startsWith('"') ? JSON.parse(value) : value);
-
-  /** The number with its unit, twice as large or half; the same when it is no number. */
-  function scaled(key, value, factor) {
-    const parts = /^\s*([-+]?[\d.]+(?:e[-+]?\d+)?)\s*(.*?)\s*$/i.exec(value);
-    if (!parts) return value;
-    const [, digits, unit] = parts;
-    const number = Number(digits) * factor;
-    if (key.type === "size") {
-      const bytes = Math.max(1, Math.round(number * (sizes[unit || "B"] ?? 1)));
-      const largest = Object.keys(sizes).findLast((name) => bytes % sizes[name] === 0);
-      return `${bytes / sizes[largest]} ${largest}`;
-    }
-    if (key.type === "integer") return String(factor < 1 ? Math.floor(number) : Math.max(1, number));
-    return unit ? `${number} ${unit}` : String(number);
+  /** The text of twice or half the number; the same when it is no number. */
+  function scaled(key, text, factor) {
+    const number = number_of(key, text) * factor;
+    if (Number.isNaN(number)) return text;
+    if (key.type === "size") return text_of(key, Math.max(1, number));
+    if (key.type === "integer") return text_of(key, factor < 1 ? Math.floor(number) : Math.max(1, number));
+    return text_of(key, key.type === "duration" ? Math.round(number) : number);
   }
 
   function input_of(key, change) {
@@ -55,11 +43,11 @@ explore.controls = (() => {
   }
 
   function make(key) {
-    const own = plain(key.value);
+    const own = text_of_value(key, key.value);
     const control = { key, own };
     const read = () => (control.input.type === "checkbox" ? String(control.input.checked) : control.input.value.trim());
     const move = (value) => explore.state.set({ [key.name]: value === own ? null : value });
-    const slider = is_number(key) ? explore.sliders.make({ ...key, plain: own }, move) : null;
+    const slider = is_number(key) ? explore.sliders.make(key, move) : null;
     control.input = input_of(key, () => move(read()));
     control.input.id = `control-${key.name}`;
     control.show = (value) => {
@@ -105,8 +93,6 @@ explore.controls = (() => {
 
   return {
     element,
-    numbers,
-    plain,
     scaled,
     of: (name) => byKey.get(name),
     make(keys) {

@@ -2,7 +2,7 @@
 "use strict";
 
 explore.curve = (() => {
-  const { element, numbers, of, scaled } = explore.controls;
+  const { element, of, scaled } = explore.controls;
   const { drawn, shown } = explore.answer;
   const at = (id) => document.getElementById(id);
   const figures = ["end", "speed_up", "efficiency", "hit_ratio", "interconnect_utilisation", "bank_utilisation"];
@@ -96,7 +96,7 @@ explore.curve = (() => {
     values_of,
     make(keys) {
       for (const key of keys.controls) {
-        if (!key.list && [...numbers, "choice", "boolean"].includes(key.type)) {
+        if (!key.list && key.type !== "text") {
           at("axis").append(element("option", { value: key.name, textContent: key.name }));
         }
       }

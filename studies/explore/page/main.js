@@ -6,6 +6,7 @@
   const keys = await server.keys();
   document.getElementById("what").textContent = `${keys.file}, ${keys.scene}`;
   const patience = 150;  // ms
+  const model_after = 80;  // ms, so that there is a figure within the patience
   const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
   let asked = 0;
   let running = null;  // the answer that is waited for: since when, and its end
@@ -26,18 +27,26 @@
     background.run([helps, ...curve.wanted(now).map(one)]);
   }
 
-  /** Says that the answer is waited for, and of one that takes long what marti does; returns what ends that. */
-  function wait_aloud() {
+  /** Of an answer that takes long: shows what the model says meanwhile, and how far marti is; returns what ends that. */
+  function wait_aloud(settings) {
     const begun = performance.now();
-    let what = "";
-    const look = setInterval(async () => {
+    let waiting = true;
+    async function say() {
       const { part, unit, done, of } = await server.progress().catch(() => ({}));
-      what = part ? `: ${part}${of ? `, ${Math.min(done, of)} of ${of} ${unit}` : ""}` : "";
-    }, 1000);
-    const say = setInterval(() => {
+      if (!waiting) return;
+      const what = part ? `: ${part}${of ? `, ${Math.min(done, of)} of ${of} ${unit}` : ""}` : "";
       answer.waiting(`simulating for ${((performance.now() - begun) / 1000).toFixed(1)} s${what}; a move takes its place`);
-    }, 250);
-    return () => [look, say].forEach(clearInterval);
+    }
+    const model = setTimeout(async () => {
+      const found = await server.model(settings).catch(() => null);
+      if (waiting && found?.end) answer.modelled(found);
+    }, model_after);
+    const saying = setInterval(say, 250);
+    return () => {
+      waiting = false;
+      clearTimeout(model);
+      clearInterval(saying);
+    };
   }
 
   async function update(now) {
@@ -50,7 +59,7 @@
     const begun = performance.now();
     let finished;
     const run = (running = { begun, done: new Promise((done) => (finished = done)) });
-    const stop_waiting = wait_aloud();
+    const stop_waiting = wait_aloud(now.settings);
     const before = server.known(now.settings) !== undefined;
     let found = null;
     try {

@@ -2,13 +2,8 @@
 "use strict";
 
 explore.save = (() => {
-  const { of, numbers } = explore.controls;
-
-  /** A value as a configuration has it. */
-  function toml(key, value) {
-    const bare = key.list || ["boolean", "integer", "real"].includes(key.type);
-    return bare ? value : JSON.stringify(value);
-  }
+  const { of } = explore.controls;
+  const { toml, text_of_value } = explore.values;
 
   function tables(values) {
     const sections = new Map();
@@ -23,7 +18,7 @@ explore.save = (() => {
   /** Every key that is given: those of the frame as the configuration has them, those of the machine as it was timed. */
   const given = (keys, answer) => [
     ...Object.entries(keys.given).filter(([key]) => !of(key)),
-    ...Object.entries(answer.keys).filter(([key, { given }]) => given && of(key)).map(([key, { value }]) => [key, value]),
+    ...Object.entries(answer.keys).filter(([key, { given }]) => given && of(key)).map(([name, { value }]) => [name, toml(of(name).key, text_of_value(of(name).key, value))]),
   ];
 
   const configuration = (keys, answer) => `# From marti explore ${keys.file}\n\n${tables(given(keys, answer))}`;

@@ -43,6 +43,8 @@ explore.server = (() => {
     keys: async () => (await fetch("keys")).json(),
     time: (settings, background = false) => ask("time", settings, background),
     helps: (settings) => ask("helps", settings, true),
+    /** The frame time by a model, while the exact one is simulated; null where there is no model. */
+    model: (settings) => post("model", { settings }),
     known: (settings) => kept.get(`time?${explore.state.text(settings)}`),
     /** How far the simulation is that is under way. */
     progress: async () => (await fetch("progress")).json(),

@@ -1,43 +1,18 @@
-// A slider beside each number: its positions, and the value at each as a configuration has it.
+// A slider beside each number: its positions, and the value at each.
 "use strict";
 
 explore.sliders = (() => {
-  const units = {
-    size: { B: 1, KiB: 2 ** 10, MiB: 2 ** 20, GiB: 2 ** 30, TiB: 2 ** 40 },
-    frequency: { Hz: 1, kHz: 1e3, MHz: 1e6, GHz: 1e9 },
-    duration: { ps: 1, ns: 1e3, us: 1e6, ms: 1e9, s: 1e12 },
-    percentage: { "%": 0.01 },
-  };
+  const { number_of } = explore.values;
   const in_a_doubling = 4;
   const most_positions = 400;
   const narrow = 64;  // a range is linear up to this many times its lower end
 
-  /** The number that a value's text says, in bytes, Hz, ps or as it is; NaN when it is none. */
-  function number_of(key, text) {
-    const parts = /^\s*([-+]?[\d.]+(?:e[-+]?\d+)?)\s*(\S*)\s*$/i.exec(text);
-    if (!parts) return NaN;
-    const [, digits, unit] = parts;
-    const factor = unit ? units[key.type]?.[unit] : 1;
-    return Number(digits) * (factor ?? NaN);
-  }
-
-  /** The number as a configuration has it, with three digits where it is not whole. */
-  function text_of(key, number) {
-    const table = units[key.type];
-    if (!table) return String(key.type === "integer" ? Math.round(number) : Number(number.toPrecision(3)));
-    const names = Object.keys(table);
-    if (key.type === "size") {
-      const bytes = Math.round(number);
-      const largest = names.findLast((name) => bytes >= table[name] && bytes % table[name] === 0) ?? "B";
-      return `${bytes / table[largest]} ${largest}`;
-    }
-    const largest = names.findLast((name) => number >= table[name]) ?? names[0];
-    return `${Number((number / table[largest]).toPrecision(3))} ${largest}`;
-  }
+  /** What a position says: three digits where the number is not whole. */
+  const text_of = (key, number) => explore.values.text_of(key, number, 3);
 
   /** All numbers that the slider can have, ascending: powers of two for sizes, by the setting's range for others. */
   function numbers_of(key) {
-    const own = number_of(key, key.plain);
+    const own = key.value;
     const low = key.minimum ?? 0;
     const high = Math.min(key.maximum ?? Infinity, Math.max(own, low, 1) * 4096);
     if (!(high > low) || Number.isNaN(own)) return [];
@@ -75,7 +50,6 @@ explore.sliders = (() => {
   }
 
   return {
-    number_of,
     numbers_of,
     text_of,
     /** A slider for the key that calls `move(text)` while it moves, and `show(text)` for a value from elsewhere; null

@@ -101,8 +101,8 @@ class Served : public testing::Test {
 const std::string machine = R"({"settings": {"machine.nodes": "2"}})";
 
 TEST_F(Served, ThePageItsFilesAndItsAnswers) {
-  for (const char* name : {"", "report.css", "explore.css", "main.js", "state.js", "server.js", "sliders.js",
-                           "controls.js", "answer.js", "curve.js", "save.js"}) {
+  for (const char* name : {"", "report.css", "explore.css", "main.js", "state.js", "server.js", "values.js",
+                           "sliders.js", "controls.js", "answer.js", "curve.js", "save.js"}) {
     const auto file = client_.Get(path(name));
     ASSERT_EQ(status(file), 200) << name;
     EXPECT_GT(file->body.size(), 200U) << name;
@@ -113,6 +113,14 @@ TEST_F(Served, ThePageItsFilesAndItsAnswers) {
             session().answer({{"machine.nodes", "2"}}, Measuring::none));
   EXPECT_EQ(client_.Post(path("helps"), machine, "application/json; charset=utf-8")->body,
             session().answer({{"machine.nodes", "2"}}, Measuring::within_budget));
+  const auto modelled = client_.Post(path("model"), machine, "application/json");
+  EXPECT_EQ(modelled->body, session().modelled({{"machine.nodes", "2"}}));
+  EXPECT_EQ(modelled->get_header_value("Content-Type"), "application/json; charset=utf-8");
+  EXPECT_EQ(status(client_.Post(path("model"), "[]", "application/json")), 400);
+  for (const char* what : {"time", "report"}) {
+    const auto json = client_.Post(path(what), R"({"settings": {"machine.nodes": "0"}})", "application/json");
+    EXPECT_EQ(json->get_header_value("Content-Type"), "application/json; charset=utf-8") << what;
+  }
   const auto refused =
       client_.Post(path("time"), R"({"settings": {"machine.nodes": "0"}})", "application/json");
   EXPECT_EQ(refused->status, 200);

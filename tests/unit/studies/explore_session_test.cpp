@@ -15,6 +15,7 @@
 #include "studies/explore/session.h"
 #include "studies/explore/turns.h"
 #include "studies/keys/price_keys.h"
+#include "studies/keys/setting_value.h"
 #include "studies/run/run_result.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
@@ -115,6 +116,33 @@ TEST_F(Explored, WhatWouldHelpIsThatOfARun) {
   EXPECT_EQ(session.answer(settings, Measuring::within_budget), run_with(settings, Measuring::within_budget));
 }
 
+// This small frame's packets are all timed, so one node's frame is exact; others are as near as the model is.
+TEST_F(Explored, AModelStandsForAnAnswer) {
+  const Session session(file_, {"image.width=64", "image.height=64", "scene.source=teapot:2"});
+  const auto exact = [&](const Settings& settings) {
+    return nlohmann::json::parse(session.answer(settings, Measuring::none));
+  };
+  for (const Settings& machine :
+       {Settings{}, Settings{{"cache.replacement", "fifo"}}, Settings{{"cache.size", "256 B"}},
+        Settings{{"interconnect.kind", "crossbar"}}}) {
+    for (const char* nodes : {"1", "2", "6", "30"}) {
+      Settings settings = machine;
+      settings.emplace_back("machine.nodes", nodes);
+      const auto model = nlohmann::json::parse(session.modelled(settings));
+      const auto run = exact(settings);
+      const double end = run["figures"]["machine"]["end"];
+      EXPECT_EQ(model["packets"], 64);
+      EXPECT_EQ(model["of_packets"], 64);
+      EXPECT_EQ(model["end_of_one"].get<double>(), run["machine"]["one_node_time_ps"].get<double>()) << nodes;
+      EXPECT_NEAR(model["end"].get<double>() / end, 1.0, std::string(nodes) == "1" ? 0.0 : 0.15) << nodes;
+    }
+  }
+  EXPECT_EQ(session.modelled({{"machine.scheme", "pipeline"}}), "null");
+  EXPECT_EQ(session.modelled({{"machine.clusters", "2"}}), "null");
+  EXPECT_EQ(refused_key(session.modelled({{"machine.nodes", "0"}})), "machine.nodes");
+  EXPECT_EQ(session.modelled({{"machine.nodes", "6"}}), session.modelled({{"machine.nodes", "6"}}));
+}
+
 TEST_F(Explored, AnAnswerForNobodyIsGivenUp) {
   const Session session(file_, {});
   sim::WorkMeter stop;
@@ -131,16 +159,25 @@ TEST_F(Explored, AReplayThatHasBegunIsGivenUp) {
   const Session session(file_, {"image.width=96", "image.height=96", "packets.width=1", "packets.height=1"});
   const Settings settings = {{"machine.nodes", "5"}, {"cache.size", "128 B"}};
   for (const char* const part : {"taking known references out", "timing the machine and one node"}) {
-    sim::WorkMeter meter;
-    std::atomic<bool> over = false;
-    const std::jthread mover([&] {
-      while (!over && (meter.state().part != part || meter.state().done == 0)) {
+    // On a busy computer the thread that moves may get no time until the part is over: then once more.
+    bool was_given_up = false;
+    for (int attempt = 0; attempt < 50 && !was_given_up; ++attempt) {
+      sim::WorkMeter meter;
+      std::atomic<bool> over = false;
+      const std::jthread mover([&] {
+        while (!over && (meter.state().part != part || meter.state().done == 0)) {
+        }
+        meter.stop();
+      });
+      try {
+        static_cast<void>(session.answer(settings, Measuring::none, &meter));
+      } catch (const sim::Stopped&) {
+        const sim::WorkMeter::State at_end = meter.state();
+        was_given_up = at_end.part == part && at_end.done < at_end.of;
       }
-      meter.stop();
-    });
-    EXPECT_THROW(static_cast<void>(session.answer(settings, Measuring::none, &meter)), sim::Stopped) << part;
-    over = true;
-    EXPECT_LT(meter.state().done, meter.state().of);
+      over = true;
+    }
+    EXPECT_TRUE(was_given_up) << part;
   }
   std::vector<std::string> all = {"image.width=96",   "image.height=96", "packets.width=1",
                                   "packets.height=1", "machine.nodes=5", "cache.size=128 B"};
@@ -207,7 +244,7 @@ TEST_F(Explored, EveryOtherKeyIsAControlWithItsValue) {
   ASSERT_EQ(keys["controls"].size(), controls);
   std::map<std::string, std::string> values;
   for (const auto& key : keys["controls"]) {
-    values[key["name"]] = key["value"];
+    values[key["name"]] = setting_toml(key["name"].get<std::string>(), key["value"]);
   }
   EXPECT_EQ(values["machine.nodes"], "5");
   EXPECT_EQ(values["cache.size"], "\"1 KiB\"");
