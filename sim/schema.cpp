@@ -39,13 +39,28 @@ std::string in_words(const std::vector<std::string>& names) {
   return words;
 }
 
-/// A value as in a range, without TOML's quotation marks.
+/// A value without TOML's quotation marks.
 std::string print_bare(ValueType type, const Value& value) {
-  std::string printed = print_value(type, value);
-  if (printed.front() == '"') {
-    printed = printed.substr(1, printed.size() - 2);
+  switch (type) {
+    case ValueType::boolean:
+      return std::get<bool>(value) ? "true" : "false";
+    case ValueType::integer:
+      return std::to_string(std::get<std::int64_t>(value));
+    case ValueType::real:
+      return print_real(std::get<double>(value));
+    case ValueType::text:
+    case ValueType::choice:
+      return std::get<std::string>(value);
+    case ValueType::size:
+      return print_size(std::get<std::int64_t>(value));
+    case ValueType::frequency:
+      return print_frequency(std::get<double>(value));
+    case ValueType::duration:
+      return print_duration(std::get<std::int64_t>(value));
+    case ValueType::percentage:
+      return print_percentage(std::get<double>(value));
   }
-  return printed;
+  throw InternalError("unknown type of value");
 }
 
 bool valid_name(std::string_view name) {
@@ -152,26 +167,8 @@ std::string_view name_of(ValueType type) {
 }
 
 std::string print_value(ValueType type, const Value& value) {
-  switch (type) {
-    case ValueType::boolean:
-      return std::get<bool>(value) ? "true" : "false";
-    case ValueType::integer:
-      return std::to_string(std::get<std::int64_t>(value));
-    case ValueType::real:
-      return print_real(std::get<double>(value));
-    case ValueType::text:
-    case ValueType::choice:
-      return quote(std::get<std::string>(value));
-    case ValueType::size:
-      return quote(print_size(std::get<std::int64_t>(value)));
-    case ValueType::frequency:
-      return quote(print_frequency(std::get<double>(value)));
-    case ValueType::duration:
-      return quote(print_duration(std::get<std::int64_t>(value)));
-    case ValueType::percentage:
-      return quote(print_percentage(std::get<double>(value)));
-  }
-  throw InternalError("unknown type of value");
+  const bool bare = type == ValueType::boolean || type == ValueType::integer || type == ValueType::real;
+  return bare ? print_bare(type, value) : quote(print_bare(type, value));
 }
 
 std::string print_values(const Key& key, std::span<const Value> values) {

@@ -66,7 +66,7 @@ class Sweep:
         columns = list(self._database.execute("SELECT name, type FROM pragma_table_info('points')"))
         #: The keys that differ from point to point, as in the configuration; "point" for named points.
         self.axes = [name for name, _ in columns if name not in POINT_COLUMNS]
-        self._flags = {name for name, kind in columns if kind == "BOOLEAN"}
+        self._flags = {name for name, kind in columns if kind == "BOOLEAN" or kind == "INTEGER" and self._holds_flags(name)}
         self._summary = self._names("summary")
         self._counters = [n for n in self._names("results") if n not in ("machine", "checksum", *self._summary)]
         #: What is known of each figure: a dict with "unit", "meaning" and, if the store has them, "better", "formula".
@@ -74,6 +74,13 @@ class Sweep:
 
     def _names(self, table):
         return [name for (name,) in self._database.execute("SELECT name FROM pragma_table_info(?)", (table,))]
+
+    def _holds_flags(self, key):
+        """Whether a column of integers is one of booleans, as older programs wrote them: by a setting's text."""
+        texts = " UNION ALL ".join(
+            f"SELECT * FROM (SELECT value FROM {table} WHERE key = ? LIMIT 1)" for table in ("machine_settings", "frame_settings")
+        )
+        return any(text in ("true", "false") for (text,) in self._database.execute(texts, (key, key)))
 
     def _catalogue(self):
         names = {"unit": "unit", "description": "meaning", "better": "better", "formula": "formula"}
@@ -211,7 +218,8 @@ def main():
         elif arguments.plot:
             _save(sweep, arguments)
         else:
-            print(f"{len(sweep.points('cost'))} points of marti {sweep.version}")
+            count = len(sweep.points("cost"))
+            print(f"{count} point{'' if count == 1 else 's'} of marti {sweep.version}")
             print("axes:   ", ", ".join(sweep.axes))
             for name, known in sweep.figures.items():
                 print(f"{name:<32}{known['unit']:<8}{known['meaning']}")

@@ -7,10 +7,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "sim/schema.h"
 #include "studies/compare/verdict.h"
 #include "studies/keys/setting_value.h"
-#include "studies/sweep/plan/sweep_keys.h"
 #include "studies/tables/json_table.h"
 #include "studies/tables/text_table.h"
 #include "studies/tables/text_units.h"
@@ -24,7 +22,7 @@ using Json = nlohmann::ordered_json;
 // The value of a setting as JSON has it; null where the machine does not use the setting.
 Json typed(const std::string& key, const Cell& value) {
   const auto* text = std::get_if<std::string>(&value);
-  return text == nullptr ? Json() : setting_value(sweep_schema(), key, *text);
+  return text == nullptr ? Json() : setting_value(key, *text);
 }
 
 Json side_json(const ComparedResult& result) { return {{"name", result.name}, {"version", result.version}}; }

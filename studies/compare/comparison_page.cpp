@@ -28,7 +28,7 @@ PageSection section_of(const ComparisonPart& part) {
     html += "<div class=\"charts\">\n" + charts + "</div>\n";
   }
   for (const SortedTable& table : part.tables) {
-    html += sorted_table_html(table);
+    html += "<h3>" + html_text(table.title) + "</h3>\n" + sorted_table_html(table);
   }
   return {part.id, part.title, html};
 }

@@ -7,6 +7,7 @@
 
 #include "sim/error.h"
 #include "studies/figures/derived_figures.h"
+#include "studies/keys/setting_value.h"
 #include "studies/run/frame_figures.h"
 #include "studies/sweep/store/point_result.h"
 #include "studies/tables/json_table.h"
@@ -26,18 +27,6 @@ void add(const RunJson& run, const std::string& part, const std::string& prefix,
   }
 }
 
-std::map<std::string, std::string> settings_of(const RunJson& run) {
-  std::map<std::string, std::string> settings;
-  for (const auto& [key, setting] : run.at("config.keys").items()) {
-    const auto value = setting.is_object() ? setting.find("value") : setting.end();
-    if (value == setting.end() || !value->is_string()) {
-      run.refuse("config.keys." + key + " has no text \"value\"");
-    }
-    settings[key] = value->get<std::string>();
-  }
-  return settings;
-}
-
 ComparedResult compared(const RunJson& run, const std::string& name) {
   ComparedResult result;
   result.name = name;
@@ -46,6 +35,7 @@ ComparedResult compared(const RunJson& run, const std::string& name) {
   result.settings = settings_of(run);
   add(run, "figures.frame", "frame.", result.figures);
   add(run, "figures.machine", "", result.figures);
+  result.scene_hash = run.text("scene.hash");
   result.helps = run.text("machine.what_helps.sentence");
   return result;
 }
@@ -79,7 +69,9 @@ void add_counters(const SweepRow& row, Figures& figures) {
                  [&figures](const std::string& name, std::int64_t value) { figures[name] = value; });
 }
 
-void add_frame(const FrameRow& row, Figures& figures) {
+void add_frame(const FrameRow& row, ComparedResult& result) {
+  Figures& figures = result.figures;
+  result.scene_hash = row.scene_hash;
   figures["frame.scene"] = row.scene;
   figures["frame.image_hash"] = row.image_hash;
   figures["frame.hit_hash"] = row.hit_hash;

@@ -22,6 +22,7 @@ struct ComparedResult {
   std::string version;                          ///< of the program that made it
   std::map<std::string, std::string> settings;  ///< values as in a TOML file
   Figures figures;
+  std::string scene_hash;  ///< empty where it is not recorded: a run does not
   std::string helps;  ///< what would make its frame shorter, in a sentence; empty where it is not recorded
 };
 
@@ -36,8 +37,8 @@ struct ComparedResult {
 /// The counted figures of a row.
 void add_counters(const SweepRow& row, Figures& figures);
 
-/// The name of the scene and the hashes of what was rendered, as those of a result are named.
-void add_frame(const FrameRow& row, Figures& figures);
+/// The frame: its figures as those of a result are named, and the scene's hash.
+void add_frame(const FrameRow& row, ComparedResult& result);
 
 /// Removes what cannot be compared with a sweep: figures that are measured against another machine, which a
 /// run and a sweep do not choose alike, and settings that a sweep does not keep, because no result depends on

@@ -62,7 +62,7 @@ std::vector<Candidate> candidates_of(const ComparedResult& own, const SweepReade
       other.settings.emplace(key, std::move(value));
     }
     if (const std::optional<FrameRow> frame = sweep.read_frame(stored.machine)) {
-      add_frame(*frame, other.figures);
+      add_frame(*frame, other);
     }
     other.figures["end"] = figures[0];
     keep_what_sweeps_have(other);

@@ -68,8 +68,9 @@ std::string table_of(const ResultAndSweep& found, bool all) {
 
 std::string point_text(const ResultAndSweep& found, const ComparedPoint& point) {
   const std::string values = values_text(point.settings, found.of_sweep(), false);
-  const std::string name = point.name.empty() ? "" : printable(point.name) + ": ";
-  return fmt::format("point {} ({}{})", point.ordinal, name, values == "-" ? "like the others" : values);
+  const std::string name = printable(point.name);
+  const std::string what = values == "-" ? name : name.empty() ? values : name + ": " + values;
+  return fmt::format("point {}{}", point.ordinal, what.empty() ? "" : " (" + what + ")");
 }
 
 std::vector<std::string> verdict_of(const ResultAndSweep& found) {

@@ -199,7 +199,7 @@ void join(const Sweep& a, const Sweep& b, const StoredPoint& from, const StoredP
   point.settings = differences_of(one, other).settings;
   for (auto [sweep, stored, result] : {std::tuple(&a, &from, &one), std::tuple(&b, &to, &other)}) {
     if (const std::optional<FrameRow> frame = sweep->reader.read_frame(stored->machine)) {
-      add_frame(*frame, result->figures);
+      add_frame(*frame, *result);
     }
   }
   point.same_frame = same_frame(one, other);

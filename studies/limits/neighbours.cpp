@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "sim/error.h"
+#include "studies/keys/setting_value.h"
 
 namespace marti::studies {
 
@@ -101,9 +102,7 @@ std::optional<double> Neighbours::number(std::size_t point, std::string_view key
 
 std::string Neighbours::text(std::size_t point, std::string_view key) const {
   const std::optional<std::size_t> axis = axis_of(key);
-  std::string text = axis ? axes_[*axis].texts[places_[point][*axis]] : std::string();
-  std::erase(text, '"');
-  return text;
+  return axis ? plain_setting(axes_[*axis].texts[places_[point][*axis]]) : std::string();
 }
 
 }  // namespace marti::studies

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "studies/keys/setting_value.h"
 #include "studies/show/json_parts.h"
 #include "studies/tables/text_units.h"
 
@@ -42,7 +43,7 @@ Json change_json(const WhatHelps& what, const std::optional<MeasuredChange>& cha
   }
   Json keys = Json::object();
   for (const KeyChange& key : change->keys) {
-    keys[key.key] = {{"from", key.from}, {"to", key.to}};
+    keys[key.key] = {{"from", setting_value(key.key, key.from)}, {"to", setting_value(key.key, key.to)}};
   }
   return {{"keys", keys},
           {"outcome", name_of(change->outcome)},

@@ -7,20 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/config.h"
 #include "sim/statistics.h"
 
 namespace marti::studies {
-
-/// The configuration as `config` of `result.json` has it.
-[[nodiscard]] inline nlohmann::ordered_json config_json(const std::string& file,
-                                                        const std::vector<sim::EffectiveValue>& values) {
-  nlohmann::ordered_json keys = nlohmann::ordered_json::object();
-  for (const sim::EffectiveValue& value : values) {
-    keys[value.key] = {{"value", value.value}, {"given", value.given}};
-  }
-  return {{"file", file}, {"keys", keys}};
-}
 
 /// The value, or null.
 [[nodiscard]] inline nlohmann::ordered_json optional_json(std::optional<double> value) {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "studies/keys/setting_value.h"
 #include "studies/run/frame_figures.h"
 #include "studies/run/plan/plan_output.h"
 #include "studies/run/run_result.h"
@@ -25,7 +26,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int schema_version = 3;
+constexpr int schema_version = 4;
 // Beyond this many nodes or clusters their own figures are left out: sums remain.
 constexpr std::size_t most_listed = 4096;
 

@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t most_bytes = std::int64_t{256} << 20U;
-constexpr int schema = 3;
+constexpr int schema = 4;
 // A result is far less deep, and its objects have far fewer fields.
 constexpr std::size_t deepest = 32;
 constexpr std::size_t most_fields = 2000;

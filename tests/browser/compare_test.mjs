@@ -106,10 +106,10 @@ describe("figures of the pages", () => {
     const before = await column(page, "cache.size");
     assert.equal(before.length, 12);
     const heading = page.locator("table[data-sorted] th", { hasText: /^cache\.size$/ });
-    await heading.click();
+    await heading.getByRole("button").click();
     assert.deepEqual(await column(page, "cache.size"), [...before].sort((a, b) => a - b));
     assert.equal(await heading.getAttribute("aria-sort"), "ascending");
-    await heading.press("Enter");
+    await heading.getByRole("button").press("Enter");
     assert.deepEqual(await column(page, "cache.size"), [...before].sort((a, b) => b - a));
     assert.deepEqual(await faults(), []);
   });

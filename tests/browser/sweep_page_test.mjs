@@ -106,6 +106,8 @@ describe("the table of points", () => {
         ["machine.nodes >= 4, cache.ways = 2", (row) => row["machine.nodes"] >= 4 && row["cache.ways"] === 2],
         ["BOLD, efficiency < 50 %", (row) => row.point.includes("bold") && row.efficiency < 0.5],
         ["point = <script>alert(1)</script>", (row) => row.point === names[0]],
+        ['"BOLD" , "efficiency" , point = "<script>alert(1)</script>"', () => false],
+        ['point="<script>alert(1)</script>", machine.nodes>1', (row) => row.point === names[0] && row["machine.nodes"] > 1],
         ["no such text", () => false],
         ["frame time < 1e6 ms, machine.nodes > 1", (row) => row["machine.nodes"] > 1],
       ];
@@ -120,7 +122,7 @@ describe("the table of points", () => {
       await page.fill("#filter", cases[0][0]);
       const csv = parseCsv((await download(page, page.locator("#save-points"))).text);
       assert.deepEqual(ordinals(csv), ordinals(points.filter(cases[0][1])));
-      for (const [text, fault] of [["colour = red", "there is no column colour"], ["machine.nodes > few", "few is no value of machine.nodes"]]) {
+      for (const [text, fault] of [["colour = red", "there is no column colour"], ["machine.nodes > few", "few is no value of machine.nodes"], ['point = "a, b', "a quotation mark is not closed"]]) {
         await page.fill("#filter", text);
         assert.ok((await page.textContent("#filter-fault")).startsWith(fault), await page.textContent("#filter-fault"));
         assert.equal((await column(page, "ordinal")).length, points.length);
@@ -242,6 +244,10 @@ describe("the address", () => {
       const before = await shown(page);
       const fragment = new URL(page.url()).hash;
       assert.ok(fragment.length < 200, fragment);
+      // A link to a part of the page leads there and keeps what was chosen.
+      await page.getByRole("navigation").getByRole("link", { name: "All points" }).click();
+      assert.equal(await page.evaluate(() => document.activeElement.id), "points");
+      assert.equal(new URL(page.url()).hash, fragment);
       await withPage(async (other) => assert.deepEqual(await shown(other), before), { fragment });
       await page.goto("about:blank");
       await page.goBack();
@@ -281,11 +287,19 @@ describe("names", () => {
     const page = readFileSync(report.page, "utf8");
     const [, begin, text, end] = /^([^]*id="data">)(.*?)(<\/script>[^]*)$/s.exec(page);
     const data = JSON.parse(text);
-    data.explorer.axes.find(({ name }) => name === "point").texts = ['"\\"</script><img src=x>', "\\' + alert(3) + '", "{{x}}\u2028`${1}`"];
+    data.explorer.axes.find(({ name }) => name === "point").texts = ['"\\"</script><img src=x>', "\\' + alert(3) + '", 'small, "cheap" <= {{x}}\u2028`${1}`'];
     const file = join(report.directory, "changed.html");
     writeFileSync(file, begin + JSON.stringify(data).replaceAll("<", "\\u003c") + end);
     const use = async (page) => {
       assert.ok((await column(page, "point")).includes('"\\"</script><img src=x>'));
+      const all = await column(page, "point");
+      for (const filter of ['point = "small, ""cheap"" <= {{x}} `${1}`"', '"small, ""cheap"" <="']) {
+        await page.fill("#filter", filter);
+        const shown = await column(page, "point");
+        assert.deepEqual(shown, all.filter((text) => text.startsWith("small, ")), await page.textContent("#filter-fault"));
+        assert.ok(shown.length > 0);
+      }
+      await page.fill("#filter", "");
       assert.equal(await page.locator("main img, main b").count(), 0);
       const labels = await page.$$eval("#chart-frame_time svg .role-axis-label text", (all) => all.map((each) => each.textContent));
       assert.ok(labels.some((label) => label.includes("alert(3)")), `${labels}`);

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "tests/cli/shell.h"
@@ -69,11 +71,23 @@ TEST_F(Limits, TheDefaultDoesNotEnterResults) {
   EXPECT_EQ(free.output, tight.output);
 }
 
-// Too little address space for a thread, for oneTBB's, for the scene, for all: never an abort.
+// All files of a directory, by name.
+std::map<std::string, std::string> files_of(const std::filesystem::path& directory) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+    files[entry.path().filename().string()] = read(entry.path());
+  }
+  return files;
+}
+
+// Too little address space for a thread, for oneTBB's, for the scene, for all: never an abort, one line that
+// says so, and what was in the directory before is still there.
 TEST_F(Limits, LittleAddressSpaceIsNoAbort) {
   if (MARTI_SANITIZED) {
     GTEST_SKIP() << "a sanitizer takes terabytes of address space";
   }
+  ASSERT_EQ(run("", " --set machine.nodes=3 -o " + quoted(directory_.path() / "out")).status, 0);
+  std::map<std::string, std::string> before = files_of(directory_.path() / "out");
   int done = 0;
   for (const int kibibytes :
        {60'000, 100'000, 150'000, 200'000, 250'000, 300'000, 400'000, 600'000, 2'000'000}) {
@@ -84,9 +98,52 @@ TEST_F(Limits, LittleAddressSpaceIsNoAbort) {
       EXPECT_TRUE(outcome.status == 0 || (outcome.status == 2 && says(outcome, "marti: ")) || not_begun)
           << kibibytes << ": " << outcome.status << ": " << outcome.output;
       done += outcome.status == 0 ? 1 : 0;
+      const std::map<std::string, std::string> after = files_of(directory_.path() / "out");
+      if (outcome.status != 0) {
+        EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+        EXPECT_TRUE(before == after) << kibibytes;
+      }
+      before = after;
     }
   }
   EXPECT_GE(done, 2);
+}
+
+// Where host_machine.memory_limit promises more than there is, memory runs out while a frame is timed.
+TEST_F(Limits, MemoryThatRunsOutIsOneMessage) {
+  if (MARTI_SANITIZED) {
+    GTEST_SKIP() << "a sanitizer takes terabytes of address space";
+  }
+  const std::filesystem::path out = directory_.path() / "sweep";
+  const auto sweep = [&](const std::string& before, const std::string& nodes) {
+    write(file(),
+          "[image]\nwidth = 24\nheight = 16\n[scene]\nsource = \"teapot:2\"\n[cache]\nsize = \"1 MiB\"\n"
+          "[host_machine]\nmemory_limit = \"1 TiB\"\n[sweep.axes]\nmachine.nodes = [" +
+              nodes + "]\n");
+    return shell(before + quoted(MARTI_PROGRAM) + " sweep " + quoted(file()) + " -o " + quoted(out));
+  };
+  ASSERT_EQ(sweep("", "1, 2").status, 0);
+  const std::string points = read(out / "points.csv");
+  int refused = 0;
+  for (const int kibibytes : {55'000, 65'000, 75'000, 85'000}) {
+    const std::string limit = "ulimit -v " + std::to_string(kibibytes) + "; ";
+    const Outcome run_out = run(limit,
+                                " --set machine.nodes=4096 --set cache.size=1MiB"
+                                " --set host_machine.memory_limit=1TiB");
+    for (const Outcome& outcome : {run_out, sweep(limit, "1, 2, 4096")}) {
+      EXPECT_TRUE(outcome.status == 0 || outcome.status == 2) << outcome.status << ": " << outcome.output;
+      if (outcome.status != 0) {
+        ++refused;
+        EXPECT_TRUE(outcome.output.starts_with("marti: ")) << outcome.output;
+        EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+      }
+    }
+    if (read(out / "points.csv") != points) {
+      break;  // the sweep is complete
+    }
+  }
+  EXPECT_GE(refused, 2);
+  EXPECT_EQ(sweep("", "1, 2, 4096").status, 0);  // goes on with what is there
 }
 
 // As a user who may have few processes: none at all for threads, one, two, ...

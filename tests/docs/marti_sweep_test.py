@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""marti_sweep_test.py MARTI SOURCE [PYTHON_WITH_MATPLOTLIB]: docs/examples/marti_sweep.py on the store of a real sweep
-has the names, units and values that `marti sweep --json` and points.csv have."""
+"""marti_sweep_test.py MARTI SOURCE [PYTHON_WITH_MATPLOTLIB [PYTHON_WITH_PANDAS]]: docs/examples/marti_sweep.py on the
+store of a real sweep has the names, units and values that `marti sweep --json` and points.csv have."""
 
 import csv
 import json
@@ -10,7 +10,7 @@ import sys
 import tempfile
 import unittest
 
-MARTI, SOURCE, *DRAWING = sys.argv[1:]
+MARTI, SOURCE, DRAWING, FRAMING, *_ = [*sys.argv[1:], "", ""]
 MODULE = pathlib.Path(SOURCE) / "docs" / "examples" / "marti_sweep.py"
 sys.path.insert(0, str(MODULE.parent))
 sys.modules["pandas"] = None  # the module must do without
@@ -126,6 +126,28 @@ class TheModule(unittest.TestCase):
         self.assertEqual(len(lines), 49)
         self.assertTrue(run(sys.executable, "-B", str(MODULE), str(self.out)).startswith("48 points of marti "))
 
+    def test_booleans_in_a_column_of_integers_are_booleans(self):
+        store = pathlib.Path(self.work.name) / "older.sqlite"
+        store.write_bytes((self.out / "results.sqlite").read_bytes())
+        import sqlite3
+        with sqlite3.connect(store) as database:
+            database.execute("PRAGMA writable_schema = ON")
+            database.execute("UPDATE sqlite_schema SET sql = replace(sql, 'BOOLEAN', 'INTEGER') WHERE name = 'points'")
+        database.close()
+        older = marti_sweep.load(store)
+        self.assertEqual(older._database.execute("SELECT type FROM pragma_table_info('points') WHERE name = "
+                                                 "'prefetch.next_line'").fetchall(), [("INTEGER",)])
+        for point, row in zip(older.points(), self.sweep.points(), strict=True):
+            self.assertEqual({name: (type(value), value) for name, value in point.items()},
+                             {name: (type(value), value) for name, value in row.items()})
+
+    def test_one_point_is_one(self):
+        config = pathlib.Path(self.work.name) / "one.toml"
+        config.write_text(CONFIG.split("[sweep.axes]")[0] + "[sweep.axes]\nmachine.nodes = [2]\n")
+        out = pathlib.Path(self.work.name) / "one"
+        run(MARTI, "sweep", str(config), "-o", str(out), "--quiet")
+        self.assertTrue(run(sys.executable, "-B", str(MODULE), str(out)).startswith("1 point of marti "))
+
     def test_a_store_of_another_program_is_refused(self):
         store = pathlib.Path(self.work.name) / "other.sqlite"
         store.write_bytes((self.out / "results.sqlite").read_bytes())
@@ -155,11 +177,33 @@ class TheModule(unittest.TestCase):
         drawn = []
         for name in ("a.svg", "b.svg"):
             file = pathlib.Path(self.work.name) / name
-            run(DRAWING[0], "-B", str(MODULE), str(self.out), "--plot", "speed_up", "--over", "machine.nodes", "--by",
+            run(DRAWING, "-B", str(MODULE), str(self.out), "--plot", "speed_up", "--over", "machine.nodes", "--by",
                 "cache.size", "-o", str(file))
             drawn.append(file.read_bytes())
         self.assertEqual(drawn[0], drawn[1])
         self.assertIn(b"<svg", drawn[0])
+        for label in ("machine.nodes", "speed_up", "cache.size = 512", "cache.size = 4096"):
+            self.assertIn(label.encode(), drawn[0])  # matplotlib writes each text as a comment above its glyphs
+
+    @unittest.skipUnless(FRAMING, "there is no pandas")
+    def test_makes_a_frame(self):
+        ask = ("import json, sys; sys.path.insert(0, sys.argv[1]); import marti_sweep; "
+               "frame = marti_sweep.load(sys.argv[2]).frame('end', 'hit_ratio', where={'cache.size': 512}); "
+               "print(json.dumps({'index': [frame.index.name, *map(int, frame.index)], "
+               "'types': {name: str(kind) for name, kind in frame.dtypes.items()}, "
+               "'rows': json.loads(frame.to_json(orient='records', double_precision=15))}))")
+        made = json.loads(run(FRAMING, "-B", "-c", ask, str(MODULE.parent), str(self.out)))
+        expected = [row for row in self.json["rows"] if row["cache.size"] == 512]
+        self.assertEqual(made["index"], ["ordinal", *(row["ordinal"] for row in expected)])
+        self.assertEqual(made["types"]["prefetch.next_line"], "bool")
+        self.assertEqual(made["types"]["end"], "int64")
+        self.assertEqual(made["types"]["hit_ratio"], "float64")
+        names = [*self.sweep.axes, "end", "hit_ratio"]
+        self.assertEqual(list(made["types"]), names)
+        for row, wanted in zip(made["rows"], expected, strict=True):
+            for name in names:
+                check = self.assertAlmostEqual if name == "hit_ratio" else self.assertEqual
+                check(row[name], wanted[name])
 
 
 if __name__ == "__main__":

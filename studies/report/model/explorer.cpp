@@ -216,7 +216,6 @@ Json explorer_json(const ReportPoints& sweep, std::span<const AxisModel> models,
                             {"texts", each.texts},
                             {"values", numbers_of(each)},
                             {"numeric", each.numeric},
-                            {"integer", each.integer},
                             {"logarithmic", each.logarithmic},
                             {"unit", each.unit}});
     if (each.numeric) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "studies/helps/change.h"
+#include "studies/keys/setting_value.h"
 
 namespace marti::studies {
 
@@ -15,7 +16,7 @@ std::string keys_text(const RunJson& change) {
   if (const RunJson found = change.part("keys"); found.json().is_object()) {
     for (const auto& [key, json] : found.json().items()) {
       const RunJson values = found.of(json);
-      keys.push_back({key, values.text("from"), values.text("to")});
+      keys.push_back({key, setting_toml(key, values.find("from")), setting_toml(key, values.find("to"))});
     }
   }
   return describe(keys);

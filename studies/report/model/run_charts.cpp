@@ -12,7 +12,6 @@
 #include "processors/cost/accounting.h"
 #include "processors/energy/energy.h"
 #include "sim/error.h"
-#include "sim/units.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/report/model/chart_library.h"
 
@@ -114,19 +113,11 @@ Table references_table(const RunJson& run) {
   return table;
 }
 
-// A size of the run's own configuration: "8 B".
+// A size of the run's own configuration; 0, and the chart leaves it out, where it has none.
 std::int64_t size_of(const RunJson& run, const std::string& key) {
-  const Json& keys = run.find("config.keys");
-  if (!keys.is_object() || !keys.contains(key)) {
-    return 0;
-  }
-  std::string text = run.of(keys[key]).text("value");
-  std::erase(text, '"');
-  try {
-    return sim::parse_size(text);
-  } catch (const sim::UserError&) {
-    return 0;  // not what a run writes: the chart leaves it out
-  }
+  const RunJson keys = run.part("config.keys");
+  const auto setting = keys.json().find(key);
+  return setting == keys.json().end() ? 0 : std::max<std::int64_t>(0, whole(keys.of(*setting), "value"));
 }
 
 Table tree_table(const RunJson& run) {

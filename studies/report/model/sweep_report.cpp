@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "studies/keys/setting_value.h"
 #include "studies/report/model/chart_library.h"
 #include "studies/report/model/cycle_groups.h"
 #include "studies/report/model/explorer.h"
@@ -204,13 +205,12 @@ std::string about_sweep(const ReportPoints& sweep) {
   const std::map<std::string, std::string> shared(sweep.settings.begin(), sweep.settings.end());
   std::string text;
   if (const auto scene = shared.find("scene.source"); scene != shared.end()) {
-    text += scene->second;
+    text += plain_setting(scene->second);
   }
   if (shared.contains("image.width") && shared.contains("image.height")) {
     text += fmt::format("{}{} x {} pixels", text.empty() ? "" : ", ", shared.at("image.width"),
                         shared.at("image.height"));
   }
-  std::erase(text, '"');
   std::string varied;
   for (const ReportAxis& axis : sweep.axes) {
     varied += (varied.empty() ? "" : ", ") + axis.name;

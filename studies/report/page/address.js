@@ -23,5 +23,16 @@ marti.address = (() => {
     }, 150);
   }
 
+  // A link to a part of the page leads there without taking the choices out of the address.
+  document.addEventListener("click", (event) => {
+    const link = event.target.closest?.('a[href^="#"]');
+    const part = link && document.getElementById(link.hash.slice(1));
+    if (!part || event.defaultPrevented || link.dataset.save || !read()) return;
+    event.preventDefault();
+    part.tabIndex = -1;
+    part.focus({ preventScroll: true });
+    part.scrollIntoView();
+  });
+
   return { read, write };
 })();

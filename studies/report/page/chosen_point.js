@@ -9,11 +9,8 @@ marti.chosenPoint = (explorer) => {
   box.append(summary, list);
   document.querySelector("main").append(box);
 
-  const shown = ({ name, unit, percent }, i) => {
-    const value = explorer.columns[name][i];
-    if (percent) return `${Number((value * 100).toPrecision(12))} %`;
-    return unit === "1" ? String(value) : `${value} ${unit}`;
-  };
+  // All digits that the page has; times 100 a share would get some of rounding.
+  const shown = (field, i) => marti.number(explorer.columns[field.name][i], field, field.percent ? 12 : 17);
 
   function entry(name, text, meaning = "") {
     const what = document.createElement("dt");
@@ -32,7 +29,7 @@ marti.chosenPoint = (explorer) => {
     if (box.hidden) return;
     const known = marti.rows.roles(explorer, budget).filter(([, p]) => p === i).map(([role]) => role);
     const fields = explorer.fields.filter(({ name }) => explorer.columns[name][i] !== null);
-    const short = fields.filter(({ main }) => main).slice(0, 3).map((field) => `${field.title} ${marti.short(explorer.columns[field.name][i], field)}`);
+    const short = fields.filter(({ main }) => main).slice(0, 3).map((field) => `${field.title} ${marti.number(explorer.columns[field.name][i], field)}`);
     const called = [`Point ${explorer.ordinal[i]}`, ...known].join(", ");
     summary.textContent = [`${called}: ${marti.rows.machine(explorer, i)}`, ...short].join("; ");
     list.replaceChildren(

@@ -2,12 +2,6 @@
 // point. What is chosen is in the page's address.
 "use strict";
 
-marti.short = (value, { unit, percent }) => {
-  const text = String(Number((percent ? value * 100 : value).toPrecision(4)));
-  const shown = percent ? "%" : unit;
-  return !shown || shown === "1" ? text : `${text} ${shown}`;
-};
-
 marti.explorer = (() => {
   const { data, charts } = marti.charts;
   const explorer = data.explorer;
@@ -19,14 +13,14 @@ marti.explorer = (() => {
   const declared = new Map(live.map((chart) => [chart.name, chart.spec]));
   const reading = document.getElementById("reading");
   const points = new Map(explorer.ordinal.map((_, p) => [axes.map((_, a) => explorer.place[a][p]).join(), p]));
-  const digits = (value) => marti.short(value, {});
+  const digits = (value) => marti.number(value);
 
   /** Places along an axis at which the curve can be read; a name is only itself. */
   const samples = (a = state.axis) => (axes[a].numeric ? explorer.models[a]?.x ?? axes[a].values : axes[a].texts.map((_, i) => i));
   const placeOf = (axis, x) => (axis.numeric ? axis.values.indexOf(x) : x);
   const withUnit = (axis, x) => {
     const at = placeOf(axis, x);
-    return at >= 0 ? axis.texts[at] : marti.short(x, axis);
+    return at >= 0 ? axis.texts[at] : marti.number(x, axis);
   };
 
   /** The point where the controls stand; undefined between points, and where none was timed. */

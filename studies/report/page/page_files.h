@@ -19,7 +19,8 @@ namespace marti::studies {
 [[nodiscard]] Script report_chosen_point_js();
 [[nodiscard]] Script report_controls_js();
 [[nodiscard]] Script report_explorer_js();
-[[nodiscard]] Script report_sort_tables_js();
+[[nodiscard]] Script report_sorting_js();
+[[nodiscard]] Script report_numbers_js();
 [[nodiscard]] Script report_main_js();
 
 }  // namespace marti::studies

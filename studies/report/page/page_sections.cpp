@@ -6,6 +6,7 @@
 #include "sim/units.h"
 #include "studies/report/model/answer_text.h"
 #include "studies/report/page/html_text.h"
+#include "studies/report/page/sorted_table.h"
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_units.h"
 
@@ -43,27 +44,21 @@ std::string cell_text(const Cell& cell, const ShownColumn& how) {
   return number && how.divisor != 1.0 ? short_text(*number / how.divisor, "") : short_text(cell, "");
 }
 
-std::string table_html(const Table& table) {
-  std::string html = "<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"" +
-                     html_text(table.title()) + "\"><table><thead><tr>";
+SortedTable sorted_table(const Table& table) {
+  SortedTable made{table.title(), {}, {}};
   std::vector<ShownColumn> shown;
   for (const Column& column : table.columns()) {
     const std::string& unit = shown.emplace_back(shown_as(column)).unit;
-    html +=
-        fmt::format("<th scope=\"col\"{} title=\"{}\">{}{}</th>",
-                    column.type == ColumnType::text ? "" : " class=\"number\"", html_text(column.description),
-                    html_text(words(column.name)), unit.empty() ? "" : ", " + html_text(unit));
+    made.columns.push_back({words(column.name) + (unit.empty() ? "" : ", " + unit),
+                            column.type != ColumnType::text, column.description});
   }
-  html += "</tr></thead><tbody>\n";
   for (const std::vector<Cell>& row : table.rows()) {
-    html += "<tr>";
+    std::vector<SortedCell>& cells = made.rows.emplace_back();
     for (std::size_t i = 0; i < row.size(); ++i) {
-      html += table.columns()[i].type == ColumnType::text ? "<td>" : "<td class=\"number\">";
-      html += html_text(cell_text(row[i], shown[i])) + "</td>";
+      cells.push_back({cell_text(row[i], shown[i]), number_of(row[i])});
     }
-    html += "</tr>\n";
   }
-  return html + "</tbody></table></div>\n";
+  return made;
 }
 
 std::string folded(const std::string& title, const std::string& html, bool open = false) {
@@ -141,7 +136,7 @@ std::string tables_html(const ReportData& report) {
   for (const ReportTable& table : report.tables) {
     html += folded(fmt::format("{} ({} row{})", table.table.title(), table.table.rows().size(),
                                table.table.rows().size() == 1 ? "" : "s"),
-                   table_html(table.table), !table.folded);
+                   sorted_table_html(sorted_table(table.table)), !table.folded);
   }
   return html;
 }

@@ -1,5 +1,6 @@
 // The filter above the table of points: conditions with commas between them, all of which a point must meet.
 // "machine.nodes >= 16, cache.size = 16 KiB, price < 30" compare columns; another text must be in one of the point's values.
+// A text in quotation marks may hold commas and signs: point = "small, cheap". A quotation mark in it is doubled.
 "use strict";
 
 marti.filter = (() => {
@@ -34,15 +35,25 @@ marti.filter = (() => {
     return (i) => column.number(i) !== null && compare[sign](column.number(i), number);
   }
 
+  /** The parts between commas that are not in quotation marks. */
+  function parted(text) {
+    const parts = text.match(/(?:[^,"]|"(?:[^"]|"")*")+|"/g) ?? [];
+    if (parts.includes('"')) throw new Error("a quotation mark is not closed");
+    return parts.filter((part) => part.trim() !== "");
+  }
+
+  /** Without its quotation marks, where the text has them at both ends. */
+  const unquoted = (text) => /^\s*"((?:[^"]|"")*)"\s*$/.exec(text)?.[1].replaceAll('""', '"') ?? text;
+
   function condition(text, columns) {
-    const parts = /^([^<>=]+)(<=|>=|=|<|>)(.+)$/.exec(text);
+    const parts = /^([^<>="]+)(<=|>=|=|<|>)(.+)$/.exec(text);
     if (parts) {
       const name = plain(parts[1]);
       const column = columns.find((each) => plain(each.name) === name) ?? columns.find((each) => plain(each.title) === name);
       if (!column) throw new Error(`there is no column ${parts[1].trim()}`);
-      return comparison(column, parts[2], parts[3]);
+      return comparison(column, parts[2], unquoted(parts[3]));
     }
-    const word = plain(text);
+    const word = plain(unquoted(text));
     const axes = columns.filter(({ texts }) => texts);
     const holding = axes.map(({ texts }) => texts.map((each) => plain(each).includes(word)));
     return (i) => axes.some(({ place }, a) => holding[a][place[i]]);
@@ -50,7 +61,7 @@ marti.filter = (() => {
 
   /** A function that says of a point whether it is let through. Throws an Error that says what is wrong. */
   return (text, columns) => {
-    const all = text.split(",").filter((each) => each.trim() !== "").map((each) => condition(each, columns));
+    const all = parted(text).map((each) => condition(each, columns));
     return (i) => all.every((each) => each(i));
   };
 })();

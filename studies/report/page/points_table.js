@@ -12,8 +12,6 @@ marti.table = (explorer, { choose, changed }) => {
   let page = 0;
   let chosen;
 
-  const digits = (value) => String(Number(value.toPrecision(6)));
-
   function axisColumn(axis, a) {
     const place = explorer.place[a];
     const key = axis.numeric ? (i) => axis.values[place[i]] : (i) => place[i];
@@ -26,7 +24,7 @@ marti.table = (explorer, { choose, changed }) => {
     const values = explorer.columns[name];
     const number = (i) => (values[i] === null ? null : values[i] * (percent ? 100 : 1));
     const shown = percent ? "%" : unit;
-    const text = (i) => (values[i] === null ? "" : digits(number(i)));
+    const text = (i) => (values[i] === null ? "" : marti.number(number(i), {}, 6));
     return { name, title, meaning, unit: shown === "1" ? "" : shown, number, key: number, text };
   }
 
@@ -37,16 +35,8 @@ marti.table = (explorer, { choose, changed }) => {
     ...explorer.fields.filter(({ main }) => main).map(figureColumn),
   ];
 
-  /** Points without a value come last, whichever way round the others are. */
-  function sorted(points) {
-    const column = columns.find(({ name }) => name === state.sort.replace(/^-/, "")) ?? columns[0];
-    const sign = state.sort.startsWith("-") ? -1 : 1;
-    const keys = explorer.ordinal.map((_, i) => column.key(i));
-    return points.sort((a, b) => {
-      if (keys[a] === null || keys[b] === null) return (keys[a] === null) - (keys[b] === null) || a - b;
-      return sign * (keys[a] - keys[b]) || a - b;
-    });
-  }
+  const sortedBy = () => columns.find(({ name }) => name === state.sort.replace(/^-/, "")) ?? columns[0];
+  const direction = () => (state.sort.startsWith("-") ? -1 : 1);
 
   const pages = () => Math.max(1, Math.ceil(order.length / onAPage));
 
@@ -57,17 +47,14 @@ marti.table = (explorer, { choose, changed }) => {
 
   function heading({ name, title, meaning, unit, number }) {
     const cell = document.createElement("th");
-    const button = document.createElement("button");
     cell.scope = "col";
     if (number) cell.className = "number";
-    button.type = "button";
-    button.textContent = unit ? `${title}, ${unit}` : title;
-    if (meaning) button.title = meaning;
-    button.addEventListener("click", () => {
-      set({ ...state, sort: (state.sort || "ordinal") === name ? `-${name}` : name });
+    cell.textContent = unit ? `${title}, ${unit}` : title;
+    if (meaning) cell.title = meaning;
+    marti.sorting.listen(cell, (wanted) => {
+      set({ ...state, sort: wanted < 0 ? `-${name}` : name });
       changed();
     });
-    cell.append(button);
     cell.dataset.column = name;
     return cell;
   }
@@ -112,13 +99,9 @@ marti.table = (explorer, { choose, changed }) => {
       fault.textContent = `${error.message}; all points are shown`;
     }
     explorer.ordinal.forEach((_, i) => (lets[i] = test(i)));
-    order = sorted(explorer.ordinal.map((_, i) => i).filter((i) => lets[i]));
-    for (const cell of table.tHead.rows[0].cells) {
-      const name = cell.dataset.column;
-      const sort = { [name]: "ascending", [`-${name}`]: "descending" }[state.sort || "ordinal"];
-      if (sort) cell.setAttribute("aria-sort", sort);
-      else cell.removeAttribute("aria-sort");
-    }
+    const points = explorer.ordinal.map((_, i) => i).filter((i) => lets[i]);
+    order = marti.sorting.sorted(points, sortedBy().key, direction());
+    marti.sorting.mark(table.tHead.rows[0].cells[columns.indexOf(sortedBy())], direction());
   }
 
   /** Another order or filter: from the first page on. */

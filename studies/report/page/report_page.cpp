@@ -65,14 +65,14 @@ std::string report_page(const ReportData& report, std::span<const PageSection> p
   std::string policy = "default-src 'none'; img-src data:; base-uri 'none'; form-action 'none'; style-src" +
                        source_of(report_page_css()) + "; script-src";
   std::vector<Script> all(scripts.begin(), scripts.end());
-  all.insert(all.end(),
-             {report_chart_style_js(), report_theme_js(), report_tooltip_js(), report_charts_js()});
+  all.insert(all.end(), {report_chart_style_js(), report_theme_js(), report_tooltip_js(), report_charts_js(),
+                         report_sorting_js()});
   if (report.explorer.is_object()) {
     all.insert(all.end(), {report_explorer_rows_js(), report_explorer_specs_js(), report_address_js(),
-                           report_points_filter_js(), report_points_table_js(), report_chosen_point_js(),
-                           report_controls_js(), report_explorer_js()});
+                           report_numbers_js(), report_points_filter_js(), report_points_table_js(),
+                           report_chosen_point_js(), report_controls_js(), report_explorer_js()});
   }
-  all.insert(all.end(), {report_sort_tables_js(), report_main_js()});
+  all.push_back(report_main_js());
   std::string script_elements;
   for (const Script& script : all) {
     policy += source_of(script);

@@ -7,10 +7,8 @@
 namespace marti::studies {
 
 std::string sorted_table_html(const SortedTable& table) {
-  const std::string title = html_text(table.title);
-  std::string html = "<h3>" + title +
-                     "</h3>\n<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"" + title +
-                     "\"><table data-sorted><thead><tr>";
+  std::string html = "<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"" +
+                     html_text(table.title) + "\"><table data-sorted><thead><tr>";
   for (const SortedColumn& column : table.columns) {
     html += fmt::format("<th scope=\"col\"{} title=\"{}\">{}</th>", column.number ? " class=\"number\"" : "",
                         html_text(column.description), html_text(column.name));

@@ -1,4 +1,4 @@
-// A table of a page that its reader can sort by a click on a heading (sort_tables.js).
+// A table of a page, which its reader can sort by a click on a heading (sorting.js).
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ struct SortedCell {
 };
 
 struct SortedTable {
-  std::string title;
+  std::string title;  ///< for screen readers; a heading is for the caller
   std::vector<SortedColumn> columns;
   std::vector<std::vector<SortedCell>> rows;  ///< each as long as `columns`
 };

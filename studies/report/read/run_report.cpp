@@ -6,6 +6,7 @@
 
 #include "sim/error.h"
 #include "sim/sha256.h"
+#include "studies/keys/setting_value.h"
 #include "studies/report/model/chart_library.h"
 #include "studies/report/model/helps_table.h"
 #include "studies/report/model/path_chart.h"
@@ -25,11 +26,11 @@ namespace {
 namespace fs = std::filesystem;
 
 void add_configuration(const RunJson& run, ReportData& report) {
+  const std::map<std::string, std::string> settings = settings_of(run);
   std::string defaults;
   for (const auto& [key, setting] : run.at("config.keys").items()) {
-    const RunJson each = run.of(setting);
-    const std::string line = key + " = " + each.text("value") + "\n";
-    (each.boolean("given") ? report.configuration : defaults) += line;
+    (run.of(setting).boolean("given") ? report.configuration : defaults) +=
+        key + " = " + settings.at(key) + "\n";
   }
   report.configuration =
       "# given in the file or by --set\n" + report.configuration + "\n# defaults\n" + defaults;
@@ -93,42 +94,39 @@ bool is_of_run(const fs::path& directory, const std::string& name,
 }
 
 // What the brightest colour of a heat map stands for; empty for other images, and where the run does not say.
-std::string scale_text(const RunJson& run, const char* heat, const char* unit) {
+std::string scale_text(const RunJson& run, const char* heat, const char* unit, const char* plural) {
   if (heat == nullptr) {
     return {};
   }
   const std::optional<double> brightest = run.number(fmt::format("heat_maps.{}.brightest", heat));
-  return brightest ? fmt::format("{:g} {} or more", *brightest, unit) : std::string();
-}
-
-// A value as in the file, without quotation marks.
-std::string setting(const RunJson& run, const char* key) {
-  const RunJson keys = run.part("config.keys");
-  const auto at = keys.json().find(key);
-  std::string text = at == keys.json().end() ? std::string() : keys.of(*at).text("value");
-  std::erase(text, '"');
-  return text;
+  return brightest ? fmt::format("{:g} {}{} or more", *brightest, unit, *brightest == 1.0 ? "" : plural)
+                   : std::string();
 }
 
 // "image scheme, nodes at 100 MHz, caches of 16 KiB, bus": what tells a machine from others, as far as the
 // result says it.
 std::string about_machine(const RunJson& run) {
+  const std::map<std::string, std::string> settings = settings_of(run);
+  const auto setting = [&settings](const char* key) {
+    const auto at = settings.find(key);
+    return at == settings.end() ? std::string() : plain_setting(at->second);
+  };
   std::string text;
   const auto add = [&](const std::string& value, const std::string& before, const std::string& after = {}) {
     if (!value.empty()) {
       text += (text.empty() ? "" : ", ") + before + value + after;
     }
   };
-  add(setting(run, "machine.scheme"), "", " scheme");
-  add(setting(run, "node.clock"), "nodes at ");
-  if (const std::string caches = setting(run, "cache.organisation"); caches == "none") {
+  add(setting("machine.scheme"), "", " scheme");
+  add(setting("node.clock"), "nodes at ");
+  if (const std::string caches = setting("cache.organisation"); caches == "none") {
     add("no caches", "");
   } else {
-    add(setting(run, "cache.size"), "caches of ");
+    add(setting("cache.size"), "caches of ");
   }
-  add(setting(run, "interconnect.kind"), "");
-  if (const std::string width = setting(run, "image.width"); !width.empty()) {
-    add(width + " x " + setting(run, "image.height"), "", " pixels");
+  add(setting("interconnect.kind"), "");
+  if (const std::string width = setting("image.width"); !width.empty()) {
+    add(width + " x " + setting("image.height"), "", " pixels");
   }
   return text;
 }
@@ -145,15 +143,17 @@ void add_files(const fs::path& directory, const RunJson& run, ReportData& report
     const char* title;
     const char* heat = nullptr;  // of a heat map
     const char* unit = nullptr;
+    const char* plural = nullptr;  // what the unit's plural has more
   };
   constexpr Image images[] = {{"image.png", "The image"},
                               {"exact.png", "The exact image, without the voxel cut"},
-                              {"heat-cycles.png", "Heat map: cycles of each pixel", "cycles", "cycles"},
-                              {"heat-misses.png", "Heat map: misses of each pixel", "misses", "misses"},
-                              {"heat-waits.png", "Heat map: waits of each pixel", "waits", "cycles"}};
+                              {"heat-cycles.png", "Heat map: cycles of each pixel", "cycles", "cycle", "s"},
+                              {"heat-misses.png", "Heat map: misses of each pixel", "misses", "miss", "es"},
+                              {"heat-waits.png", "Heat map: waits of each pixel", "waits", "cycle", "s"}};
   for (const Image& image : images) {
     if (is_of_run(directory, image.name, files, report)) {
-      take_image(directory / image.name, image.title, report, scale_text(run, image.heat, image.unit));
+      take_image(directory / image.name, image.title, report,
+                 scale_text(run, image.heat, image.unit, image.plural));
     }
   }
 }

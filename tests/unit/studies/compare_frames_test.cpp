@@ -116,13 +116,17 @@ TEST(CompareFrames, SettingsAreTyped) {
   EXPECT_EQ(found.at("packets.order").second, json("morton"));
 }
 
-// Points of two frames: even machines render the frame of the result, odd ones another.
-fs::path write_two_frames(const fs::path& directory, std::size_t machines) {
+// Points of two frames: even machines render the frame of the result, odd ones another, of other pixels or of
+// another scene with equal pixels and hits.
+fs::path write_two_frames(const fs::path& directory, std::size_t machines, bool other_pixels = true) {
   fs::create_directories(directory);
   SweepStore store(directory / "results.sqlite", test::made_plan(machines));
   for (std::size_t frame = 0; frame < 2; ++frame) {
     FrameRow row = test::made_frame_row(frame);
-    row.image_hash = frame == 0 ? "00000000000000aa" : "00000000000000bb";
+    const std::string hash = frame == 0 ? "00000000000000aa" : "00000000000000bb";
+    row.image_hash = other_pixels ? hash : "00000000000000cc";
+    row.hit_hash = "00000000000000dd";
+    row.scene_hash = other_pixels ? "00000000000000ee" : hash;
     store.add_frame(frame, row, 1);
   }
   for (std::size_t machine = 0; machine < machines; ++machine) {
@@ -134,9 +138,13 @@ fs::path write_two_frames(const fs::path& directory, std::size_t machines) {
   return directory;
 }
 
-TEST(CompareFrames, PointsOfOtherFramesAreLeftOut) {
+class OtherFrames : public testing::TestWithParam<bool> {};
+
+TEST_P(OtherFrames, TheirPointsAreLeftOut) {
   const TemporaryDirectory directory;
-  const std::string sweep = write_two_frames(directory.path() / "sweep", 9).string();
+  const std::string sweep = write_two_frames(directory.path() / "sweep", 9, GetParam()).string();
+  EXPECT_EQ(compared(sweep + ":2", sweep + ":3")["same_frame"], false);
+  EXPECT_EQ(compared(sweep + ":2", sweep + ":4")["same_frame"], true);
   for (const std::int64_t ordinal : {2, 3}) {
     const json found = compared(sweep + ":" + std::to_string(ordinal), sweep);
     EXPECT_EQ(found["same_frame"], true);
@@ -152,6 +160,8 @@ TEST(CompareFrames, PointsOfOtherFramesAreLeftOut) {
     EXPECT_EQ(found["frame_settings"][0]["name"], "scene.source");
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(ByPixelsOrByScene, OtherFrames, testing::Bool());
 
 TEST(CompareFrames, ASweepOfAnotherFrameHasNoFasterPoint) {
   const TemporaryDirectory directory;
@@ -292,7 +302,7 @@ TEST(CompareFrames, PagesEscapeWhatTheyShow) {
   const fs::path b = write_run(directory.path() / "b", {"cache.size=1KiB"});
   // A hostile result: names and values that would end an element, a script or a line.
   json hostile = json::parse(std::ifstream(b / "result.json"));
-  hostile["config"]["keys"]["x\"><script>alert(1)</script>"] = {{"value", "\"</script><b>\\u001b[1m\""},
+  hostile["config"]["keys"]["x\"><script>alert(1)</script>"] = {{"value", "</script><b>\x1b[1m"},
                                                                 {"given", true}};
   hostile["figures"]["machine"]["<i>figure</i>"] = 3;
   hostile["figures"]["frame"]["scene"] = "</title><script>alert(2)</script>";

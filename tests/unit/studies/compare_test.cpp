@@ -335,13 +335,13 @@ TEST(Compare, RefusesWhatIsNoResult) {
   refused(good.substr(0, good.size() / 2), "is not JSON");
   refused("[1, 2]", "is no JSON object");
   refused("{}", "marti");
-  refused("{\"marti\": {\"schema\": 2, \"version\": \"9\"}}", "schema 2");
+  refused("{\"marti\": {\"schema\": 3, \"version\": \"9\"}}", "schema 3");
   refused("{\"marti\": {\"schema\": \"1\"}}", "marti.schema");
-  refused("{\"marti\": {\"schema\": 3}}", "config");
-  refused("{\"marti\": {\"schema\": 3}, \"config\": {\"keys\": {\"a.b\": 3}}}", "config.keys.a.b");
-  refused("{\"marti\": {\"schema\": 3}, \"config\": {\"keys\": {}}}", "figures.frame");
+  refused("{\"marti\": {\"schema\": 4}}", "config");
+  refused("{\"marti\": {\"schema\": 4}, \"config\": {\"keys\": {\"a.b\": 3}}}", "config.keys.a.b");
+  refused("{\"marti\": {\"schema\": 4}, \"config\": {\"keys\": {}}}", "figures.frame");
   const std::string begin =
-      "{\"marti\": {\"schema\": 3}, \"config\": {\"keys\": {}}, \"figures\": {\"frame\": {}, "
+      "{\"marti\": {\"schema\": 4}, \"config\": {\"keys\": {}}, \"figures\": {\"frame\": {}, "
       "\"machine\": {";
   std::string deep;
   for (int i = 0; i < 100; ++i) {

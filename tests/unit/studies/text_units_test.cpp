@@ -6,13 +6,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "sim/schema.h"
-#include "studies/keys/setting_value.h"
-#include "studies/show/key_list.h"
-#include "studies/sweep/plan/sweep_keys.h"
-
-#include <nlohmann/json.hpp>
-
 namespace marti::studies {
 namespace {
 
@@ -58,32 +51,6 @@ TEST(TextUnits, FiguresHaveTheirUnit) {
   EXPECT_EQ(figure_text(std::numeric_limits<double>::infinity(), "ps", "none"), "none");
   EXPECT_EQ(figure_text(std::numeric_limits<std::int64_t>::min(), "ps", "-"),
             "-9,223,372,036,854,775,808 ps");
-}
-
-// The defaults of all keys, printed as in a file and read back, are those of `marti config --json`.
-TEST(SettingValue, IsWhatConfigJsonHas) {
-  const sim::Schema schema = sweep_schema();
-  const auto keys = nlohmann::ordered_json::parse(keys_as_json(schema, ""));
-  std::size_t texts = 0;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const sim::Key& key = schema.keys()[i];
-    ASSERT_EQ(keys[i]["name"], key.name);
-    const std::string printed = sim::print_values(key, key.default_value);
-    EXPECT_EQ(setting_value(schema, key.name, printed), keys[i]["default"]) << key.name << " = " << printed;
-    texts += keys[i]["default"].is_string() ? 1 : 0;
-  }
-  EXPECT_GT(keys.size(), 2 * texts) << "most are numbers and booleans";
-}
-
-TEST(SettingValue, OtherTextsStayTexts) {
-  const sim::Schema schema = sweep_schema();
-  EXPECT_EQ(setting_value(schema, "cache.size", "\"16 kB\""), "16 kB");
-  EXPECT_EQ(setting_value(schema, "no.key", "\"16 KiB\""), "16 KiB");
-  EXPECT_EQ(setting_value(schema, "cache.size", "nothing"), "nothing");
-  EXPECT_EQ(setting_value(schema, "cache.size", "{\"a\": 1}"), "{\"a\": 1}");
-  EXPECT_EQ(plain_setting("\"16 KiB\""), "16 KiB");
-  EXPECT_EQ(plain_setting("\"\""), "\"\"");
-  EXPECT_EQ(plain_setting("true"), "true");
 }
 
 }  // namespace
