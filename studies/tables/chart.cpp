@@ -12,6 +12,36 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Gives each row the number of its panel, by its place among the values of the field. Returns how many panels
+// there are.
+std::size_t share_out(const std::string& field, Json& rows) {
+  std::vector<Json> lines;
+  for (Json& row : rows) {
+    const auto known = std::find(lines.begin(), lines.end(), row.at(field));
+    const auto place = static_cast<std::size_t>(known - lines.begin());
+    if (known == lines.end()) {
+      lines.push_back(row.at(field));
+    }
+    row["panel"] = place / most_chart_lines;
+  }
+  return (lines.size() + most_chart_lines - 1) / most_chart_lines;
+}
+
+// The chart once for each panel, below each other; each panel begins with the first colour.
+void make_panels(Json& chart) {
+  Json panel = Json::object();
+  for (const char* part : {"width", "height", "mark", "layer", "encoding"}) {
+    if (chart.contains(part)) {
+      panel[part] = std::move(chart[part]);
+      chart.erase(part);
+    }
+  }
+  chart["facet"] = {{"field", "panel"}, {"type", "ordinal"}, {"title", nullptr}, {"header", nullptr}};
+  chart["columns"] = 1;
+  chart["spec"] = std::move(panel);
+  chart["resolve"] = {{"scale", {{"color", "independent"}, {"shape", "independent"}}}};
+}
+
 }  // namespace
 
 const ChartSpecification& chart_named(std::span<const ChartSpecification> charts, std::string_view name) {
@@ -32,10 +62,18 @@ std::string table_of(const ChartSpecification& chart) {
   return data->at("name").get<std::string>();
 }
 
+Json chart_json(const ChartSpecification& chart, Json rows) {
+  Json made = Json::parse(chart.json);
+  const Json::json_pointer lines("/usermeta/lines");
+  if (made.contains(lines) && share_out(made[lines].get<std::string>(), rows) > 1) {
+    make_panels(made);
+  }
+  made["data"] = {{"name", table_of(chart)}, {"values", std::move(rows)}};
+  return made;
+}
+
 std::string fill_chart(const ChartSpecification& chart, const Table& table) {
-  Json specification = Json::parse(chart.json);
-  specification["data"] = {{"name", table.name()}, {"values", rows_json(table)}};
-  return json_text(specification);
+  return json_text(chart_json(chart, rows_json(table)));
 }
 
 std::vector<std::pair<const ChartSpecification*, const Table*>> charts_of(std::span<const Table> tables) {

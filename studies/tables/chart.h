@@ -2,6 +2,8 @@
 // rows inlined, so that any viewer of Vega-Lite shows them.
 #pragma once
 
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,8 +31,13 @@ struct ChartSpecification {
 /// The name of the table that a specification shows. Throws InternalError when it names none.
 [[nodiscard]] std::string table_of(const ChartSpecification& chart);
 
-/// The specification with the table's rows as its data, an object each; a value that is missing, NaN or
-/// infinite is null. Text that is not UTF-8 is shown with replacement characters.
+/// The specification with rows as its data. Where "usermeta": {"lines": FIELD} says that each value of a
+/// field has a line of its own and there are more than `most_chart_lines`, they are shared out among panels.
+[[nodiscard]] nlohmann::ordered_json chart_json(const ChartSpecification& chart, nlohmann::ordered_json rows);
+inline constexpr std::size_t most_chart_lines = 4;
+
+/// The same with the table's rows, as text; a value that is missing, NaN or infinite is null. Text that is
+/// not UTF-8 is shown with replacement characters.
 [[nodiscard]] std::string fill_chart(const ChartSpecification& chart, const Table& table);
 
 /// Each of chart_specifications() whose table is among `tables` and has rows, with that table.

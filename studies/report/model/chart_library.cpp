@@ -45,8 +45,7 @@ ReportChart live_chart(std::string_view specification, const std::string& name, 
 ReportChart chart_of_results(const ChartSpecification& specification, const Json& rows) {
   ReportChart chart;
   chart.name = specification.name;
-  chart.spec = Json::parse(specification.json);
-  chart.spec["data"] = {{"name", table_of(specification)}, {"values", rows}};
+  chart.spec = chart_json(specification, rows);
   chart.title = chart.spec.value("title", chart.name);
   return chart;
 }
