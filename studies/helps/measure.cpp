@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <utility>
 
 #include "studies/figures/counted_figures.h"
@@ -87,7 +88,9 @@ class Measurement {
   struct Replay {
     const processors::MachineConfig* machine;
     MeasuredChange* into;
-    double share = 0.0;  // how busy the resource is
+    double share = 0.0;          // how busy the resource is
+    std::pair<Part, bool> part;  // whether it is one of packets
+    std::size_t turn = 0;        // so many resources of its part come before it
   };
 
   // What is known of a change without a replay.
@@ -154,7 +157,9 @@ class Measurement {
 
   // The steps, and the resources that have none at their best, in the order in which they are replayed: those
   // first that can save most, by the nodes' own work; of equals those that are busiest. Where only few can be
-  // replayed, those first that are busiest.
+  // replayed, those first that are busiest. With a budget each part of the machine has its turn: what is
+  // busiest need not be what helps, as where nodes of a pipeline are busy with waiting for a bus. Packets,
+  // which count as a part of the nodes, have turns of their own.
   std::vector<Replay> in_order() {
     std::vector<Replay> wanted;
     for (Case& one : cases_) {
@@ -162,14 +167,23 @@ class Measurement {
       MeasuredChange& into = one.help.step ? *one.help.step : *one.help.best;
       if (into.outcome != Outcome::measured) {
         const double share =
-            few_ ? busy_share(one.help, machine_, result_, counts_) : share_of(one.help.part, counts_);
-        wanted.push_back({&change->machine, &into, share});
+            limited_ ? busy_share(one.help, machine_, result_, counts_) : share_of(one.help.part, counts_);
+        wanted.push_back(
+            {&change->machine, &into, share, {one.help.part, one.help.name.starts_with("packets.")}});
       }
     }
     std::stable_sort(wanted.begin(), wanted.end(), [&](const Replay& a, const Replay& b) {
       return few_ ? std::pair(a.share, a.into->most_saved) > std::pair(b.share, b.into->most_saved)
                   : std::pair(a.into->most_saved, a.share) > std::pair(b.into->most_saved, b.share);
     });
+    if (limited_) {
+      std::map<std::pair<Part, bool>, std::size_t> turns;
+      for (Replay& one : wanted) {
+        one.turn = turns[one.part]++;
+      }
+      std::stable_sort(wanted.begin(), wanted.end(),
+                       [](const Replay& a, const Replay& b) { return a.turn < b.turn; });
+    }
     return wanted;
   }
 
@@ -193,18 +207,17 @@ class Measurement {
   }
 
   void measure_steps() {
-    std::vector<Replay> wanted = in_order();
-    if (few_) {  // and so not in the order of what they can save
-      std::erase_if(wanted, [](const Replay& one) { return one.into->most_saved < worth_naming; });
-    }
+    const std::vector<Replay> wanted = in_order();
     const Work kept = limited_ && !few_ ? budget_ / part_for_best : 0;
-    std::size_t next = 0;
     tell(wanted.size());
-    while (next < wanted.size() && wanted[next].into->most_saved >= least_wanted()) {
+    for (std::size_t next = 0; next < wanted.size();) {
+      const double least = least_wanted();
       std::vector<Replay> together;
-      while (next < wanted.size() && together.size() < begun_together &&
-             wanted[next].into->most_saved >= least_wanted()) {
-        together.push_back(wanted[next++]);
+      while (next < wanted.size() && together.size() < begun_together) {
+        const Replay& one = wanted[next++];
+        if (one.into->most_saved >= least) {  // else it stays needless
+          together.push_back(one);
+        }
       }
       replay(together, kept);
     }

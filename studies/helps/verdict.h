@@ -23,8 +23,9 @@ namespace marti::studies {
 /// of banks the share of the frame in which they are busy, if that is more.
 [[nodiscard]] double share_of(Part part, const Counts& counts);
 
-/// How busy a resource is, a share of the frame. Where rays move, a node may wait for what is slow elsewhere,
-/// so there it is how busy the stage, the busiest node, the host or the network is; else share_of() its part.
+/// How busy a resource is, a share of the frame; of packets how long nodes are idle. Where rays move, a node
+/// may wait for what is slow elsewhere, so there it is how busy the stage, the busiest node, the host or the
+/// network is; else share_of() its part.
 [[nodiscard]] double busy_share(const Help& help, const processors::MachineConfig& machine,
                                 const processors::MachineResult& result, const Counts& counts);
 

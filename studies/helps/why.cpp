@@ -90,7 +90,7 @@ std::string why_network(const MachineConfig& machine, const Counts& counts) {
 
 std::string why_host(const MachineConfig& machine, const MachineResult& result, const Counts& counts) {
   if (machine.scheme != processors::Scheme::image) {
-    return fmt::format("camera rays keep the host {:.1f} % of the time",
+    return fmt::format("camera rays keep the host busy for {:.1f} % of the time",
                        100.0 * flow_figures(machine, result).host);
   }
   return fmt::format("nodes spend {:.1f} % of their time waiting for packets",
@@ -138,7 +138,7 @@ double share_of(Part part, const Counts& counts) {
 double busy_share(const Help& help, const MachineConfig& machine, const MachineResult& result,
                   const Counts& counts) {
   if (machine.scheme == processors::Scheme::image) {
-    return share_of(help.part, counts);
+    return help.name.starts_with("packets.") ? share(counts, {Activity::idle}) : share_of(help.part, counts);
   }
   const FlowFigures flow = flow_figures(machine, result);
   switch (help.part) {
