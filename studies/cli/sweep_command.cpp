@@ -28,9 +28,8 @@ std::string said(const SweepReport& report) {
   if (report.timed == 0 && report.traced == 0) {
     return "all of it was there already\n";
   }
-  return fmt::format("timed         {} machine{} on {} frame{} in {}\n", report.timed,
-                     report.timed == 1 ? "" : "s", report.traced, report.traced == 1 ? "" : "s",
-                     duration_text(report.seconds));
+  return fmt::format("timed         {} on {} in {}\n", counted(report.timed, "machine"),
+                     counted(report.traced, "frame"), duration_text(report.seconds));
 }
 
 SweepOptions options_of(const SweepArguments& arguments) {

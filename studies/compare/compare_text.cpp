@@ -89,12 +89,8 @@ std::string printable(std::string text) {
   return text;
 }
 
-std::string count(std::size_t number, std::string_view what) {
-  return fmt::format("{} {}{}", grouped(static_cast<std::int64_t>(number)), what, number == 1 ? "" : "s");
-}
-
 std::string differ(std::size_t number, std::string_view what) {
-  return count(number, what) + (number == 1 ? " differs" : " differ");
+  return counted(number, what) + (number == 1 ? " differs" : " differ");
 }
 
 std::string setting_text(const Cell& value) {
@@ -160,11 +156,11 @@ std::string differences_text(const ComparedPair& pair, bool all) {
   text += figure_lines(found.texts, true);
   text += figure_lines(found.numbers, all);
   if (!found.one_side.empty()) {
-    fmt::format_to(out, "\nof one only    {}\n", count(found.one_side.size(), "figure"));
+    fmt::format_to(out, "\nof one only    {}\n", counted(found.one_side.size(), "figure"));
     text += figure_lines(found.one_side, all);
   }
   if (all && !found.equal.empty()) {
-    fmt::format_to(out, "\nequal          {}\n", count(found.equal.size(), "figure"));
+    fmt::format_to(out, "\nequal          {}\n", counted(found.equal.size(), "figure"));
     text += figure_lines(found.equal, true);
   }
   return text;

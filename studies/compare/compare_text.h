@@ -19,8 +19,6 @@ inline constexpr std::size_t most_lines = 20;
 /// A text of somebody's file without control characters, which must not reach the terminal.
 [[nodiscard]] std::string printable(std::string text);
 
-/// "1 setting", "2 settings".
-[[nodiscard]] std::string count(std::size_t number, std::string_view what);
 /// "1 point differs", "3 points differ".
 [[nodiscard]] std::string differ(std::size_t number, std::string_view what);
 

@@ -160,7 +160,7 @@ ComparisonPage page_of(const ResultAndSweep& found) {
 ComparisonPage page_of(const TwoSweeps& found) {
   std::vector<std::string> verdict = verdict_of(found);
   verdict.push_back(fmt::format(
-      "{} in both, joined by {}; {} only in A, {} only in B.", count(found.both, "point"),
+      "{} in both, joined by {}; {} only in A, {} only in B.", counted(found.both, "point"),
       found.by_axes ? "the values of their axes" : "all settings", found.only_a.size(), found.only_b.size()));
   ComparisonPage page =
       begin_page(std::move(verdict), {found.a, found.version_a}, {found.b, found.version_b});

@@ -83,7 +83,7 @@ std::vector<std::string> verdict_of(const ResultAndSweep& found) {
   } else {
     const PointCounts counts = counts_of(found);
     sentences.push_back(fmt::format("Of {}, {} {} faster than {}, {} as fast and {} slower.",
-                                    count(found.points.size(), "point"), counts.faster,
+                                    counted(found.points.size(), "point"), counts.faster,
                                     counts.faster == 1 ? "is" : "are", found.result_letter(), counts.equal,
                                     counts.slower));
     const ComparedPoint& best = found.points.front();
@@ -92,13 +92,13 @@ std::vector<std::string> verdict_of(const ResultAndSweep& found) {
     sentences.push_back(fmt::format("The fastest is {}. With it as {}, {}.", point_text(found, best),
                                     found.sweep_letter(), speed_text(a, b)));
     if (found.other_frames > 0) {
-      sentences.push_back(fmt::format("{} of other frames {} left out.", count(found.other_frames, "point"),
+      sentences.push_back(fmt::format("{} of other frames {} left out.", counted(found.other_frames, "point"),
                                       found.other_frames == 1 ? "is" : "are"));
     }
   }
   const ComparedPoint& nearest = found.nearest();
   sentences.push_back(fmt::format("The nearest is {}: it differs from {} in {}.", point_text(found, nearest),
-                                  found.result_letter(), count(nearest.distance, "setting")));
+                                  found.result_letter(), counted(nearest.distance, "setting")));
   return sentences;
 }
 
@@ -125,12 +125,12 @@ std::string text_of(const ResultAndSweep& found, bool all) {
                    best.ratio);
     fmt::format_to(out, "nearest        {}: {}, B / A = {:.4f}, differs in {}\n\n",
                    point_text(found, nearest), seconds(nearest.end), nearest.ratio,
-                   count(nearest.distance, "setting"));
+                   counted(nearest.distance, "setting"));
   } else {
     fmt::format_to(out, "\npoints         {}, {} of them timed, all of other frames\n", found.planned,
                    found.timed);
     fmt::format_to(out, "nearest        {}: {}, differs in {}\n\n", point_text(found, nearest),
-                   seconds(nearest.end), count(nearest.distance, "setting"));
+                   seconds(nearest.end), counted(nearest.distance, "setting"));
   }
   return text + table_of(found, all);
 }

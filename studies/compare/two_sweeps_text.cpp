@@ -21,7 +21,7 @@ std::string whose_points(const char* whose, const std::vector<std::int64_t>& poi
     return {};
   }
   const std::size_t shown = all ? points.size() : std::min(points.size(), most_lines);
-  std::string text = fmt::format("  only in {}: point", whose);
+  std::string text = fmt::format("  only in {}: point{}", whose, points.size() == 1 ? "" : "s");
   for (std::size_t i = 0; i < shown; ++i) {
     text += (i == 0 ? " " : ", ") + std::to_string(points[i]);
   }
@@ -77,7 +77,7 @@ std::string balance(const TwoSweeps& found) {
     slower += found.points[i].end_b > found.points[i].end_a ? 1 : 0;
   }
   return fmt::format("Of {} that both have, B is faster at {}, as fast as A at {} and slower at {}.",
-                     count(found.comparable(), "point"), faster, found.comparable() - faster - slower,
+                     counted(found.comparable(), "point"), faster, found.comparable() - faster - slower,
                      slower);
 }
 
@@ -111,11 +111,12 @@ std::vector<std::string> verdict_of(const TwoSweeps& found) {
     }
   }
   if (comparable < found.points.size()) {
-    sentences.push_back(fmt::format("{} different frames: {} times say nothing about the machines.",
-                                    found.points.size() - comparable == 1
-                                        ? "1 joined point renders"
-                                        : count(found.points.size() - comparable, "joined point") + " render",
-                                    found.points.size() - comparable == 1 ? "its" : "their"));
+    sentences.push_back(
+        fmt::format("{} different frames: {} times say nothing about the machines.",
+                    found.points.size() - comparable == 1
+                        ? "1 joined point renders"
+                        : counted(found.points.size() - comparable, "joined point") + " render",
+                    found.points.size() - comparable == 1 ? "its" : "their"));
   }
   if (found.equal == found.points.size()) {
     sentences.emplace_back("All points are equal in every counter.");
@@ -129,7 +130,7 @@ std::string text_of(const TwoSweeps& found, bool all) {
   text += verdict_lines(verdict_of(found));
   if (!found.frame.empty()) {
     fmt::format_to(out, "\nframe          {} in which joined points differ\n{}",
-                   count(found.frame.size(), "setting"), settings_lines(found.frame));
+                   counted(found.frame.size(), "setting"), settings_lines(found.frame));
   }
   text += "\n";
   if (found.version_a != found.version_b) {
@@ -145,6 +146,9 @@ std::string text_of(const TwoSweeps& found, bool all) {
   if (!found.alike.empty()) {
     fmt::format_to(out, "configuration  {} at every joined point alike\n{}",
                    differ(found.alike.size(), "setting"), settings_lines(found.alike));
+  }
+  if (found.points.empty()) {
+    return text;
   }
   fmt::format_to(out, "results        {} equal in every counter, {} not\n", found.equal,
                  found.points.size() - found.equal);

@@ -48,7 +48,7 @@ std::string settings_sentence(const std::vector<Difference>& settings) {
     }
   }
   if (parts.empty()) {
-    return count(settings.size(), "setting");
+    return counted(settings.size(), "setting");
   }
   if (parts.size() < settings.size()) {
     parts.push_back(fmt::format("{} more", settings.size() - parts.size()));

@@ -6,6 +6,7 @@
 
 #include "studies/error/rendering_tables.h"
 #include "studies/tables/text_table.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
@@ -86,9 +87,9 @@ StudyOutput output_of(const RenderingStudy& study) {
   part.host_tables = {rendering_time_table(study), rendering_fastest_table(study)};
 
   const processors::RenderOptions& base = study.plan.base;
-  part.report = fmt::format(
-      "Error of the renderer on {}, {} x {}, {} sample{} a pixel, at most {} rays in a row\n\n", study.scene,
-      base.width, base.height, base.samples, base.samples == 1 ? "" : "s", base.max_depth);
+  part.report =
+      fmt::format("Error of the renderer on {}, {} x {}, {} a pixel, at most {} rays in a row\n\n",
+                  study.scene, base.width, base.height, counted(base.samples, "sample"), base.max_depth);
   part.report += error_lines(study) + "\n";
   for (const std::string& note : study.plan.notes) {
     part.report += "Note: " + note + ".\n";

@@ -1,4 +1,5 @@
 #include "studies/error/rendering_settings.h"
+#include "studies/tables/text_units.h"
 
 #include <algorithm>
 
@@ -29,7 +30,7 @@ class Planner {
       add(Knob::samples, fmt::format("{} a pixel", samples), samples).render.samples = samples;
     }
     for (const std::uint32_t depth : options_.depths) {
-      add(Knob::depth, fmt::format("{} ray{}", depth, depth == 1 ? "" : "s"), depth).render.max_depth = depth;
+      add(Knob::depth, counted(depth, "ray"), depth).render.max_depth = depth;
     }
     RenderingSetting& deepest =
         add(Knob::depth, fmt::format("{} rays", options_.reference_depth), options_.reference_depth);

@@ -11,6 +11,7 @@
 #include "studies/host/cpu_time.h"
 #include "studies/paper/level_counts.h"
 #include "studies/run/prepared_frame.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
@@ -25,7 +26,7 @@ std::vector<ErrorCase> cases_of(const ErrorConfig& config) {
         for (const std::uint32_t nodes : config.nodes) {
           cases.push_back({scene, frame, nodes, cache,
                            config.scenes[scene] + ", " + std::to_string(side) + " x " + std::to_string(side) +
-                               ", " + std::to_string(nodes) + (nodes == 1 ? " node, " : " nodes, ") +
+                               ", " + counted(nodes, "node") + ", " +
                                sim::print_size(static_cast<std::int64_t>(cache))});
         }
       }

@@ -6,6 +6,7 @@
 #include "sim/error.h"
 #include "studies/estimate/simulator_analytic.h"
 #include "studies/estimate/simulator_sample.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
@@ -53,10 +54,9 @@ std::string Method::knob() const {
     case MethodKind::sampled:
       return std::to_string(2 * strata) + " windows";
     case MethodKind::analytic:
-      return all_caches ? "all nodes walked, all caches at once"
-             : walked_nodes == all_nodes
-                 ? "all nodes walked"
-                 : std::to_string(walked_nodes) + (walked_nodes == 1 ? " node" : " nodes") + " walked";
+      return all_caches                  ? "all nodes walked, all caches at once"
+             : walked_nodes == all_nodes ? "all nodes walked"
+                                         : counted(walked_nodes, "node") + " walked";
     case MethodKind::interpolated:
       return std::string(over_caches ? "cache sizes" : "node counts") +
              (curve == Curve::linear ? ", linear" : ", cubic");

@@ -107,7 +107,7 @@ std::string estimate_text(const RunResult& result, const EstimatedRun& run, cons
       100.0 * tolerance, 100.0 * run.use_to);
   text += "frame time    " + time_bar(machine, Figure::end);
   text += fmt::format("speed-up      {}", number_bar(machine, Figure::speed_up, 2));
-  text += fmt::format("  on {} node{}\n", nodes, nodes == 1 ? "" : "s");
+  text += fmt::format("  on {}\n", counted(nodes, "node"));
   text += "one node      " + time_bar(run.sampled.one_node, Figure::end);
   text += "misses        " + number_bar(machine, Figure::misses, 0);
   text += "hit ratio     " + points_bar(100.0 - share, share * half[Figure::misses], "");

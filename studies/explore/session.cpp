@@ -13,6 +13,7 @@
 #include "sim/files.h"
 #include "sim/nearest.h"
 #include "studies/explore/modelled_frame.h"
+#include "studies/figures/derived_figures.h"
 #include "studies/keys/config_file.h"
 #include "studies/keys/frame_keys.h"
 #include "studies/keys/machine_keys.h"
@@ -78,11 +79,15 @@ std::string keys_json(const sim::Config& config) {
   for (const sim::Section& section : config.schema().sections()) {
     sections[section.name] = section.meaning;
   }
-  const Json keys = {{"file", config.name()},
-                     {"scene", config.text("scene.source")},
-                     {"sections", sections},
-                     {"controls", controls},
-                     {"given", given}};
+  Json units = Json::object();
+  for (const auto& figures : {counted_figures(), derived_figures()}) {
+    for (const FigureEntry& figure : figures) {
+      units[figure.name] = figure.unit;
+    }
+  }
+  const Json keys = {{"file", config.name()}, {"scene", config.text("scene.source")},
+                     {"sections", sections},  {"controls", controls},
+                     {"units", units},        {"given", given}};
   return keys.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -60,12 +60,12 @@ Formula lost(std::size_t loss) {
 
 void add_speed(std::vector<FigureEntry>& all) {
   const auto add = [&all](const std::string& name, const std::string& text, Better better,
-                          const Formula& formula) {
-    all.push_back({name, "1", text, Merge::ratio, better, formula});
+                          const Formula& formula, const std::string& unit = "1") {
+    all.push_back({name, unit, text, Merge::ratio, better, formula});
   };
   add("speed_up", "how many times as fast as the base", Better::higher, base("end") / own("end"));
   add("efficiency", "speed-up, divided by how many times the base's nodes it has", Better::higher,
-      base("end") * base("nodes") / (own("end") * own("nodes")));
+      base("end") * base("nodes") / (own("end") * own("nodes")), "fraction");
   add("serial_fraction", "that would explain the speed-up by Amdahl's law (Karp and Flatt 1990)",
       Better::lower,
       (own("nodes") * own("end") - base("nodes") * base("end")) /
@@ -89,7 +89,7 @@ void add_memory(std::vector<FigureEntry>& all) {
     all.push_back({std::string(name), std::string(unit), std::string(text), Merge::ratio, better, formula});
   };
   const auto hit_ratio = [&](const std::string& name, const std::string& of, std::string_view text) {
-    add(name, "1", text, Better::higher, own(of + "hits") / (own(of + "hits") + own(of + "misses")));
+    add(name, "fraction", text, Better::higher, own(of + "hits") / (own(of + "hits") + own(of + "misses")));
   };
   hit_ratio("hit_ratio", "", "of lines looked up in the first level");
   for (const std::string_view kind : memory::record_kind_names) {
@@ -101,37 +101,47 @@ void add_memory(std::vector<FigureEntry>& all) {
   const auto of_links = [&end](const std::string& what) {
     return own("most_" + what + "_busy") / (end * (own(what + "_links") / own("clusters")));
   };
-  add("interconnect_utilisation", "1", "share of the frame time that the busiest cluster's links transfer",
-      Better::lower, of_links("interconnect"));
-  add("bank_utilisation", "1", "share of the frame time that the busiest bank is busy", Better::lower,
+  add("interconnect_utilisation", "fraction",
+      "share of the frame time that the busiest cluster's links transfer", Better::lower,
+      of_links("interconnect"));
+  add("bank_utilisation", "fraction", "share of the frame time that the busiest bank is busy", Better::lower,
       least(Formula(1.0), own("most_bank_busy") / end));
-  add("mean_bank_utilisation", "1", "share of the frame time that the banks are busy", Better::lower,
+  add("mean_bank_utilisation", "fraction", "share of the frame time that the banks are busy", Better::lower,
       least(Formula(1.0), own("bank_busy") / (end * own("banks"))));
   const Formula bursts = own("dram_row_hits") + own("dram_row_misses") + own("dram_row_conflicts");
-  add("dram_row_hit_ratio", "1", "of the bursts of DRAM, those that found their row open", Better::higher,
-      own("dram_row_hits") / bursts);
-  add("dram_row_conflict_ratio", "1", "of the bursts of DRAM, those that found another row open",
+  add("dram_row_hit_ratio", "fraction", "of the bursts of DRAM, those that found their row open",
+      Better::higher, own("dram_row_hits") / bursts);
+  add("dram_row_conflict_ratio", "fraction", "of the bursts of DRAM, those that found another row open",
       Better::lower, own("dram_row_conflicts") / bursts);
   const Formula channel_time = end * own("banks");
-  add("dram_refresh_share", "1",
+  add("dram_refresh_share", "fraction",
       "share of the frame time for which a channel's oldest access waits for a refresh", Better::lower,
       own("dram_refresh_stall") / channel_time);
   add("dram_queue_length", "1", "mean number of accesses of a channel that have not got their data commands",
       Better::lower, own("dram_queued") / channel_time);
   add("dram_bandwidth", "byte/s", "data that DRAM moves, in whole bursts", Better::higher,
       own("dram_bytes") * Formula(1e12) / end);
-  add("network_utilisation", "1", "share of the frame time that messages hold the busiest cluster's links",
-      Better::lower, of_links("network"));
+  add("network_utilisation", "fraction",
+      "share of the frame time that messages hold the busiest cluster's links", Better::lower,
+      of_links("network"));
   add("hops_a_message", "1", "links that a message crosses", Better::lower,
       own("network_hops") / own("network_messages"));
   for (const std::string what : {"interconnect", "bank", "network"}) {
     add("mean_" + what + "_wait", "ps", "mean of the waits, those of no length included", Better::lower,
         own(what + "_wait_sum") / own(what + "_wait_count"));
   }
-  add("finish_balance", "1", "mean finish of the nodes by the latest", Better::higher,
+  add("messages_a_ray", "1", "where rays move: messages for each camera ray and ray made", Better::lower,
+      own("network_messages") / own("flow_rays"));
+  add("message_bytes_a_ray", "byte", "where rays move: bytes of messages for each of these rays",
+      Better::lower, own("network_bytes") / own("flow_rays"));
+  add("mean_queue_wait", "ps", "where rays move: mean time that a ray waits in a queue", Better::lower,
+      own("flow_queued") / own("flow_taken"));
+  add("mean_node_memory", "byte", "the database in a node's own memory, mean of the nodes", Better::lower,
+      own("flow_memory") / own("nodes"));
+  add("finish_balance", "fraction", "mean finish of the nodes by the latest", Better::higher,
       own("node_finish") / (own("nodes") * own("latest_finish")));
   for (const std::string_view activity : processors::activity_names) {
-    add("share_" + std::string(activity), "1",
+    add("share_" + std::string(activity), "fraction",
         "share of the nodes' time in this activity (model.md, Accounting)", Better::lower,
         own("time_" + std::string(activity)) / (own("nodes") * end));
   }

@@ -29,7 +29,7 @@ struct FigureEntry {
   /// A column of the store's table `results` or `frame_results`, or of its view `summary` if it has a
   /// formula; a field of `figures` in result.json. Lower-case letters, digits and '_'.
   std::string name;
-  std::string unit;  ///< "1" for a plain number, else "ps" or "byte"
+  std::string unit;  ///< "1" for a plain number, "fraction" for a part of a whole, else "ps", "byte", ...
   std::string description;
   Merge merge = Merge::sum;
   Better better = Better::lower;

@@ -19,6 +19,7 @@
 #include "studies/run/functional_run.h"
 #include "studies/tables/provenance.h"
 #include "studies/tables/text_table.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
@@ -103,18 +104,18 @@ std::string head_of(const sim::Config& config, const FramesConfig& frames, std::
   }
   return fmt::format(
       "The cycle \"build, render\", frame by frame\n"
-      "scene    {}, {} frame{} at {:g} a second, the first is number {}\n"
+      "scene    {}, {} at {:g} a second, the first is number {}\n"
       "images   {} x {}{}\n"
-      "machine  {} node{} at {}, operations as \"{}\"\n"
+      "machine  {} at {}, operations as \"{}\"\n"
       "\n"
       "rebuild_all      the whole tree is built before each frame\n"
       "partial          altered branches are built anew before each frame, the rest is kept\n"
       "dynamic          built before each frame to {}, the rest on demand ({})\n"
       "partial_dynamic  altered branches are built anew on demand, the rest is kept as it is\n",
-      frames.frame.scene, count, count == 1 ? "" : "s", frames.frame.frames.rate, frames.frame.frames.first,
+      frames.frame.scene, counted(count, "frame"), frames.frame.frames.rate, frames.frame.frames.first,
       frames.frame.render.width, frames.frame.render.height,
-      frames.verify ? ", each equal to that of a tree built from nothing" : "", frames.machine.all_nodes(),
-      frames.machine.all_nodes() == 1 ? "" : "s", sim::print_frequency(config.frequency("node.clock")),
+      frames.verify ? ", each equal to that of a tree built from nothing" : "",
+      counted(frames.machine.all_nodes(), "node"), sim::print_frequency(config.frequency("node.clock")),
       config.choice_name("costs.preset"), initial,
       processors::sharing_names[static_cast<std::size_t>(build.sharing)]);
 }

@@ -22,8 +22,8 @@ std::string limits_line(const std::map<std::string, std::size_t>& count) {
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string text;
   for (const auto& [name, points] : names) {
-    text += fmt::format("{}{} of {}{}", text.empty() ? "limits        " : ", ", name, grouped(points),
-                        text.empty() ? (points == 1 ? " point" : " points") : "");
+    text += fmt::format("{}{} of {}", text.empty() ? "limits        " : ", ", name,
+                        text.empty() ? counted(points, "point") : grouped(points));
   }
   return text.empty() ? text : text + "\n";
 }

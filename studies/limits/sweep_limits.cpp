@@ -59,7 +59,7 @@ std::string PointLimit::sentence() const {
                                        100.0 * worth_naming);
   std::string unknown;
   for (const PredictedStep* const step : open()) {
-    unknown += (unknown.empty() ? "; not known: " : "; ") + step->name;
+    unknown += (unknown.empty() ? "; not known: " : "; ") + describe(step->keys);
   }
   return text + unknown;
 }

@@ -23,6 +23,7 @@
 #include "studies/run/scene_hash.h"
 #include "studies/tables/provenance.h"
 #include "studies/tables/text_table.h"
+#include "studies/tables/text_units.h"
 #include "studies/tables/wide_table.h"
 
 namespace marti::studies {
@@ -64,10 +65,10 @@ std::string head_of(const sim::Config& config, const PaperConfig& paper) {
       "Space subdivision as the paper of 1992 studied it\n"
       "trees    at most {} primitives in a leaf, {} levels\n"
       "images   {} x {}\n"
-      "machine  {} node{} at {}, operations as \"{}\"\n",
+      "machine  {} at {}, operations as \"{}\"\n",
       octree.max_objects, octree.max_level, paper.frame.render.width, paper.frame.render.height,
-      paper.machine.all_nodes(), paper.machine.all_nodes() == 1 ? "" : "s",
-      sim::print_frequency(config.frequency("node.clock")), config.choice_name("costs.preset"));
+      counted(paper.machine.all_nodes(), "node"), sim::print_frequency(config.frequency("node.clock")),
+      config.choice_name("costs.preset"));
 }
 
 /// The tables for people: those with a row for each level get a column for each level instead. Left out are

@@ -23,7 +23,7 @@ bool is(Kind kind, const ScalingPoint& point) {
     case Kind::naive:
       return point.scheme == Scheme::image && point.hit_ratio.value_or(0.0) == 0.0;
     case Kind::cached:
-      return point.scheme == Scheme::image && point.hit_ratio.value_or(0.0) > 0.0 && point.shared_use;
+      return point.scheme == Scheme::image && point.hit_ratio.value_or(0.0) > 0.0 && point.interconnect;
     case Kind::space:
       return point.scheme == Scheme::space;
   }
@@ -53,8 +53,8 @@ Claim naive(std::span<const ScalingPoint> points) {
     const ScalingPoint& last = machine.back();
     claim.here = fmt::format(
         "at most {:.1f} times as fast as one node, and with {} nodes the way to memory is {:.1f} % busy",
-        speed_up(*best), last.nodes, 100.0 * last.shared_use.value_or(0.0));
-    claim.verdict = verdict_of(last.shared_use.value_or(0.0) > 0.9 && efficiency(last) < 0.5);
+        speed_up(*best), last.nodes, 100.0 * last.interconnect.value_or(0.0));
+    claim.verdict = verdict_of(last.interconnect.value_or(0.0) > 0.9 && efficiency(last) < 0.5);
   }
   return claim;
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "studies/figures/derived_figures.h"
+#include "studies/schemes/tree_point.h"
 
 namespace marti::studies {
 
@@ -23,17 +24,15 @@ ScalingPoint point_of(const NamedMachine& machine, const processors::MachineResu
   const auto figure = [&](std::string_view name) { return figure_of({&counts, &one_node}, name); };
   point.speed_up = figure("speed_up");
   point.efficiency = figure("efficiency");
-  point.shared_use = figure("interconnect_utilisation");
+  point.interconnect = figure("interconnect_utilisation");
   point.hit_ratio = figure("hit_ratio");
   point.idle = figure("share_idle").value_or(0.0);
   for (const std::string_view what :
        {"interconnect_wait", "bank_wait", "lock_wait", "message_wait", "queue_full_wait", "dispatch_wait"}) {
     point.waiting += figure("share_" + std::string(what)).value_or(0.0);
   }
-  for (const memory::NetworkStatistics& network : result.flow.networks) {
-    point.messages += network.messages;
-    point.message_bytes += network.bytes;
-  }
+  point.messages = count_of(counts, "network_messages");
+  point.message_bytes = count_of(counts, "network_bytes");
   return point;
 }
 
@@ -73,25 +72,24 @@ Table scaling_table(std::span<const ScalingPoint> points) {
               {{"machine", ColumnType::text, "", "file of the machine"},
                {"scheme", ColumnType::text, "", "its parallel scheme"},
                {"nodes", ColumnType::integer, "1", "processor nodes of all clusters"},
-               {"end", ColumnType::integer, "ps", "time of the frame"},
+               figure_column("end"),
                {"one_node", ColumnType::integer, "ps", "time of the frame with one node"},
-               {"speed_up", ColumnType::real, "1", "one_node / end"},
-               {"efficiency", ColumnType::real, "fraction", "speed_up / nodes"},
+               figure_column("speed_up"),
+               figure_column("efficiency"),
                {"limit", ColumnType::text, "", "the largest part of the nodes' time"},
-               {"shared_use", ColumnType::real, "fraction",
-                "share of the frame in which the way to the shared memory was busy"},
-               {"hit_ratio", ColumnType::real, "fraction", "of the private caches"},
+               figure_column("interconnect_utilisation"),
+               figure_column("hit_ratio"),
                {"waiting", ColumnType::real, "fraction", "share of the nodes' time spent in queues"},
-               {"idle", ColumnType::real, "fraction", "share of the nodes' time after their last work"},
-               {"messages", ColumnType::integer, "1", "between different nodes or with the host"},
-               {"message_bytes", ColumnType::integer, "byte", "bytes of these messages"}});
-  const auto cell = [](const std::optional<double>& value) { return value ? Cell(*value) : Cell(); };
+               figure_column("share_idle"),
+               figure_column("network_messages"),
+               figure_column("network_bytes")});
+  const auto cell = [](const auto& value) { return value ? Cell(*value) : Cell(); };
   for (const ScalingPoint& point : points) {
-    table.add_row({point.machine,
-                   std::string(processors::scheme_names[static_cast<std::size_t>(point.scheme)]),
-                   count_cell(point.nodes), point.end, point.one_node_end, cell(point.speed_up),
-                   cell(point.efficiency), std::string(name_of(point.limit)), cell(point.shared_use),
-                   cell(point.hit_ratio), point.waiting, point.idle, point.messages, point.message_bytes});
+    table.add_row(
+        {point.machine, std::string(processors::scheme_names[static_cast<std::size_t>(point.scheme)]),
+         count_cell(point.nodes), point.end, point.one_node_end, cell(point.speed_up), cell(point.efficiency),
+         std::string(name_of(point.limit)), cell(point.interconnect), cell(point.hit_ratio), point.waiting,
+         point.idle, cell(point.messages), cell(point.message_bytes)});
   }
   return table;
 }

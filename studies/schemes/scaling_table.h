@@ -26,12 +26,12 @@ struct ScalingPoint {
   std::optional<double> speed_up;
   std::optional<double> efficiency;
   Limit limit = Limit::nothing;
-  std::optional<double> shared_use;  ///< share of the frame in which the memory's interconnect was busy
+  std::optional<double> interconnect;  ///< its utilisation
   std::optional<double> hit_ratio;
   double idle = 0.0;     ///< share of the nodes' time
   double waiting = 0.0;  ///< share of the nodes' time spent waiting for anything but the end
-  std::int64_t messages = 0;
-  std::int64_t message_bytes = 0;
+  std::optional<std::int64_t> messages;
+  std::optional<std::int64_t> message_bytes;
 };
 
 /// Times every machine with every number of nodes from the log; points in the order of the machines, then of

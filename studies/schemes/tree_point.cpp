@@ -5,6 +5,7 @@
 
 #include "processors/replay/replay.h"
 #include "sim/statistics.h"
+#include "studies/figures/derived_figures.h"
 #include "studies/run/functional_run.h"
 
 namespace marti::studies {
@@ -19,17 +20,22 @@ TreePoint time_tree(const FrameConfig& frame, const std::filesystem::path& machi
           result.references(),       result.end};
 }
 
+Column figure_column(std::string_view figure) {
+  const FigureEntry& entry = figure_named(figure);
+  return {entry.name, entry.formula ? ColumnType::real : ColumnType::integer, entry.unit, entry.description};
+}
+
 std::vector<Column> tree_columns(Column first) {
   return {std::move(first),
           {"tree_nodes", ColumnType::integer, "1", "nodes of the tree"},
           {"tree_entries", ColumnType::integer, "1", "object references in its leaves"},
-          {"database", ColumnType::integer, "byte", "size of the database"},
+          figure_column("database_bytes"),
           {"visits", ColumnType::integer, "1", "nodes visited"},
           {"tests", ColumnType::integer, "1", "primitives tested"},
           {"references", ColumnType::integer, "1", "lines referred to"},
-          {"misses", ColumnType::integer, "1", "of these, misses"},
-          {"hit_ratio", ColumnType::real, "fraction", "hits / references"},
-          {"end", ColumnType::integer, "ps", "time of the frame"}};
+          figure_column("misses"),
+          figure_column("hit_ratio"),
+          figure_column("end")};
 }
 
 std::vector<Cell> tree_cells(Cell first, const TreePoint& point) {

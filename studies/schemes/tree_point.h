@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "processors/cost/accounting.h"
@@ -21,6 +22,9 @@ struct TreePoint {
 
 /// Traces the frame and times the machine of the file on it.
 [[nodiscard]] TreePoint time_tree(const FrameConfig& frame, const std::filesystem::path& machine_file);
+
+/// The column of a figure of the catalogue (studies/figures), with its name, unit and description.
+[[nodiscard]] Column figure_column(std::string_view figure);
 
 /// `first`, then the columns of a TreePoint.
 [[nodiscard]] std::vector<Column> tree_columns(Column first);

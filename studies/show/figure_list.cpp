@@ -29,7 +29,7 @@ void list_text(std::string_view title, std::span<const FigureEntry> figures, std
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "{}\n", title);
   for (const FigureEntry& figure : figures) {
-    fmt::format_to(out, "  {:<{}}  {:<4}  {:<7}  {:<6}  {}\n", figure.name, width, figure.unit,
+    fmt::format_to(out, "  {:<{}}  {:<8}  {:<7}  {:<6}  {}\n", figure.name, width, figure.unit,
                    merge_of(figure), better_of(figure), figure.description);
     if (figure.formula) {
       fmt::format_to(out, "  {:<{}}  = {}\n", "", width, figure.formula->text());

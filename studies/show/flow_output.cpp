@@ -7,7 +7,6 @@
 #include <optional>
 #include <string_view>
 
-#include "sim/statistics.h"
 #include "studies/figures/flow_figures.h"
 #include "studies/show/json_parts.h"
 #include "studies/tables/text_units.h"
@@ -41,17 +40,15 @@ Json networks_json(const processors::FlowResult& flow) {
   return networks;
 }
 
-double ratio(const RunResult& r, std::string_view part, std::string_view whole) {
-  return sim::ratio(r.count(part), r.count(whole)).value_or(0.0);
-}
+double figure(const RunResult& r, const std::string& name) { return r.figure(name).value_or(0.0); }
 
 std::string bytes_of(const RunResult& r, std::string_view figure) {
   return bytes(static_cast<double>(r.count(figure)));
 }
 
 void load_line(std::back_insert_iterator<std::string> out, const StageLoad& load) {
-  fmt::format_to(out, "  {:<12}{} node{}, {} busy (the busiest {}", load.name, load.nodes,
-                 load.nodes == 1 ? "" : "s", rough_percent(load.busy), rough_percent(load.busiest));
+  fmt::format_to(out, "  {:<12}{}, {} busy (the busiest {}", load.name, counted(load.nodes, "node"),
+                 rough_percent(load.busy), rough_percent(load.busiest));
   if (const std::optional<double> imbalance = load.imbalance()) {
     fmt::format_to(out, ", imbalance {:.2f}", *imbalance);
   }
@@ -94,10 +91,10 @@ std::string flow_lines(const RunResult& r) {
                  grouped(r.count("flow_rays")), grouped(r.count("flow_most_in_flight")),
                  grouped(r.count("flow_most_set_aside")));
   fmt::format_to(out, "  messages    {}, {:.1f} a ray, {} ({:.0f} B a ray)\n",
-                 grouped(r.count("network_messages")), ratio(r, "network_messages", "flow_rays"),
-                 bytes_of(r, "network_bytes"), ratio(r, "network_bytes", "flow_rays"));
+                 grouped(r.count("network_messages")), figure(r, "messages_a_ray"),
+                 bytes_of(r, "network_bytes"), figure(r, "message_bytes_a_ray"));
   fmt::format_to(out, "  queues      mean wait {}\n",
-                 seconds(static_cast<sim::Ticks>(ratio(r, "flow_queued", "flow_taken"))));
+                 seconds(static_cast<sim::Ticks>(figure(r, "mean_queue_wait"))));
   for (const StageLoad& stage : figures.stages) {
     load_line(out, stage);
   }
@@ -106,7 +103,7 @@ std::string flow_lines(const RunResult& r) {
     fmt::format_to(out, "  memory      none in the nodes: the database is in the clusters' memories\n");
   } else {
     fmt::format_to(out, "  memory      of a node: {} to {}, mean {}\n", bytes_of(r, "flow_least_memory"),
-                   bytes_of(r, "flow_most_memory"), bytes(ratio(r, "flow_memory", "nodes")));
+                   bytes_of(r, "flow_most_memory"), bytes(figure(r, "mean_node_memory")));
   }
   if (machine.scheme == Scheme::space) {
     fmt::format_to(out, "  regions     {}, below {} nodes that all have; {} primitives more than once\n",
@@ -121,8 +118,8 @@ std::string flow_lines(const RunResult& r) {
                  memory::network_kind_names[static_cast<std::size_t>(machine.network.kind)]);
   if (const std::optional<double> busy = r.figure("network_utilisation")) {
     fmt::format_to(out, ", links {} busy, {:.1f} hops a message, mean wait {}, longest {}",
-                   rough_percent(*busy), r.figure("hops_a_message").value_or(0.0),
-                   seconds(static_cast<sim::Ticks>(r.figure("mean_network_wait").value_or(0.0))),
+                   rough_percent(*busy), figure(r, "hops_a_message"),
+                   seconds(static_cast<sim::Ticks>(figure(r, "mean_network_wait"))),
                    seconds(r.count("network_wait_max")));
   }
   text += "\n";

@@ -33,9 +33,7 @@ const char* name_of(Outcome outcome) {
   return "too long to count";
 }
 
-std::string other_steps(std::size_t count) {
-  return fmt::format("{} other step{}", count, count == 1 ? "" : "s");
-}
+std::string other_steps(std::size_t count) { return counted(count, "other step"); }
 
 Json change_json(const WhatHelps& what, const std::optional<MeasuredChange>& change) {
   if (!change) {

@@ -27,11 +27,6 @@ namespace {
 
 using Lines = std::back_insert_iterator<std::string>;
 
-// "1 node", "16 nodes"
-std::string counted(std::uint64_t count, std::string_view what) {
-  return fmt::format("{} {}{}", grouped(count), what, count == 1 ? "" : "s");
-}
-
 std::string ratio(std::optional<double> value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : "-";
 }
@@ -44,23 +39,24 @@ std::string percent(std::uint64_t part, std::uint64_t whole) {
 
 void scene_lines(Lines out, const RunResult& r) {
   const scenes::SceneFacts& scene = r.functional.scene;
-  fmt::format_to(out, "scene         {}: {} polygons, {} triangles", r.frame_config.scene,
-                 grouped(scene.polygons), grouped(scene.triangles));
+  fmt::format_to(out, "scene         {}: {}, {}", r.frame_config.scene, counted(scene.polygons, "polygon"),
+                 counted(scene.triangles, "triangle"));
   for (const auto& [count, name] : {std::pair{scene.spheres, "sphere"},
                                     std::pair{scene.cylinders, "cylinder"}, std::pair{scene.cones, "cone"}}) {
     if (count > 0) {
       fmt::format_to(out, ", {}", counted(count, name));
     }
   }
-  fmt::format_to(out, ", {} materials, {} lights\n", scene.materials, scene.lights);
+  fmt::format_to(out, ", {}, {}\n", counted(scene.materials, "material"), counted(scene.lights, "light"));
   for (const std::string& note : r.functional.notes) {
     fmt::format_to(out, "  note        {}\n", note);
   }
   const processors::WorkLog& log = *r.functional.frame.log;
-  fmt::format_to(out, "structure     {}: {} nodes, {} object references", r.frame_config.structure,
-                 grouped(log.topology.nodes.size()), grouped(log.topology.entries.size()));
+  fmt::format_to(out, "structure     {}: {}, {}", r.frame_config.structure,
+                 counted(log.topology.nodes.size(), "node"),
+                 counted(log.topology.entries.size(), "object reference"));
   if (!r.functional.levels.empty()) {
-    fmt::format_to(out, ", {} levels", r.functional.levels.size());
+    fmt::format_to(out, ", {}", counted(r.functional.levels.size(), "level"));
   }
   for (const std::string& note : r.functional.structure_notes) {
     fmt::format_to(out, "\n  note        {}", note);

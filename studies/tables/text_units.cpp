@@ -69,6 +69,10 @@ std::string joules(double j) {
   return j >= 1e-6 ? fmt::format("{:.3f} uJ", j * 1e6) : fmt::format("{:.3f} nJ", j * 1e9);
 }
 
+std::string counted(std::uint64_t count, std::string_view what) {
+  return fmt::format("{} {}{}", grouped(static_cast<std::int64_t>(count)), what, count == 1 ? "" : "s");
+}
+
 std::string bytes(double count) {
   if (count >= 1024.0 * 1024.0) {
     return fmt::format("{:.1f} MiB", count / (1024.0 * 1024.0));
@@ -112,6 +116,10 @@ std::string figure_text(const Cell& cell, std::string_view unit, std::string_vie
   }
   if (unit == "byte") {
     return bytes(*number);
+  }
+  if (unit == "fraction") {
+    return std::abs(*number) < 1e-3 && *number != 0.0 ? fmt::format("{:.2g} %", 100.0 * *number)
+                                                      : percent(*number);
   }
   if (unit == "fJ" || unit == "mJ") {
     return joules(*number * (unit == "fJ" ? 1e-15 : 1e-3));

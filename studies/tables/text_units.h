@@ -42,11 +42,15 @@ namespace marti::studies {
 /// Digits in groups of three: "1,234,567".
 [[nodiscard]] std::string grouped(std::int64_t value);
 
+/// A number of things, for nouns whose plural has an s: "1 node", "1,024 nodes".
+[[nodiscard]] std::string counted(std::uint64_t count, std::string_view what);
+
 /// "1.2 MiB", "1.2 KiB", "12 B".
 [[nodiscard]] std::string bytes(double count);
 
-/// A figure in its unit (studies/figures): ps as seconds(), byte as bytes(), fJ and mJ as joules(), counts as
-/// grouped(), other numbers with four digits and their unit; `missing` for what has no value.
+/// A figure in its unit (studies/figures): ps as seconds(), byte as bytes(), fractions as percent() but below
+/// 0.1 % with two digits, fJ and mJ as joules(), counts as grouped(), other numbers with four digits and
+/// their unit; `missing` for what has no value.
 [[nodiscard]] std::string figure_text(const Cell& cell, std::string_view unit, std::string_view missing);
 
 /// A cell in short: reals with six digits, `missing` for what has no value or is not finite.

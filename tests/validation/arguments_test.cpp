@@ -48,7 +48,7 @@ double efficiency(const ScalingPoint& point) { return point.efficiency.value(); 
 TEST(Arguments, NaiveSharedMemorySaturates) {
   const std::vector<ScalingPoint> naive = points_of(points(), "naive_pixel");
   ASSERT_EQ(naive.size(), 4U);
-  EXPECT_GT(naive.back().shared_use.value(), 0.99);
+  EXPECT_GT(naive.back().interconnect.value(), 0.99);
   // Sixteen times as many nodes gain nothing.
   EXPECT_LT(naive[3].speed_up.value(), 1.05 * naive[1].speed_up.value());
   EXPECT_LT(naive.back().speed_up.value(), 3.0);

@@ -6,6 +6,7 @@ explore.answer = (() => {
   const most_steps = 6;
   const svg = "http://www.w3.org/2000/svg";
   const at = (id) => document.getElementById(id);
+  let units = {};  // of the figures, by their names
 
   const percent = (share) => (share === undefined ? "" : `${(100 * share).toFixed(1)} %`);
   const time = (picoseconds) => {
@@ -19,11 +20,11 @@ explore.answer = (() => {
     return made;
   };
 
-  /** A figure of the catalogue as people read it. */
+  /** A figure of the catalogue as people read it, by its unit. */
   function shown(name, value) {
     if (value === undefined || value === null) return "";
-    if (name === "end" || name.startsWith("time_")) return time(value);
-    if (/^(share_|hit_ratio|efficiency|serial_fraction|finish_balance)|utilisation/.test(name)) return percent(value);
+    if (units[name] === "ps") return time(value);
+    if (units[name] === "fraction") return percent(value);
     return Number.isInteger(value) ? value.toLocaleString("en") : value.toPrecision(4);
   }
 
@@ -81,6 +82,7 @@ explore.answer = (() => {
     drawn,
     shown,
     show_helps,
+    make: (keys) => (units = keys.units),
     /** `base`: figures of the configuration itself. */
     show(answer, base) {
       for (const id of ["answer", "shares", "lost"]) at(id).classList.toggle("old", "error" in answer);

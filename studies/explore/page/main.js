@@ -84,6 +84,7 @@
     }
   }
 
+  answer.make(keys);
   controls.make(keys);
   curve.make(keys);
   state.follow(update);

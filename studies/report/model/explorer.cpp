@@ -108,24 +108,32 @@ std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
   return fields;
 }
 
-// Figures that are parts of a whole, which people read in percent.
-bool is_share(const std::string& name) {
-  return name == "efficiency" || name.starts_with("hit_ratio") || name.starts_with("part_") ||
-         name.ends_with("_utilisation");
+// Prices, groups of activities and percentiles are not in the catalogue of figures; the report itself works
+// them out.
+constexpr std::string_view group_prefix = "part_";
+constexpr std::string_view percentile_part = "_wait_p";
+
+bool is_catalogued(const ExplorerField& field) {
+  return field.name != "price" && !field.name.starts_with(group_prefix) &&
+         field.name.find(percentile_part) == std::string::npos;
 }
 
-// What the catalogue of figures says of it; of what the report itself works out, how it does.
+// Parts of a whole, which people read in percent.
+bool is_share(const ExplorerField& field) {
+  return field.name.starts_with(group_prefix) ||
+         (is_catalogued(field) && figure_named(field.name).unit == "fraction");
+}
+
 std::string meaning_of(const ExplorerField& field, const ReportPoints& sweep) {
+  if (is_catalogued(field)) {
+    return figure_named(field.name).description;
+  }
   if (field.name == "price") {
     return sweep.priced ? "cost by [prices]" : "number of nodes, as all costs are equal";
   }
-  if (field.name.starts_with("part_")) {
-    return "share of all nodes' time from 0 to the end of the frame";
-  }
-  if (field.name.find("_wait_p") != std::string::npos) {
-    return "percentile: the upper end of its bucket of the histogram, at most an eighth too long";
-  }
-  return figure_named(field.name).description;
+  return field.name.starts_with(group_prefix)
+             ? "share of all nodes' time from 0 to the end of the frame"
+             : "percentile: the upper end of its bucket of the histogram, at most an eighth too long";
 }
 
 Json field_json(const ExplorerField& field, const ReportPoints& sweep) {
@@ -133,7 +141,7 @@ Json field_json(const ExplorerField& field, const ReportPoints& sweep) {
                {"unit", field.unit},
                {"title", field.title.empty() ? words(field.name) : field.title},
                {"meaning", meaning_of(field, sweep)}};
-  if (is_share(field.name)) {
+  if (is_share(field)) {
     json["percent"] = true;
   }
   if (field.main) {

@@ -14,6 +14,7 @@
 #include "studies/report/model/report_points.h"
 #include "studies/report/model/sweep_answer.h"
 #include "studies/report/model/sweep_model.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
@@ -242,8 +243,7 @@ ReportData sweep_report(const ReportPoints& sweep, std::optional<double> budget)
   const std::optional<std::size_t> axis = first_axis(sweep);
   ReportData report;
   report.kind = "sweep";
-  report.title =
-      fmt::format("Sweep of {} machine{}", sweep.points.size(), sweep.points.size() == 1 ? "" : "s");
+  report.title = "Sweep of " + counted(sweep.points.size(), "machine");
   report.about = about_sweep(sweep);
   report.answer = answer_of(sweep, chosen);
   report.explorer = explorer_json(sweep, models, chosen, axis);

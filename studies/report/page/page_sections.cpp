@@ -134,8 +134,7 @@ std::string images_html(const ReportData& report) {
 std::string tables_html(const ReportData& report) {
   std::string html;
   for (const ReportTable& table : report.tables) {
-    html += folded(fmt::format("{} ({} row{})", table.table.title(), table.table.rows().size(),
-                               table.table.rows().size() == 1 ? "" : "s"),
+    html += folded(fmt::format("{} ({})", table.table.title(), counted(table.table.rows().size(), "row")),
                    sorted_table_html(sorted_table(table.table)), !table.folded);
   }
   return html;

@@ -17,6 +17,7 @@
 #include "studies/tables/json_table.h"
 #include "studies/tables/result_directory.h"
 #include "studies/tables/sqlite_connection.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies {
 
@@ -216,9 +217,6 @@ ReportData read_study_report(const fs::path& directory) {
   for (const fs::path& image : files_ending_in(directory, ".png")) {
     take_image(image, image.stem().string(), report);
   }
-  const auto counted = [](std::size_t count, const char* what) {
-    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-  };
   report.answer.push_back(fmt::format("{} and {} below; the study's own report follows them.",
                                       counted(report.tables.size(), "table"),
                                       counted(report.charts.size(), "chart")));

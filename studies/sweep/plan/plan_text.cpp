@@ -55,8 +55,8 @@ std::string describe(const SweepPlan& plan, const SweepOutlook& outlook) {
   for (std::size_t i = 0; i < std::min(most_skipped_shown, plan.skipped.size()); ++i) {
     line("", "left out: " + plan.skipped[i].point + ": " + plan.skipped[i].reason);
   }
-  line("frames", fmt::format("{} functional run{}, {} done", number(plan.frames.size()),
-                             plan.frames.size() == 1 ? "" : "s", number(outlook.frames_done)));
+  line("frames", fmt::format("{}, {} done", counted(plan.frames.size(), "functional run"),
+                             number(outlook.frames_done)));
 
   std::vector<bool> asked_for(plan.machines.size());
   for (const SweepPoint& point : plan.points) {

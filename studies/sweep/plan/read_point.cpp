@@ -14,8 +14,8 @@ namespace marti::studies {
 namespace {
 
 constexpr std::array<std::string_view, 2> single = {"machine.clusters", "machine.nodes"};
-constexpr std::array<std::string_view, 3> counted = {"count.miss_classes", "count.sharing",
-                                                     "count.attribution"};
+constexpr std::array<std::string_view, 3> counting_keys = {"count.miss_classes", "count.sharing",
+                                                           "count.attribution"};
 
 std::vector<bool> keys_read(const sim::Config& config) {
   std::vector<bool> used(config.schema().keys().size());
@@ -97,7 +97,7 @@ sim::Config one_node_config(const ReadPoint& point) {
   for (const std::string_view key : single) {
     set(one, key, std::int64_t{1});
   }
-  for (const std::string_view key : counted) {
+  for (const std::string_view key : counting_keys) {
     one.reset(*one.schema().find(key));
   }
   if (point.machine.scheme != processors::Scheme::image) {
@@ -111,7 +111,7 @@ sim::Config one_node_config(const ReadPoint& point) {
 
 bool is_set_for_one_node(std::string_view key) {
   return std::find(single.begin(), single.end(), key) != single.end() ||
-         std::find(counted.begin(), counted.end(), key) != counted.end();
+         std::find(counting_keys.begin(), counting_keys.end(), key) != counting_keys.end();
 }
 
 }  // namespace marti::studies

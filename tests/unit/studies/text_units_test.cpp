@@ -36,6 +36,12 @@ TEST(TextUnits, SharesAndChangesArePercentages) {
   EXPECT_EQ(times(1.0 / 3.0), "0.33");
 }
 
+TEST(TextUnits, NumbersOfThingsHaveTheirPlural) {
+  EXPECT_EQ(counted(0, "node"), "0 nodes");
+  EXPECT_EQ(counted(1, "node"), "1 node");
+  EXPECT_EQ(counted(1024, "object reference"), "1,024 object references");
+}
+
 TEST(TextUnits, FiguresHaveTheirUnit) {
   EXPECT_EQ(figure_text(std::int64_t{40'858'349'694}, "ps", "-"), "40.858 ms");
   EXPECT_EQ(figure_text(331.99, "ps", "-"), "332 ps");
@@ -43,6 +49,9 @@ TEST(TextUnits, FiguresHaveTheirUnit) {
   EXPECT_EQ(figure_text(std::int64_t{16384}, "byte", "-"), "16.0 KiB");
   EXPECT_EQ(figure_text(std::int64_t{1234567}, "1", "-"), "1,234,567");
   EXPECT_EQ(figure_text(0.936275, "1", "-"), "0.9363");
+  EXPECT_EQ(figure_text(0.936275, "fraction", "-"), "93.63 %");
+  EXPECT_EQ(figure_text(0.000123456, "fraction", "-"), "0.012 %");
+  EXPECT_EQ(figure_text(0.0, "fraction", "-"), "0.00 %");
   EXPECT_EQ(figure_text(std::int64_t{2'000'000}, "fJ", "-"), "2.000 nJ");
   EXPECT_EQ(figure_text(1.5, "mJ", "-"), "1.500 mJ");
   EXPECT_EQ(figure_text(2.5, "W", "-"), "2.5 W");
