@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "memory/routes.h"
+#include "sim/divider.h"
 #include "sim/error.h"
 
 namespace marti::memory {
@@ -13,7 +14,10 @@ using sim::Ticks;
 
 namespace {
 
-// What all kinds have in common: ports, the time of beats, counting.
+// What all kinds have in common: ports, the time of beats, counting. `Kind` has carry(now, from, to, data),
+// which sends the data of a message between two ports and returns its delivery; and of its links it counts
+// `links`, `busy` and, for each message, `hops`.
+template <class Kind>
 class CountedNetwork : public Network {
  public:
   Delivery send(Ticks now, std::uint32_t from, std::uint32_t to, std::uint32_t bytes) override {
@@ -22,7 +26,7 @@ class CountedNetwork : public Network {
       return {now, 0, 0};
     }
     const std::int64_t hops_before = statistics_.hops;
-    const Delivery delivery = carry(now, from, to, beats(bytes));
+    const Delivery delivery = static_cast<Kind&>(*this).carry(now, from, to, beats(bytes));
     ++statistics_.messages;
     statistics_.bytes += bytes;
     statistics_.link_bytes += bytes * (statistics_.hops - hops_before);
@@ -36,12 +40,11 @@ class CountedNetwork : public Network {
       : hop_(config.clock.cycles(config.hop_cycles)),
         nodes_(nodes),
         width_(config.width),
+        beats_of_(config.width),
         beat_(config.clock.cycles(config.cycles_per_beat)) {}
 
-  virtual Delivery carry(Ticks now, std::uint32_t from, std::uint32_t to, Ticks data) = 0;
-
   Ticks beats(std::uint32_t bytes) const {
-    return sim::multiply_ticks(beat_, (std::int64_t{bytes} + width_ - 1) / width_);
+    return sim::multiply_ticks(beat_, static_cast<std::int64_t>(beats_of_(bytes + width_ - 1)));
   }
 
   Ticks hop_;
@@ -49,59 +52,71 @@ class CountedNetwork : public Network {
 
  private:
   std::uint32_t nodes_;
-  std::int64_t width_;
+  std::uint64_t width_;
+  sim::Divider beats_of_;
   Ticks beat_;
 };
 
-class IdealNetwork final : public CountedNetwork {
+class IdealNetwork final : public CountedNetwork<IdealNetwork> {
  public:
   IdealNetwork(const NetworkConfig& config, std::uint32_t nodes) : CountedNetwork(config, nodes) {}
+  Delivery carry(Ticks now, std::uint32_t /*from*/, std::uint32_t /*to*/, Ticks /*data*/) const {
+    return {add_ticks(now, hop_), 0, hop_};
+  }
   std::uint32_t hops(std::uint32_t /*from*/, std::uint32_t /*to*/) const override { return 0; }
   Ticks unloaded(std::uint32_t from, std::uint32_t to, std::uint32_t /*bytes*/) const override {
     return from == to ? 0 : hop_;
-  }
-
- private:
-  Delivery carry(Ticks now, std::uint32_t /*from*/, std::uint32_t /*to*/, Ticks /*data*/) override {
-    return {add_ticks(now, hop_), 0, hop_};
   }
 };
 
 // With `holds_hop` a link is also held for the latency, so that only one message is on its way at a time.
 template <class Routes, bool holds_hop>
-class RoutedNetwork final : public CountedNetwork {
+class RoutedNetwork final : public CountedNetwork<RoutedNetwork<Routes, holds_hop>> {
+  using Base = CountedNetwork<RoutedNetwork<Routes, holds_hop>>;
+  using Base::hop_;
+  using Base::statistics_;
+
  public:
   RoutedNetwork(const NetworkConfig& config, std::uint32_t nodes)
-      : CountedNetwork(config, nodes), routes_(nodes), free_at_(routes_.table_size()) {
+      : Base(config, nodes), routes_(nodes), free_at_(routes_.table_size()) {
     statistics_.links = routes_.links();
   }
   std::uint32_t hops(std::uint32_t from, std::uint32_t to) const override {
     return from == to ? 0 : routes_.hops(from, to);
   }
   Ticks unloaded(std::uint32_t from, std::uint32_t to, std::uint32_t bytes) const override {
-    return from == to ? 0 : add_ticks(sim::multiply_ticks(hop_, hops(from, to)), beats(bytes));
+    return from == to ? 0 : add_ticks(sim::multiply_ticks(hop_, hops(from, to)), Base::beats(bytes));
   }
 
- private:
-  Delivery carry(Ticks now, std::uint32_t from, std::uint32_t to, Ticks data) override {
+  Delivery carry(Ticks now, std::uint32_t from, std::uint32_t to, Ticks data) {
+    // Times are kept less the latency of the hops before: then a link begins when it is free, but not before
+    // the link before it, and the latest beginning is all that one link leaves to the next. No time is later
+    // than the arrival, where it is checked that it fits.
+    const auto hop = static_cast<std::uint64_t>(hop_);
     const Ticks held = holds_hop ? add_ticks(hop_, data) : data;
-    Ticks head = now;
-    Delivery delivery;
+    std::uint64_t latency = 0;
+    Ticks begin = now;
     std::int64_t links = 0;
-    routes_.route(from, to, [&](std::size_t link) {
-      const Ticks start = std::max(head, free_at_[link]);
-      free_at_[link] = add_ticks(start, held);
-      delivery.wait += start - head;
-      head = add_ticks(start, hop_);
-      ++links;
+    routes_.runs(from, to, [&](std::size_t link, std::size_t step, std::uint32_t count) {
+      Ticks* const free_at = free_at_.data();
+      Ticks at = begin;
+      std::uint64_t before = latency;
+      for (std::uint32_t left = count; left != 0; --left, link += step, before += hop) {
+        at = std::max(at, static_cast<Ticks>(static_cast<std::uint64_t>(free_at[link]) - before));
+        free_at[link] =
+            static_cast<Ticks>(static_cast<std::uint64_t>(at) + before + static_cast<std::uint64_t>(held));
+      }
+      begin = at;
+      latency = before;
+      links += count;
     });
     statistics_.hops += links;
     statistics_.busy = add_ticks(statistics_.busy, sim::multiply_ticks(held, links));
-    delivery.arrival = add_ticks(head, data);
-    delivery.transfer = delivery.arrival - now - delivery.wait;
-    return delivery;
+    const Ticks transfer = add_ticks(sim::multiply_ticks(hop_, links), data);
+    return {add_ticks(begin, transfer), begin - now, transfer};
   }
 
+ private:
   Routes routes_;
   std::vector<Ticks> free_at_;  // when each link is free
 };

@@ -1,8 +1,9 @@
 // The links of each kind of network, and the route of a message over them.
 //
 // A `Routes` has: table_size(), the number of link numbers; links(), how many of these are links; hops(from,
-// to); and route(from, to, cross), which calls cross(link) for each link of the route in order. Ports are as
-// in network.h: the nodes and, last, the host. `from` and `to` differ.
+// to); route(from, to, cross), which calls cross(link) for each link of the route in order; and runs(from,
+// to, visit), which calls visit(first, step, links) for so many links at a time, whose numbers are `step`
+// apart (modulo 2^64). Ports are as in network.h: the nodes and, last, the host. `from` and `to` differ.
 #pragma once
 
 #include <bit>
@@ -10,31 +11,48 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "sim/divider.h"
+
 namespace marti::memory {
 
+/// A route as a walk over all of its runs.
+template <class Kind>
+class RunByRun {
+ public:
+  template <class Cross>
+  void route(std::uint32_t from, std::uint32_t to, Cross&& cross) const {
+    static_cast<const Kind&>(*this).runs(from, to,
+                                         [&](std::size_t link, std::size_t step, std::uint32_t links) {
+                                           for (; links != 0; --links, link += step) {
+                                             cross(link);
+                                           }
+                                         });
+  }
+};
+
 /// One link for all messages.
-class BusRoutes {
+class BusRoutes : public RunByRun<BusRoutes> {
  public:
   explicit BusRoutes(std::uint32_t /*nodes*/) {}
   [[nodiscard]] static std::size_t table_size() { return 1; }
   [[nodiscard]] static std::int64_t links() { return 1; }
   [[nodiscard]] static std::uint32_t hops(std::uint32_t /*from*/, std::uint32_t /*to*/) { return 1; }
-  template <class Cross>
-  static void route(std::uint32_t /*from*/, std::uint32_t /*to*/, Cross&& cross) {
-    cross(std::size_t{0});
+  template <class Visit>
+  static void runs(std::uint32_t /*from*/, std::uint32_t /*to*/, Visit&& visit) {
+    visit(std::size_t{0}, std::size_t{1}, 1U);
   }
 };
 
 /// A link into each port, the host's included.
-class CrossbarRoutes {
+class CrossbarRoutes : public RunByRun<CrossbarRoutes> {
  public:
   explicit CrossbarRoutes(std::uint32_t nodes) : ports_(std::size_t{nodes} + 1) {}
   [[nodiscard]] std::size_t table_size() const { return ports_; }
   [[nodiscard]] std::int64_t links() const { return static_cast<std::int64_t>(ports_); }
   [[nodiscard]] static std::uint32_t hops(std::uint32_t /*from*/, std::uint32_t /*to*/) { return 1; }
-  template <class Cross>
-  static void route(std::uint32_t /*from*/, std::uint32_t to, Cross&& cross) {
-    cross(std::size_t{to});
+  template <class Visit>
+  static void runs(std::uint32_t /*from*/, std::uint32_t to, Visit&& visit) {
+    visit(std::size_t{to}, std::size_t{1}, 1U);
   }
 
  private:
@@ -42,9 +60,9 @@ class CrossbarRoutes {
 };
 
 /// Adds the host, which is connected to router 0, to the routes between nodes. `Between` has table_size(),
-/// links(), hops(from, to) and route(from, to, cross) for nodes, where `from` and `to` may be equal.
+/// links(), hops(from, to) and runs(from, to, visit) for nodes, where `from` and `to` may be equal.
 template <class Between>
-class WithHost {
+class WithHost : public RunByRun<WithHost<Between>> {
  public:
   explicit WithHost(std::uint32_t nodes) : between_(nodes), host_(nodes) {}
   [[nodiscard]] std::size_t table_size() const { return between_.table_size() + 2; }
@@ -52,14 +70,14 @@ class WithHost {
   [[nodiscard]] std::uint32_t hops(std::uint32_t from, std::uint32_t to) const {
     return between_.hops(router(from), router(to)) + (from == host_ || to == host_ ? 1U : 0U);
   }
-  template <class Cross>
-  void route(std::uint32_t from, std::uint32_t to, Cross&& cross) const {
+  template <class Visit>
+  void runs(std::uint32_t from, std::uint32_t to, Visit&& visit) const {
     if (from == host_) {
-      cross(between_.table_size());
+      visit(between_.table_size(), std::size_t{1}, 1U);
     }
-    between_.route(router(from), router(to), cross);
+    between_.runs(router(from), router(to), visit);
     if (to == host_) {
-      cross(between_.table_size() + 1);
+      visit(between_.table_size() + 1, std::size_t{1}, 1U);
     }
   }
 
@@ -75,11 +93,9 @@ class WithHost {
 /// short row to a column beyond its end would so meet a missing router. It goes along its column first: the
 /// columns of the short row are complete, and its destination lies in a full row. All turns from a column
 /// into a row are thus upwards and to the right, which creates no cycle of waiting messages.
-class MeshRoutes {
+class MeshRoutes : public RunByRun<MeshRoutes> {
  public:
-  explicit MeshRoutes(std::uint32_t nodes)
-      : nodes_(nodes), columns_(static_cast<std::uint32_t>(std::sqrt(static_cast<double>(nodes)))) {
-    columns_ += std::uint64_t{columns_} * columns_ < nodes ? 1U : 0U;
+  explicit MeshRoutes(std::uint32_t nodes) : nodes_(nodes), columns_(columns_of(nodes)), row_of_(columns_) {
     last_row_ = (nodes - 1) / columns_;
     last_length_ = nodes - last_row_ * columns_;
   }
@@ -91,39 +107,58 @@ class MeshRoutes {
   }
   [[nodiscard]] std::uint32_t hops(std::uint32_t from, std::uint32_t to) const {
     const auto distance = [](std::uint32_t a, std::uint32_t b) { return a < b ? b - a : a - b; };
-    return distance(from % columns_, to % columns_) + distance(from / columns_, to / columns_);
+    const Place a = place_of(from);
+    const Place b = place_of(to);
+    return distance(a.column, b.column) + distance(a.row, b.row);
   }
-  template <class Cross>
-  void route(std::uint32_t from, std::uint32_t to, Cross&& cross) const {
-    const std::uint32_t column = to % columns_;
-    const std::uint32_t row = to / columns_;
-    std::uint32_t at = from;
-    if (at / columns_ == last_row_ && column >= last_length_) {
-      at = along_column(at, row, cross);
+  template <class Visit>
+  void runs(std::uint32_t from, std::uint32_t to, Visit&& visit) const {
+    const Place begin = place_of(from);
+    const Place end = place_of(to);
+    if (begin.row == last_row_ && end.column >= last_length_) [[unlikely]] {
+      along_column(begin, end.row, visit);
+      along_row({begin.column, end.row}, end.column, visit);
+      return;
     }
-    for (std::uint32_t x = at % columns_; x != column;) {
-      const bool right = x < column;
-      cross(std::size_t{at} * 4 + (right ? 0 : 1));
-      at = right ? at + 1 : at - 1;
-      x = right ? x + 1 : x - 1;
-    }
-    along_column(at, row, cross);
+    along_row(begin, end.column, visit);
+    along_column({end.column, begin.row}, end.row, visit);
   }
 
  private:
-  template <class Cross>
-  std::uint32_t along_column(std::uint32_t at, std::uint32_t row, Cross&& cross) const {
-    for (std::uint32_t y = at / columns_; y != row;) {
-      const bool down = y < row;
-      cross(std::size_t{at} * 4 + (down ? 2 : 3));
-      at = down ? at + columns_ : at - columns_;
-      y = down ? y + 1 : y - 1;
-    }
-    return at;
+  struct Place {
+    std::uint32_t column;
+    std::uint32_t row;
+  };
+
+  static std::uint32_t columns_of(std::uint32_t nodes) {
+    const auto root = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(nodes)));
+    return std::uint64_t{root} * root < nodes ? root + 1 : root;
+  }
+  [[nodiscard]] Place place_of(std::uint32_t router) const {
+    const auto row = static_cast<std::uint32_t>(row_of_(router));
+    return {router - row * columns_, row};
+  }
+  // The links of a router are four: to the right, to the left, down and up.
+  [[nodiscard]] std::size_t first_link_of(Place place) const {
+    return (std::size_t{place.row} * columns_ + place.column) * 4;
+  }
+  template <class Visit>
+  void along_row(Place at, std::uint32_t column, Visit&& visit) const {
+    const bool right = at.column < column;
+    visit(first_link_of(at) + (right ? 0 : 1), right ? 4 : std::size_t{0} - 4,
+          right ? column - at.column : at.column - column);
+  }
+  template <class Visit>
+  void along_column(Place at, std::uint32_t row, Visit&& visit) const {
+    const bool down = at.row < row;
+    const std::size_t step = std::size_t{columns_} * 4;
+    visit(first_link_of(at) + (down ? 2 : 3), down ? step : std::size_t{0} - step,
+          down ? row - at.row : at.row - row);
   }
 
   std::uint32_t nodes_;
   std::uint32_t columns_;
+  sim::Divider row_of_;
   std::uint32_t last_row_;
   std::uint32_t last_length_;
 };
@@ -134,7 +169,7 @@ class MeshRoutes {
 /// There always is one: clearing a bit leads to a lower number; when only bits of the destination are left to
 /// be set, every order of setting them leads to numbers not above the destination. Without missing routers
 /// this is e-cube routing.
-class HypercubeRoutes {
+class HypercubeRoutes : public RunByRun<HypercubeRoutes> {
  public:
   explicit HypercubeRoutes(std::uint32_t nodes)
       : nodes_(nodes), dimension_(static_cast<std::uint32_t>(std::bit_width(nodes - 1))) {}
@@ -149,14 +184,15 @@ class HypercubeRoutes {
   [[nodiscard]] static std::uint32_t hops(std::uint32_t from, std::uint32_t to) {
     return static_cast<std::uint32_t>(std::popcount(from ^ to));
   }
-  template <class Cross>
-  void route(std::uint32_t from, std::uint32_t to, Cross&& cross) const {
+  template <class Visit>
+  void runs(std::uint32_t from, std::uint32_t to, Visit&& visit) const {
     for (std::uint32_t at = from; at != to;) {
       std::uint32_t left = at ^ to;
       while ((at ^ (left & -left)) >= nodes_) {
         left &= left - 1;
       }
-      cross(std::size_t{at} * dimension_ + static_cast<std::size_t>(std::countr_zero(left)));
+      visit(std::size_t{at} * dimension_ + static_cast<std::size_t>(std::countr_zero(left)), std::size_t{1},
+            1U);
       at ^= left & -left;
     }
   }
