@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "processors/flow/flow_parts.h"
+#include "processors/node/cluster_interconnects.h"
 #include "processors/walk/cause_observer.h"
 #include "processors/walk/log_walker.h"
 #include "processors/walk/observer.h"
@@ -20,12 +21,18 @@ template <class Derived>
 class FlowNodesBase : public FlowNodes {
  public:
   void connect(std::vector<memory::Interconnect*> interconnects) override {
-    interconnects_ = std::move(interconnects);
+    interconnects_.connect(std::move(interconnects));
   }
   memory::InterconnectClient& client(std::uint32_t cluster) override { return clients_[cluster]; }
   sim::Ticks end() const override { return std::max(end_, host_.last_arrival()); }
   std::vector<NodeStatistics> statistics() const override { return {statistics_.begin(), statistics_.end()}; }
-  void report(FlowResult& result) const override { result.nodes.assign(counts_.begin(), counts_.end()); }
+  void report(FlowResult& result) const override {
+    result.nodes.assign(counts_.begin(), counts_.end());
+    for (FlowCounts& node : result.nodes) {
+      node.bytes_sent = node.passed_on * input_.config.messages.ray_bytes +
+                        node.contributions * input_.config.messages.contribution_bytes;
+    }
+  }
 
  protected:
   explicit FlowNodesBase(const FlowParts& parts)
@@ -35,6 +42,7 @@ class FlowNodesBase : public FlowNodes {
         networks_(parts.networks),
         statistics_(parts.input.config.all_nodes()),
         counts_(parts.input.config.all_nodes()),
+        tallies_(parts.input.config.all_nodes()),
         watched_(parts.input.observer == nullptr ? 0 : parts.input.config.all_nodes()) {
     clients_.reserve(input_.config.clusters);
     for (std::uint32_t cluster = 0; cluster < input_.config.clusters; ++cluster) {
@@ -51,7 +59,15 @@ class FlowNodesBase : public FlowNodes {
     return networks_.size() == 1 ? 0 : node / input_.config.nodes;
   }
   std::uint32_t port_of(std::uint32_t node) const { return node - cluster_of(node) * input_.config.nodes; }
-  memory::Interconnect& interconnect_of(std::uint32_t node) { return *interconnects_[cluster_of(node)]; }
+  memory::Interconnect& interconnect_of(std::uint32_t node) { return interconnects_[cluster_of(node)]; }
+  void read_memory(std::uint32_t node, memory::Address address, std::uint32_t bytes) {
+    const std::uint32_t cluster = cluster_of(node);
+    interconnects_.read(cluster, clients_[cluster], {port_of(node), address, bytes});
+  }
+  void reply(std::uint32_t node) {
+    const std::uint32_t cluster = cluster_of(node);
+    interconnects_.reply(cluster, clients_[cluster], port_of(node));
+  }
   void post(FlowEvent event, sim::Ticks time, std::uint32_t component) {
     engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(event), component));
   }
@@ -99,20 +115,22 @@ class FlowNodesBase : public FlowNodes {
                       bool aside = false) {
     const std::uint32_t bytes = input_.config.messages.ray_bytes;
     ++counts_[from].passed_on;
-    counts_[from].bytes_sent += bytes;
     const sim::Ticks arrival =
         networks_[cluster_of(from)]->send(now, port_of(from), port_of(to), bytes).arrival;
-    tell_sent({ray, from, to, bytes, aside, now, arrival});
+    if (input_.causes != nullptr) [[unlikely]] {
+      input_.causes->sent({ray, from, to, bytes, aside, now, arrival});
+    }
     return arrival;
   }
   // Sends the host what a ray adds to its pixel.
   void send_contribution(std::uint32_t from, sim::Ticks now) {
     const std::uint32_t bytes = input_.config.messages.contribution_bytes;
     ++counts_[from].contributions;
-    counts_[from].bytes_sent += bytes;
     const sim::Ticks arrival =
         networks_[cluster_of(from)]->send(now, port_of(from), input_.config.nodes, bytes).arrival;
-    tell_sent({RayMessage::none, from, 0, bytes, false, now, arrival});
+    if (input_.causes != nullptr) [[unlikely]] {
+      input_.causes->sent({RayMessage::none, from, 0, bytes, false, now, arrival});
+    }
     host_.collect(arrival);
   }
   // As send_ray(), for a camera ray.
@@ -120,16 +138,20 @@ class FlowNodesBase : public FlowNodes {
     const std::uint32_t bytes = input_.config.messages.ray_bytes;
     const sim::Ticks arrival =
         networks_[cluster_of(to)]->send(now, input_.config.nodes, port_of(to), bytes).arrival;
-    tell_sent({ray, host_link(cluster_of(to)), to, bytes, aside, now, arrival});
+    if (input_.causes != nullptr) [[unlikely]] {
+      input_.causes->sent({ray, host_link(cluster_of(to)), to, bytes, aside, now, arrival});
+    }
     return arrival;
   }
   // The host as a sender of rays to a cluster, for who asks for causes.
   std::uint32_t host_link(std::uint32_t cluster) const { return input_.config.all_nodes() + cluster; }
 
   // Completes the node's time: adds what follows from counts, and the idle time after its `finish`.
-  void finish_node(std::uint32_t node, const StepTicks& ticks) {
+  template <class Walker>
+  void finish_node(std::uint32_t node, const Walker& walker) {
     NodeStatistics& statistics = statistics_[node];
-    add_counted_time(ticks, statistics.steps, statistics.references.all_hits(), statistics.time);
+    walker.flush(tallies_[node], statistics);
+    add_counted_time(walker.ticks(), statistics.steps, statistics.references.all_hits(), statistics.time);
     statistics.time[static_cast<std::size_t>(Activity::idle)] = end() - statistics.finish;
     watch(node, NodeState::idle, end());
   }
@@ -140,15 +162,10 @@ class FlowNodesBase : public FlowNodes {
   std::vector<memory::Network*> networks_;
   sim::LargeVector<NodeStatistics> statistics_;
   sim::LargeVector<FlowCounts> counts_;
-  sim::Ticks end_ = 0;  // of the nodes' work so far
+  sim::LargeVector<VisitTally> tallies_;  // planned visits that are not in the statistics yet
+  sim::Ticks end_ = 0;                    // of the nodes' work so far
 
  private:
-  void tell_sent(const RayMessage& message) {
-    if (input_.causes != nullptr) {
-      input_.causes->sent(message);
-    }
-  }
-
   // One cluster's ports, with port numbers turned into node numbers. Pixels are kept by the host, so there
   // are no writes to memory.
   class Client final : public memory::InterconnectClient {
@@ -172,7 +189,7 @@ class FlowNodesBase : public FlowNodes {
 
   std::vector<Watched> watched_;  // empty without an observer
   std::vector<Client> clients_;
-  std::vector<memory::Interconnect*> interconnects_;
+  ClusterInterconnects interconnects_;
 };
 
 }  // namespace marti::processors

@@ -36,18 +36,18 @@ class LoadOrder {
       return;
     }
     load_[node] = load;
+    if (words_of_set_ == 1) [[likely]] {
+      set_in_words(before, load, std::uint64_t{1} << node);
+      return;
+    }
     if (before != none) {
       erase(bits_.data() + std::size_t{before} * words_of_set_, node);
     }
     if (load == none) {
       return;
     }
-    if (load >= loads_) {
-      loads_ = load + 1;
-      bits_.resize(std::size_t{loads_} * words_of_set_);
-    }
+    reach(load);
     insert(bits_.data() + std::size_t{load} * words_of_set_, node);
-    least_ = load < least_ ? load : least_;
   }
 
   /// The node with the least load; `none` when no node has room.
@@ -59,6 +59,9 @@ class LoadOrder {
     if (least_ == loads_) {
       return none;
     }
+    if (words_of_set_ == 1) [[likely]] {
+      return static_cast<std::uint32_t>(std::countr_zero(bits_[least_]));
+    }
     const std::uint64_t* const set = bits_.data() + std::size_t{least_} * words_of_set_;
     std::uint32_t at = 0;
     for (auto layer = layers_.rbegin(); layer != layers_.rend(); ++layer) {
@@ -68,6 +71,28 @@ class LoadOrder {
   }
 
  private:
+  // Makes sets for loads up to this one, which least() then tries first if it is the least.
+  void reach(std::uint32_t load) {
+    if (load >= loads_) [[unlikely]] {
+      make_sets(load + 1);
+    }
+    least_ = load < least_ ? load : least_;
+  }
+  // Not inlined, so that what calls it on the few occasions needs no registers for it.
+  [[gnu::noinline]] void make_sets(std::uint32_t loads) {
+    loads_ = loads;
+    bits_.resize(std::size_t{loads} * words_of_set_);
+  }
+  // Moves a node from one set to another where each set is a word.
+  void set_in_words(std::uint32_t before, std::uint32_t load, std::uint64_t node) {
+    if (before != none) [[likely]] {
+      bits_[before] &= ~node;
+    }
+    if (load != none) [[likely]] {
+      reach(load);
+      bits_[load] |= node;
+    }
+  }
   void insert(std::uint64_t* set, std::uint32_t number) const {
     for (const std::uint32_t layer : layers_) {
       std::uint64_t& word = set[layer + number / 64U];

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "memory/bus.h"
 #include "processors/machine/machine_config.h"
+#include "processors/node/cluster_interconnects.h"
 #include "processors/node/node_array.h"
 #include "processors/walk/cause_observer.h"
 #include "processors/walk/observer.h"
@@ -26,14 +26,7 @@ template <class Derived, class Cursor>
 class PacketNodes : public NodeArray {
  public:
   void connect(std::vector<memory::Interconnect*> interconnects) override {
-    interconnects_ = std::move(interconnects);
-    for (memory::Interconnect* const interconnect : interconnects_) {
-      if (auto* const bus = dynamic_cast<memory::Bus*>(interconnect)) {
-        buses_.push_back(bus);
-      }
-    }
-    sim::ensure(buses_.empty() || buses_.size() == interconnects_.size(),
-                "clusters with interconnects of different classes");
+    interconnects_.connect(std::move(interconnects));
   }
   memory::InterconnectClient& client(std::uint32_t cluster) override { return clients_[cluster]; }
   sim::Ticks end() const override { return end_; }
@@ -70,24 +63,15 @@ class PacketNodes : public NodeArray {
   std::uint32_t port_of(std::uint32_t node) const {
     return (node - cluster_of(node) * input_.config.nodes) * ports_;
   }
-  memory::Interconnect& interconnect_of(std::uint32_t node) { return *interconnects_[cluster_of(node)]; }
-  // Reads through one of the node's ports. A bus that serves first come first served is the common case, so
-  // its code is joined with that of the nodes.
+  memory::Interconnect& interconnect_of(std::uint32_t node) { return interconnects_[cluster_of(node)]; }
+  // Reads through one of the node's ports.
   void read_memory(std::uint32_t node, const memory::Transaction& transaction) {
     const std::uint32_t cluster = cluster_of(node);
-    if (!buses_.empty()) [[likely]] {
-      buses_[cluster]->read_for(clients_[cluster], transaction);
-    } else {
-      interconnects_[cluster]->read(transaction);
-    }
+    interconnects_.read(cluster, clients_[cluster], transaction);
   }
   void reply(std::uint32_t node, std::uint32_t port) {
     const std::uint32_t cluster = cluster_of(node);
-    if (!buses_.empty()) [[likely]] {
-      buses_[cluster]->reply_for(clients_[cluster], port);
-    } else {
-      interconnects_[cluster]->reply(port);
-    }
+    interconnects_.reply(cluster, clients_[cluster], port);
   }
   void post(EventClass event_class, sim::Ticks time, std::uint32_t node) {
     engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(event_class), node));
@@ -227,12 +211,7 @@ class PacketNodes : public NodeArray {
       ++late_writes_;
     }
     const std::uint32_t cluster = cluster_of(node);
-    const memory::Transaction transaction = {port_of(node), address, bytes};
-    if (!buses_.empty()) [[likely]] {
-      buses_[cluster]->write_for(clients_[cluster], transaction);
-    } else {
-      interconnects_[cluster]->write(transaction);
-    }
+    interconnects_.write(cluster, clients_[cluster], {port_of(node), address, bytes});
   }
   // Whether the end of every write posted so far is known.
   [[nodiscard]] bool all_writes_known() const { return late_writes_ == 0; }
@@ -337,8 +316,7 @@ class PacketNodes : public NodeArray {
   sim::LargeVector<LateWrites> late_;    // empty where the end of a write is known at once
   std::int64_t late_writes_ = 0;         // number of writes whose end is not known
   std::vector<Client> clients_;
-  std::vector<memory::Interconnect*> interconnects_;
-  std::vector<memory::Bus*> buses_;        // the interconnects, if they are of this class; else empty
+  ClusterInterconnects interconnects_;
   std::vector<std::int64_t> seen_misses_;  // already reported to the observer; empty without one
 };
 

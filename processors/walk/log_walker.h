@@ -95,6 +95,14 @@ class LogWalker {
   template <bool RunAhead>
   Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
     VisitTally tally;
+    const Stop stop = advance<RunAhead>(node, cursor, statistics, tally);
+    flush(tally, statistics);
+    return stop;
+  }
+  /// As above, but planned visits are counted in `tally`, which goes on from one walk of the node to the next
+  /// until flush().
+  template <bool RunAhead>
+  Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics, VisitTally& tally) {
     Stop stop = Stop::hit;
     do {
       stop = walk<RunAhead>(caches_.view(node), cursor, statistics, tally);
@@ -103,9 +111,13 @@ class LogWalker {
       }
       stop = Stop::hit;
     } while (RunAhead);
-    flush(tally, statistics);
     behind_.count_bytes(node);
     return stop;
+  }
+  /// Adds the visits of a tally to the statistics and clears it.
+  void flush(VisitTally& tally, NodeStatistics& statistics) const {
+    add_visits(tally.counts, tally.visits, input_.log.mailboxes, statistics);
+    tally = {};
   }
 
   /// Ends a pixel whose steps are done: what is left is to convert and store it.
@@ -164,19 +176,29 @@ class LogWalker {
   static constexpr bool counted = are_counted<Caches>;
   static constexpr bool records = requires { Caches::records; };
 
-  static bool in_visit(const Cursor& cursor) { return cursor.line != cursor.line_end; }
+  // Counts a planned visit, all of whose lines hit.
+  [[gnu::always_inline]] void add(VisitTally& tally, const VisitCounts& visit,
+                                  NodeStatistics& statistics) const {
+    tally.counts += visit;
+    if (++tally.visits == most_summed_visits) [[unlikely]] {
+      flush(tally, statistics);
+    }
+  }
 
-  void flush(VisitTally& tally, NodeStatistics& statistics) const {
-    add_visits(tally.counts, tally.visits, input_.log.mailboxes, statistics);
-    tally = {};
+  static bool in_visit(const Cursor& cursor) { return cursor.line != cursor.line_end; }
+  // Whether something is left of a step that is taken record by record.
+  static bool in_step(const Cursor& cursor) {
+    return cursor.at < cursor.end || cursor.list_count != 0 || cursor.entry != cursor.entry_end;
   }
 
   template <bool RunAhead>
   Stop walk(View cache, Cursor& cursor, NodeStatistics& statistics, VisitTally& tally) {
     Stop stop = Stop::hit;
-    if ((Caches::present && !finish_visit(cache, cursor, statistics, stop)) ||
-        !touch<RunAhead>(cache, cursor, statistics, cursor.kind, stop) ||
-        !finish_leaf<RunAhead>(cache, cursor, statistics, stop)) {
+    if (Caches::present && in_visit(cursor) && !finish_visit(cache, cursor, statistics, stop)) {
+      return stop;
+    }
+    if (in_step(cursor) && (!touch<RunAhead>(cache, cursor, statistics, cursor.kind, stop) ||
+                            !finish_leaf<RunAhead>(cache, cursor, statistics, stop))) {
       return stop;
     }
     if (branch_read(cache, cursor, stop)) {
@@ -231,10 +253,7 @@ class LogWalker {
         ++line;
       }
       // All lines of a visit are counted as hits; miss() corrects the count.
-      sum.counts += visit.counts;
-      if (++sum.visits == most_summed_visits) [[unlikely]] {
-        flush(sum, statistics);
-      }
+      add(sum, visit.counts, statistics);
       if (line == end) [[likely]] {
         time = sim::add_ticks(time, visit.time);
         continue;

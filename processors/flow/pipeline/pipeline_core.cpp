@@ -36,46 +36,29 @@ void PipelineCore::start(std::uint64_t seed) {
   }
 }
 
-void PipelineCore::handle(const sim::Event& event) {
-  const std::uint32_t component = event.component();
-  switch (static_cast<FlowEvent>(event.event_class())) {
-    case FlowEvent::step:
-      work(component);
-      break;
-    case FlowEvent::reply:
-      interconnect_of(component).reply(port_of(component));
-      break;
-    case FlowEvent::read:
-      read(component);
-      break;
-    case FlowEvent::done:
-      done(component, event.time);
-      break;
-    case FlowEvent::wake:
-      wake(component, event.time);
-      break;
-    case FlowEvent::admit:
-      admit(component, event.time);
-      break;
-    case FlowEvent::memory:
-      interconnect_of(component).proceed(port_of(component), event.sequence());
-      break;
+void PipelineCore::report(FlowResult& result) const {
+  FlowNodesBase<PipelineCore>::report(result);
+  for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
+    result.nodes[node].longest_queue = nodes_[node].most_queued;
+  }
+}
+
+void PipelineCore::end_nodes() {
+  for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
+    statistics_[node].finish = nodes_[node].since;
+    end_ = std::max(end_, nodes_[node].since);
   }
 }
 
 // ---- The ray in service.
 
-void PipelineCore::worked(std::uint32_t node, FlowRay& ray, sim::Ticks time) {
+// The node has taken the ray's last step.
+void PipelineCore::worked_to_end(std::uint32_t node, const FlowRay& ray, sim::Ticks time) {
   Node& at = nodes_[node];
-  if (ray.word != ray.end) {
-    const bool objects = ray.record_read;
-    compose(node, objects ? Stage::nearest : stage_of(ray.word), time);
-    return;
-  }
   const bool shadow = ray.kind == RayKind::shadow;
   const bool ends_anywhere = shadow && trees_.ray(ray.tree, ray.number).first_child == LoggedRay::none;
   if (at.stage != Stage::shade && !ends_anywhere) {
-    compose(node, Stage::shade, time);
+    compose(node, at, Stage::shade, time);
     return;
   }
   at.phase = Phase::ending;
@@ -87,22 +70,17 @@ void PipelineCore::worked(std::uint32_t node, FlowRay& ray, sim::Ticks time) {
   post(FlowEvent::done, time, node);
 }
 
-// Composes, from `now` on, the message that takes the node's ray to stage `next`.
-void PipelineCore::compose(std::uint32_t node, Stage next, sim::Ticks now) {
-  Node& at = nodes_[node];
-  at.phase = Phase::sending;
-  at.next = next;
-  spend(node, Activity::messaging, send_);
-  post(FlowEvent::done, sim::add_ticks(now, send_), node);
-}
-
-void PipelineCore::done(std::uint32_t node, sim::Ticks now) {
-  Node& at = nodes_[node];
-  if (at.phase == Phase::granted) {
+void PipelineCore::watch_done(std::uint32_t node, sim::Ticks now) {
+  if (nodes_[node].phase == Phase::granted) {
     watch(node, NodeState::queue_full_wait, now, place_of(node));
   } else {
     watch_ray(node, now, ray_of(node).word);
   }
+}
+
+// The rest of done(), for a node that does not look for a slot.
+void PipelineCore::done_otherwise(std::uint32_t node, sim::Ticks now) {
+  Node& at = nodes_[node];
   switch (at.phase) {
     case Phase::contributing:
       send_contribution(node, now);
@@ -111,23 +89,11 @@ void PipelineCore::done(std::uint32_t node, sim::Ticks now) {
     case Phase::ending:
       end_ray(node, now);
       return;
-    case Phase::sending: {
-      const std::uint32_t cluster = cluster_of(node);
-      at.target = slot_of(cluster, at.next);
-      if (at.target == LoadOrder::none) {
-        at.phase = Phase::blocked;
-        at.since = now;
-        wait_for_slot(cluster, at.next, node);
-        return;
-      }
-      reserve(at.target);
-      dispatch(node, now);
-      return;
-    }
     case Phase::granted:
       spend(node, Activity::queue_full_wait, now - at.since);
-      dispatch(node, now);
+      dispatch(node, at, now);
       return;
+    case Phase::sending:
     case Phase::idle:
     case Phase::working:
     case Phase::blocked:
@@ -136,27 +102,27 @@ void PipelineCore::done(std::uint32_t node, sim::Ticks now) {
   throw sim::InternalError("a node of the pipeline finishes what it has not begun");
 }
 
-// Sends the node's ray to its target, where a slot is reserved for it.
-void PipelineCore::dispatch(std::uint32_t node, sim::Ticks now) {
-  Node& at = nodes_[node];
-  put(at.ray, at.target, send_ray(node, at.target, at.ray, now));
-  at.ray = none;
-  next_work(node, now);
+// The node waits for a slot of the stage that its ray goes to.
+void PipelineCore::block(std::uint32_t node, sim::Ticks now) {
+  nodes_[node].phase = Phase::blocked;
+  nodes_[node].since = now;
+  wait_for_slot(cluster_of(node), nodes_[node].next, node);
 }
 
 // The ray in service has ended. Its first child takes its place; the others are set aside.
 void PipelineCore::end_ray(std::uint32_t node, sim::Ticks now) {
+  Node& at = nodes_[node];
   FlowRay& ray = ray_of(node);
   const std::uint32_t tree = ray.tree;
   const std::uint32_t first = trees_.ray(tree, ray.number).first_child;
   ++counts_[node].ended;
   if (first == LoggedRay::none) {
     trees_.end_ray(tree);
-    rays_.give_back(nodes_[node].ray);
-    nodes_[node].ray = none;
+    rays_.give_back(at.ray);
+    at.ray = none;
     host_.leave(cluster_of(node));
     give_credits(node, now);
-    next_work(node, now);
+    next_work(node, at, now);
     return;
   }
   std::vector<SetAside>& stack = set_aside_of(node);
@@ -175,7 +141,7 @@ void PipelineCore::end_ray(std::uint32_t node, sim::Ticks now) {
   counts_[node].most_set_aside =
       std::max(counts_[node].most_set_aside, static_cast<std::int64_t>(stack.size()));
   start_ray(ray, tree, first);
-  compose(node, stage_of(ray.word), now);
+  compose(node, at, stage_of(ray.word), now);
   if (more != 0) {
     std::deque<std::uint32_t>& requests = clusters_[cluster_of(node)].requests;
     requests.insert(requests.end(), more, node);
@@ -194,58 +160,6 @@ void PipelineCore::start_ray(FlowRay& ray, std::uint32_t tree, std::uint32_t num
   ray.lit = false;
 }
 
-// ---- Work for a node.
-
-void PipelineCore::next_work(std::uint32_t node, sim::Ticks now) {
-  Node& at = nodes_[node];
-  at.phase = Phase::idle;
-  at.since = now;
-  statistics_[node].finish = now;
-  end_ = std::max(end_, now);
-  wake(node, now);
-}
-
-// Gives an idle node the next thing to do, if there is any.
-void PipelineCore::wake(std::uint32_t node, sim::Ticks now) {
-  Node& at = nodes_[node];
-  if (at.wake_at <= now) {
-    at.wake_at = no_wake;
-  }
-  if (at.phase != Phase::idle) {
-    return;
-  }
-  if (at.granted != 0) {
-    send_set_aside(node, now);
-  } else if (at.queue.head != none) {
-    const sim::Ticks arrival = rays_[at.queue.head].arrival;
-    if (arrival <= now) {
-      take(node, now);
-    } else {
-      post_wake(node, arrival);
-    }
-  }
-  refresh(node);
-}
-
-void PipelineCore::take(std::uint32_t node, sim::Ticks now) {
-  Node& at = nodes_[node];
-  spend(node, Activity::message_wait, now - at.since);
-  watch(node, NodeState::message_wait, now);
-  at.ray = at.queue.pop(rays_);
-  if (input_.causes != nullptr) {
-    input_.causes->took(node, at.ray, now);
-  }
-  FlowRay& ray = rays_[at.ray];
-  FlowCounts& counts = counts_[node];
-  ++counts.taken;
-  counts.queued = sim::add_ticks(counts.queued, now - ray.arrival);
-  give_slot(node, now);
-  spend(node, Activity::messaging, receive_);
-  at.phase = Phase::working;
-  begin(node, ray);
-  work(node);
-}
-
 // The ray set aside last enters, with the credit that the node was granted.
 void PipelineCore::send_set_aside(std::uint32_t node, sim::Ticks now) {
   Node& at = nodes_[node];
@@ -257,14 +171,7 @@ void PipelineCore::send_set_aside(std::uint32_t node, sim::Ticks now) {
   stack.pop_back();
   at.ray = rays_.take();
   start_ray(rays_[at.ray], next.tree, next.number);
-  compose(node, stage_of(rays_[at.ray].word), now);
-}
-
-void PipelineCore::post_wake(std::uint32_t node, sim::Ticks time) {
-  if (time < nodes_[node].wake_at) {
-    nodes_[node].wake_at = time;
-    post(FlowEvent::wake, time, node);
-  }
+  compose(node, at, stage_of(rays_[at.ray].word), now);
 }
 
 // ---- Credits: how many rays may be in flight.
@@ -280,7 +187,7 @@ void PipelineCore::give_credits(std::uint32_t by, sim::Ticks now) {
     ++nodes_[node].granted;
     if (nodes_[node].phase == Phase::idle) {
       tell_let_go(node, by, now);
-      post_wake(node, now);
+      post_wake(node, nodes_[node], now);
     }
   }
   if (at.host == Phase::idle && host_.has_credit(cluster) && host_.has_ray(cluster)) {
@@ -306,13 +213,13 @@ void PipelineCore::admit(std::uint32_t cluster, sim::Ticks now) {
       return;
     }
     host_.enter(cluster);
-    const std::uint32_t target = slot_of(cluster, Stage::search);
+    const std::uint32_t target = slot_of(stage_state(cluster, Stage::search));
     if (target == LoadOrder::none) {
       at.host = Phase::blocked;
       wait_for_slot(cluster, Stage::search, input_.config.all_nodes() + cluster);
       return;
     }
-    reserve(target);
+    reserve(nodes_[target]);
     send_from_host(cluster, target, now);
   }
 }
@@ -327,37 +234,6 @@ void PipelineCore::send_from_host(std::uint32_t cluster, std::uint32_t target, s
 }
 
 // ---- Slots of the queues.
-
-// The node of a stage that gets the next ray; LoadOrder::none when all queues are full.
-std::uint32_t PipelineCore::slot_of(std::uint32_t cluster, Stage stage) {
-  StageState& state = stage_state(cluster, stage);
-  const std::uint32_t least = state.order.least();
-  return least == LoadOrder::none ? least : state.first + least;
-}
-
-void PipelineCore::reserve(std::uint32_t node) {
-  RayQueue& queue = nodes_[node].queue;
-  ++queue.count;
-  counts_[node].longest_queue = std::max(counts_[node].longest_queue, std::int64_t{queue.count});
-  refresh(node);
-}
-
-// The node's load is the number of rays in its queue and in service; a node without a free slot gets no rays.
-void PipelineCore::refresh(std::uint32_t node) {
-  const Node& at = nodes_[node];
-  const std::uint32_t load = at.queue.count + (at.phase != Phase::idle ? 1 : 0);
-  stages_[at.state].order.set(at.place, at.queue.count < queue_slots_ ? load : LoadOrder::none);
-}
-
-// Puts a ray that was just sent into the slot reserved for it; it arrives at `arrival`.
-void PipelineCore::put(std::uint32_t ray, std::uint32_t node, sim::Ticks arrival) {
-  Node& at = nodes_[node];
-  rays_[ray].arrival = arrival;
-  at.queue.insert(rays_, ray);
-  if (at.phase == Phase::idle) {
-    post_wake(node, arrival);
-  }
-}
 
 std::uint32_t& PipelineCore::next_waiter_of(std::uint32_t waiter) {
   const std::uint32_t nodes = input_.config.all_nodes();
@@ -379,9 +255,6 @@ void PipelineCore::wait_for_slot(std::uint32_t cluster, Stage stage, std::uint32
 void PipelineCore::give_slot(std::uint32_t node, sim::Ticks now) {
   StageState& state = stages_[nodes_[node].state];
   const std::uint32_t waiter = state.first_waiter;
-  if (waiter == none) {
-    return;
-  }
   state.first_waiter = next_waiter_of(waiter);
   ++nodes_[node].queue.count;
   tell_let_go(waiter, node, now);  // the host's links are numbered alike

@@ -19,9 +19,46 @@ class PipelineNodes final : public PipelineCore {
         cursors_(parts.input.config.all_nodes()),
         receive_(parts.input.config.clock.cycles(parts.input.config.messages.receive_cycles)) {}
 
+  void handle(const sim::Event& event) override {
+    const std::uint32_t component = event.component();
+    switch (static_cast<FlowEvent>(event.event_class())) {
+      case FlowEvent::step:
+        work(component);
+        break;
+      case FlowEvent::reply:
+        reply(component);
+        break;
+      case FlowEvent::read:
+        read(component);
+        break;
+      case FlowEvent::done:
+        done(component, event.time);
+        break;
+      case FlowEvent::wake:
+        wake(component, event.time);
+        break;
+      case FlowEvent::admit:
+        admit(component, event.time);
+        break;
+      case FlowEvent::memory:
+        interconnect_of(component).proceed(port_of(component), event.sequence());
+        break;
+    }
+  }
+  // Only the events of data that are ready are posted in order.
+  void handle_in_order(const sim::Event& event) {
+    sim::ensure(event.event_class() == static_cast<std::uint8_t>(FlowEvent::reply),
+                "an event that is no reply was posted in order");
+    reply(event.component());
+  }
+
+  void run_all(sim::Engine& engine) override { engine.run_all(*this); }
+
   void read_done(std::uint32_t node, const memory::Service& service) override {
     spend(node, service);
-    watch_read(node, service, place_of(node));
+    if (input_.observer != nullptr) [[unlikely]] {
+      watch_read(node, service, place_of(node));
+    }
     Cursor& cursor = cursors_[node];
     cursor.time = service.done;
     walker_.note_wait(cursor, service);
@@ -40,8 +77,9 @@ class PipelineNodes final : public PipelineCore {
   }
 
   void finish() override {
+    end_nodes();
     for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
-      finish_node(node, walker_.ticks());
+      finish_node(node, walker_);
     }
   }
 
@@ -50,12 +88,12 @@ class PipelineNodes final : public PipelineCore {
   CacheCountResult cache_counts() const override { return walker_.counts(); }
 
   std::size_t bytes_per_node() const override {
-    return sizeof(Cursor) + sizeof(Node) + sizeof(NodeStatistics) + sizeof(FlowCounts) +
+    return sizeof(Cursor) + sizeof(Node) + sizeof(NodeStatistics) + sizeof(FlowCounts) + sizeof(VisitTally) +
            2 * sizeof(sim::Event);
   }
 
  private:
-  void begin(std::uint32_t node, FlowRay& ray) override {
+  void serve(std::uint32_t node, FlowRay& ray) override {
     Cursor& cursor = cursors_[node];
     cursor.time = sim::add_ticks(engine_.now(), receive_);
     cursor.word = ray.word;
@@ -68,7 +106,7 @@ class PipelineNodes final : public PipelineCore {
         }
         break;
       case Stage::nearest:
-        walker_.begin_objects(cursor, statistics_[node]);
+        walker_.begin_objects(cursor, statistics_[node], tallies_[node]);
         cursor.word_end = cursor.word;
         ray.record_read = false;
         break;
@@ -76,14 +114,16 @@ class PipelineNodes final : public PipelineCore {
         cursor.word_end = end_of_shading(ray);
         break;
     }
+    work(node);
   }
 
-  void work(std::uint32_t node) override {
+  void work(std::uint32_t node) {
     Cursor& cursor = cursors_[node];
     NodeStatistics& statistics = statistics_[node];
+    VisitTally& tally = tallies_[node];
     for (;;) {
-      const Stop stop = input_.step_by_step ? walker_.template advance<false>(node, cursor, statistics)
-                                            : walker_.template advance<true>(node, cursor, statistics);
+      const Stop stop = input_.step_by_step ? walker_.template advance<false>(node, cursor, statistics, tally)
+                                            : walker_.template advance<true>(node, cursor, statistics, tally);
       if (stop != Stop::end) {
         post(stop == Stop::hit ? FlowEvent::step : FlowEvent::read, cursor.time, node);
         return;
@@ -98,10 +138,12 @@ class PipelineNodes final : public PipelineCore {
     }
   }
 
-  void read(std::uint32_t node) override {
+  void read(std::uint32_t node) {
     const Cursor& cursor = cursors_[node];
-    watch_ray(node, cursor.time, cursor.word);
-    interconnect_of(node).read({port_of(node), walker_.missed_address(cursor), walker_.missed_bytes(cursor)});
+    if (input_.observer != nullptr) [[unlikely]] {
+      watch_ray(node, cursor.time, cursor.word);
+    }
+    read_memory(node, walker_.missed_address(cursor), walker_.missed_bytes(cursor));
   }
 
   // Begins to read the record of the leaf at which the steps of `search` end; false if they end elsewhere.
@@ -116,12 +158,19 @@ class PipelineNodes final : public PipelineCore {
 
   // The first step that `search` leaves to others, or a leaf with entries, whose record alone it reads.
   const std::uint32_t* end_of_search(const FlowRay& ray) const {
-    const std::uint32_t* word = ray.word;
     const accel::Topology& topology = input_.log.topology;
+    const std::uint32_t* word = ray.word;
     for (; word != ray.end; word += step_words(word)) {
-      // Most steps are branches.
-      if (step_of(*word) != Step::branch &&
-          (stage_of(word) != Stage::search || (visits_leaf(word) && entries_read(word, topology) != 0))) {
+      // Nearly all steps are branches and leaves.
+      while (whole_visit(*word)) {
+        if (step_of(*word) == Step::leaf && walker_.has_objects(*word)) {
+          return word;
+        }
+        if (++word == ray.end) {
+          return word;
+        }
+      }
+      if (stage_of(word) != Stage::search || (visits_leaf(word) && entries_read(word, topology) != 0)) {
         break;
       }
     }

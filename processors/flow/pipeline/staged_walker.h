@@ -23,6 +23,13 @@ class StagedWalker : public LogWalker<Caches> {
  public:
   using Base::Base;
 
+  /// Whether the visit at `word`, of a whole leaf, has objects. Looks where the visit itself will look.
+  [[nodiscard]] bool has_objects(std::uint32_t word) const {
+    const Visit* const visit = planned(word);
+    return visit != nullptr ? visit->counts.of(VisitCount::list) != 0
+                            : topology_[operand_of(word)].count != 0;
+  }
+
   /// Begins the first part of a visit to the leaf at cursor.word, its record; `advance` over no words (word
   /// equal to word_end) then reads it. cursor.word stays at the leaf, for begin_objects.
   void begin_record(Cursor& cursor, NodeStatistics& statistics) const {
@@ -44,14 +51,14 @@ class StagedWalker : public LogWalker<Caches> {
 
   /// Begins the second part of the visit, perhaps at another node: the leaf's list and tests. cursor.word
   /// moves past the leaf; `advance` over no words then reads and tests.
-  void begin_objects(Cursor& cursor, NodeStatistics& statistics) const {
+  void begin_objects(Cursor& cursor, NodeStatistics& statistics, VisitTally& tally) const {
     const std::uint32_t* const word = cursor.word;
     Base::note_node(cursor, operand_of(*word));
     cursor.word += step_words(word);
     if (const Visit* const visit = planned(*word)) {
       // All of the visit except what begin_record counted.
       const std::uint32_t lines = visit->counts.of(VisitCount::node_line);
-      add_visits(visit->counts, 1, input_.log.mailboxes, statistics);
+      Base::add(tally, visit->counts, statistics);
       --statistics.steps.leaves;
       hits_of(statistics, memory::RecordKind::node) -= lines;
       begin_lines(cursor, visit->begin + lines, visit->lines - lines);

@@ -34,6 +34,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   using Base::post;
   using Base::spend;
   using Base::statistics_;
+  using Base::tallies_;
   using Base::watch;
   using Base::watch_work;
 
@@ -75,6 +76,10 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     }
   }
 
+  void handle_in_order(const sim::Event& event) { handle(event); }  // there are none
+
+  void run_all(sim::Engine& engine) override { engine.run_all(*this); }
+
   void prepare(const sim::Event& event) override {
     if (static_cast<FlowEvent>(event.event_class()) != FlowEvent::admit) {
       sim::prefetch(nodes_[event.component()]);
@@ -85,7 +90,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
 
   void finish() override {
     for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
-      Base::finish_node(node, walker_.ticks());
+      Base::finish_node(node, walker_);
     }
   }
 
@@ -107,8 +112,8 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   CacheCountResult cache_counts() const override { return walker_.counts(); }
 
   std::size_t bytes_per_node() const override {
-    return sizeof(Node) + sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(FlowCounts) + sizeof(sim::Event) +
-           rays_.bytes() / nodes_.size();
+    return sizeof(Node) + sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(FlowCounts) + sizeof(VisitTally) +
+           sizeof(sim::Event) + rays_.bytes() / nodes_.size();
   }
 
  private:
@@ -324,12 +329,12 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     Cursor& cursor = cursors_[number];
     NodeStatistics& statistics = statistics_[number];
     if (input_.step_by_step) {
-      if (walker_.template advance<false>(number, cursor, statistics) != Stop::end) {
+      if (walker_.template advance<false>(number, cursor, statistics, tallies_[number]) != Stop::end) {
         post(FlowEvent::step, cursor.time, number);
         return;
       }
     } else {
-      (void)walker_.template advance<true>(number, cursor, statistics);
+      (void)walker_.template advance<true>(number, cursor, statistics, tallies_[number]);
     }
     const FlowRay& ray = rays_[nodes_[number].current];
     if (cursor.word != ray.end || contributes(ray)) {
