@@ -41,7 +41,7 @@ struct BankStatistics {
   sim::Ticks busy = 0;
   WaitStatistics waits;  ///< from an access's arrival to its start
 
-  void add(sim::Ticks busy_for, sim::Ticks waited) {
+  [[gnu::always_inline]] void add(sim::Ticks busy_for, sim::Ticks waited) {
     ++accesses;
     busy = sim::add_ticks(busy, busy_for);
     waits.add(waited);
@@ -78,7 +78,7 @@ class Banks {
   }
   /// A read or write whose address arrives at `arrival`, at the cache if there is one, else at its bank.
   /// Calls must come in order of arrival.
-  BankAccess read(Address address, std::uint32_t bytes, sim::Ticks arrival) {
+  [[gnu::always_inline]] BankAccess read(Address address, std::uint32_t bytes, sim::Ticks arrival) {
     return fixed_only_ ? access(bank_of(address), arrival) : read_otherwise(address, bytes, arrival);
   }
   BankAccess write(Address address, std::uint32_t bytes, sim::Ticks arrival) {
@@ -89,7 +89,7 @@ class Banks {
 
   /// Queues an access that arrives at `arrival` and bypasses the cache. Accesses to one bank must come in
   /// order of arrival.
-  BankAccess access(std::uint32_t bank, sim::Ticks arrival) {
+  [[gnu::always_inline]] BankAccess access(std::uint32_t bank, sim::Ticks arrival) {
     const sim::Ticks start = std::max(arrival, free_at_[bank]);
     free_at_[bank] = sim::add_ticks(start, busy_ticks_);
     statistics_[bank].add(busy_ticks_, start - arrival);

@@ -20,14 +20,14 @@ sim::Ticks Bus::unloaded_read(std::uint32_t bytes) const {
 void Bus::read_late(const Transaction& transaction) {
   const sim::Ticks now = site_.engine.now();
   const sim::Ticks start = take(now, address_);
-  pending_[transaction.port] = {{0, start - now, address_, 0, 0}, transaction.bytes};
+  pending_[transaction.port] = {start - now, address_, 0, 0, transaction.bytes};
   ask_late(transaction, false, sim::add_ticks(start, address_));
 }
 
 void Bus::late_read(const LateAccess& read) {
   const std::uint32_t port = read.transaction.port;
-  pending_[port].service.wait_bank = read.start - read.arrival;
-  pending_[port].service.bank = read.ready - read.start;
+  pending_[port].wait_bank = read.start - read.arrival;
+  pending_[port].bank = read.ready - read.start;
   post_reply(port, read.ready);
 }
 

@@ -25,7 +25,7 @@ class Bus final : public Banked {
   void write_for(Client& client, const Transaction& transaction);
   template <class Client>
   void reply_for(Client& client, std::uint32_t port) {
-    send_data(client, port, site_.engine.now());
+    send_data(client, port, pending_[port], site_.engine.now());
   }
 
   [[nodiscard]] const InterconnectStatistics& statistics() const override { return statistics_; }
@@ -34,7 +34,10 @@ class Bus final : public Banked {
  private:
   // A split read between its address and its data.
   struct Pending {
-    Service service;
+    sim::Ticks wait_interconnect = 0;
+    sim::Ticks transfer = 0;
+    sim::Ticks wait_bank = 0;
+    sim::Ticks bank = 0;
     std::uint32_t bytes = 0;
   };
 
@@ -43,9 +46,12 @@ class Bus final : public Banked {
   // Sends the address of a read whose data are ready at a time that is not known yet.
   void read_late(const Transaction& transaction);
   void late_read(const LateAccess& read) override;
-  // Sends the data of the port's read, which are ready at `ready`.
+  // Sends the data of the port's read `read`, which are ready at `ready`. Joined with the caller, so that
+  // what a read has taken is passed on in registers: compilers load what they have just stored in pieces of
+  // another size, for which the host's processor waits.
   template <class Client>
-  void send_data(Client& client, std::uint32_t port, sim::Ticks ready);
+  [[gnu::always_inline]] void send_data(Client& client, std::uint32_t port, const Pending& read,
+                                        sim::Ticks ready);
 
   BusMode mode_;
   BeatTime beats_;
@@ -55,7 +61,7 @@ class Bus final : public Banked {
   InterconnectStatistics statistics_;
 };
 
-inline sim::Ticks Bus::take(sim::Ticks arrival, sim::Ticks length) {
+[[gnu::always_inline]] inline sim::Ticks Bus::take(sim::Ticks arrival, sim::Ticks length) {
   const sim::Ticks start = link_.begin(arrival);
   link_.hold_until(sim::add_ticks(start, length));
   statistics_.busy = sim::add_ticks(statistics_.busy, length);
@@ -77,12 +83,13 @@ void Bus::read_for(Client& client, const Transaction& transaction) {
     const sim::Ticks start = take(now, address_);
     const sim::Ticks sent = add_ticks(start, address_);
     const BankAccess access = banks_.read(transaction.address, transaction.bytes, sent);
-    pending_[transaction.port] = {
-        {0, start - now, address_, access.start - sent, access.ready - access.start}, transaction.bytes};
+    const Pending read = {start - now, address_, access.start - sent, access.ready - access.start,
+                          transaction.bytes};
     if (site_.ports == 1) {
       // The one port asks for nothing before its data have come, so nothing can take the bus until then.
-      send_data(client, transaction.port, access.ready);
+      send_data(client, transaction.port, read, access.ready);
     } else {
+      pending_[transaction.port] = read;
       post_reply(transaction.port, access.ready);
     }
     return;
@@ -98,14 +105,11 @@ void Bus::read_for(Client& client, const Transaction& transaction) {
 }
 
 template <class Client>
-void Bus::send_data(Client& client, std::uint32_t port, sim::Ticks ready) {
-  const sim::Ticks data = beats_(pending_[port].bytes);
+void Bus::send_data(Client& client, std::uint32_t port, const Pending& read, sim::Ticks ready) {
+  const sim::Ticks data = beats_(read.bytes);
   const sim::Ticks start = take(ready, data);
-  Service service = pending_[port].service;
-  service.wait_interconnect += start - ready;
-  service.transfer += data;
-  service.done = sim::add_ticks(start, data);
-  client.read_done(port, service);
+  client.read_done(port, {sim::add_ticks(start, data), read.wait_interconnect + (start - ready),
+                          read.transfer + data, read.wait_bank, read.bank});
 }
 
 template <class Client>

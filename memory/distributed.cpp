@@ -126,11 +126,9 @@ void Distributed::proceed(std::uint32_t port, std::uint32_t sequence) {
     return;
   }
   const Delivery data = send(read.home, node_of(port), header_ + read.bytes);
-  Service service = read.service;
-  service.wait_interconnect += data.wait;
-  service.transfer += data.transfer;
-  service.done = data.arrival;
-  site_.client.read_done(port, service);
+  site_.client.read_done(
+      port, {data.arrival, read.service.wait_interconnect + data.wait, read.service.transfer + data.transfer,
+             read.service.wait_bank, read.service.bank});
 }
 
 void Distributed::arrive(std::uint32_t port, std::uint32_t number) {

@@ -93,13 +93,16 @@ class WithHost : public RunByRun<WithHost<Between>> {
 /// short row to a column beyond its end would so meet a missing router. It goes along its column first: the
 /// columns of the short row are complete, and its destination lies in a full row. All turns from a column
 /// into a row are thus upwards and to the right, which creates no cycle of waiting messages.
+///
+/// Links of a row, and of a column, in one direction have consecutive numbers: in a large mesh a message
+/// crosses hundreds of them, and their entries in a table should share the host's cache lines.
 class MeshRoutes : public RunByRun<MeshRoutes> {
  public:
   explicit MeshRoutes(std::uint32_t nodes) : nodes_(nodes), columns_(columns_of(nodes)), row_of_(columns_) {
     last_row_ = (nodes - 1) / columns_;
     last_length_ = nodes - last_row_ * columns_;
   }
-  [[nodiscard]] std::size_t table_size() const { return std::size_t{nodes_} * 4; }
+  [[nodiscard]] std::size_t table_size() const { return 4 * places(); }
   [[nodiscard]] std::int64_t links() const {
     const std::int64_t pairs =
         std::int64_t{last_row_} * (columns_ - 1) + (last_length_ - 1) + std::int64_t{nodes_} - columns_;
@@ -138,22 +141,27 @@ class MeshRoutes : public RunByRun<MeshRoutes> {
     const auto row = static_cast<std::uint32_t>(row_of_(router));
     return {router - row * columns_, row};
   }
-  // The links of a router are four: to the right, to the left, down and up.
-  [[nodiscard]] std::size_t first_link_of(Place place) const {
-    return (std::size_t{place.row} * columns_ + place.column) * 4;
-  }
+  // Routers, missing ones of the last row included.
+  [[nodiscard]] std::size_t places() const { return std::size_t{columns_} * (last_row_ + 1); }
+  // Links to the right, to the left, down and up follow one another in tables of so many.
   template <class Visit>
   void along_row(Place at, std::uint32_t column, Visit&& visit) const {
-    const bool right = at.column < column;
-    visit(first_link_of(at) + (right ? 0 : 1), right ? 4 : std::size_t{0} - 4,
-          right ? column - at.column : at.column - column);
+    const std::size_t router = std::size_t{at.row} * columns_ + at.column;
+    straight(router, at.column, column, visit);
   }
   template <class Visit>
   void along_column(Place at, std::uint32_t row, Visit&& visit) const {
-    const bool down = at.row < row;
-    const std::size_t step = std::size_t{columns_} * 4;
-    visit(first_link_of(at) + (down ? 2 : 3), down ? step : std::size_t{0} - step,
-          down ? row - at.row : at.row - row);
+    const std::size_t router = std::size_t{at.column} * (last_row_ + 1) + at.row;
+    straight(2 * places() + router, at.row, row, visit);
+  }
+  // The links between two places of a row or column. `first`: that onwards from the first of them.
+  template <class Visit>
+  void straight(std::size_t first, std::uint32_t from, std::uint32_t to, Visit&& visit) const {
+    if (from < to) {
+      visit(first, std::size_t{1}, to - from);
+    } else {
+      visit(first + places(), std::size_t{0} - 1, from - to);
+    }
   }
 
   std::uint32_t nodes_;

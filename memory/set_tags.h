@@ -49,22 +49,104 @@ class SetTags {
     }
   }
 
-  /// One of the caches. It must not outlive the store.
+  /// One of the caches, with everything that a look-up needs in registers. It must not outlive the store.
   class View {
    public:
-    View(SetTags& tags, std::uint32_t cache) : tags_(&tags), cache_(cache) {}
+    View(SetTags& store, std::uint32_t cache)
+        : store_(&store),
+          index_(store.index_),
+          ways_(Ways == 0 ? store.ways_ : Ways),
+          first_set_(std::size_t{cache} * store.sets_),
+          tags_(store.tags_.data() + first_set_ * ways_) {}
+
     /// Looks `line` up; true when the cache holds it. Brings a missing line in.
-    bool access(std::uint32_t line) const { return tags_->access(cache_, line); }
+    [[gnu::always_inline]] bool access(std::uint32_t line) const {
+      const std::uint32_t set = index_(line);
+      std::uint32_t* const tags = tags_of(set);
+      const std::uint32_t ways = Ways == 0 ? ways_ : Ways;
+      const std::uint32_t tag = ~line;
+      if (tags[0] == tag) {
+        use(set, 0);
+        return true;
+      }
+      std::uint32_t at = 1;
+      while (at < ways && tags[at] != tag) {
+        ++at;
+      }
+      if constexpr (stays) {
+        if (at < ways) {
+          use(set, at);
+          return true;
+        }
+        replace(tags, ways, set, tag);
+        return false;
+      } else {
+        const bool hit = at < ways;
+        if (Policy == Replacement::fifo && hit) {
+          return true;
+        }
+        for (std::uint32_t way = hit ? at : ways - 1; way > 0; --way) {
+          tags[way] = tags[way - 1];
+        }
+        tags[0] = tag;
+        return hit;
+      }
+    }
     /// As access(), but does not bring a missing line in.
-    bool touch(std::uint32_t line) const { return tags_->touch(cache_, line); }
+    bool touch(std::uint32_t line) const {
+      // access() brings nothing in here, because the line is found.
+      return holds(line) && access(line);
+    }
     /// Whether the cache holds `line`; changes nothing.
-    [[nodiscard]] bool holds(std::uint32_t line) const { return tags_->holds(cache_, line); }
+    [[nodiscard]] bool holds(std::uint32_t line) const {
+      const std::uint32_t* const tags = tags_of(index_(line));
+      return std::find(tags, tags + ways_, ~line) != tags + ways_;
+    }
     /// Removes `line`; true when the cache held it. Its way is then empty, and empty ways are filled first.
-    bool remove(std::uint32_t line) const { return tags_->remove(cache_, line); }
+    bool remove(std::uint32_t line) const {
+      std::uint32_t* const tags = tags_of(index_(line));
+      std::uint32_t* const end = tags + ways_;
+      std::uint32_t* const at = std::find(tags, end, ~line);
+      if (at == end) {
+        return false;
+      }
+      if constexpr (stays) {
+        *at = empty;
+      } else {
+        // Empty ways count as the oldest, so they are kept last.
+        std::copy(at + 1, end, at);
+        *(end - 1) = empty;
+      }
+      return true;
+    }
 
    private:
-    SetTags* tags_;
-    std::uint32_t cache_;
+    [[nodiscard]] std::uint32_t* tags_of(std::uint32_t set) const {
+      return tags_ + std::size_t{set} * (Ways == 0 ? ways_ : Ways);
+    }
+    void use(std::uint32_t set, std::uint32_t way) const {
+      if constexpr (Policy == Replacement::plru) {
+        store_->trees_.use(first_set_ + set, way);
+      }
+    }
+    // Fills the first empty way; only if there is none, a victim is replaced.
+    void replace(std::uint32_t* tags, std::uint32_t ways, std::uint32_t set, std::uint32_t tag) const {
+      std::uint32_t way = 0;
+      while (way < ways && tags[way] != empty) {
+        ++way;
+      }
+      if (way == ways) {
+        way = store_->victim(first_set_ + set, ways);
+      }
+      tags[way] = tag;
+      use(set, way);
+    }
+
+    SetTags* store_;
+    SetIndex index_;
+    std::uint32_t ways_;
+    std::size_t first_set_;
+    std::uint32_t* tags_;
   };
   [[nodiscard]] View view(std::uint32_t cache) { return {*this, cache}; }
 
@@ -74,98 +156,12 @@ class SetTags {
   // Whether lines stay in the way that they were brought into.
   static constexpr bool stays = Policy == Replacement::random || Policy == Replacement::plru;
 
-  bool access(std::uint32_t cache, std::uint32_t line) {
-    const std::size_t set = std::size_t{cache} * sets_ + index_(line);
-    const std::uint32_t ways = Ways == 0 ? ways_ : Ways;
-    std::uint32_t* tags = tags_.data() + set * ways;
-    const std::uint32_t tag = ~line;
-    if (tags[0] == tag) {
-      use(set, 0);
-      return true;
-    }
-    std::uint32_t at = 1;
-    while (at < ways && tags[at] != tag) {
-      ++at;
-    }
-    if constexpr (stays) {
-      if (at < ways) {
-        use(set, at);
-        return true;
-      }
-      replace(tags, ways, set, tag);
-      return false;
-    } else {
-      const bool hit = at < ways;
-      if (Policy == Replacement::fifo && hit) {
-        return true;
-      }
-      for (std::uint32_t way = hit ? at : ways - 1; way > 0; --way) {
-        tags[way] = tags[way - 1];
-      }
-      tags[0] = tag;
-      return hit;
-    }
-  }
-
-  std::uint32_t* set_of(std::uint32_t cache, std::uint32_t line) {
-    return tags_.data() + (std::size_t{cache} * sets_ + index_(line)) * (Ways == 0 ? ways_ : Ways);
-  }
-
-  bool holds(std::uint32_t cache, std::uint32_t line) {
-    const std::uint32_t* const tags = set_of(cache, line);
-    const std::uint32_t* const end = tags + (Ways == 0 ? ways_ : Ways);
-    return std::find(tags, end, ~line) != end;
-  }
-
-  bool touch(std::uint32_t cache, std::uint32_t line) {
-    const std::uint32_t* const tags = set_of(cache, line);
-    const std::uint32_t ways = Ways == 0 ? ways_ : Ways;
-    // access() brings nothing in here, because the line is found.
-    return std::find(tags, tags + ways, ~line) != tags + ways && access(cache, line);
-  }
-
-  bool remove(std::uint32_t cache, std::uint32_t line) {
-    std::uint32_t* const tags = set_of(cache, line);
-    std::uint32_t* const end = tags + (Ways == 0 ? ways_ : Ways);
-    std::uint32_t* const at = std::find(tags, end, ~line);
-    if (at == end) {
-      return false;
-    }
-    if constexpr (stays) {
-      *at = empty;
-    } else {
-      // Empty ways count as the oldest, so they are kept last.
-      std::copy(at + 1, end, at);
-      *(end - 1) = empty;
-    }
-    return true;
-  }
-
-  void use(std::size_t set, std::uint32_t way) {
-    if constexpr (Policy == Replacement::plru) {
-      trees_.use(set, way);
-    }
-  }
-
   [[nodiscard]] std::uint32_t victim(std::size_t set, std::uint32_t ways) {
     if constexpr (Policy == Replacement::plru) {
       return trees_.victim(set);
     } else {
       return victims_[set].next(ways);
     }
-  }
-
-  // Fills the first empty way; only if there is none, a victim is replaced.
-  void replace(std::uint32_t* tags, std::uint32_t ways, std::size_t set, std::uint32_t tag) {
-    std::uint32_t way = 0;
-    while (way < ways && tags[way] != empty) {
-      ++way;
-    }
-    if (way == ways) {
-      way = victim(set, ways);
-    }
-    tags[way] = tag;
-    use(set, way);
   }
 
   SetIndex index_;

@@ -1,7 +1,6 @@
 // The waits at one queue: exact sum and maximum, and a log-scaled histogram for percentiles.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
 #include "sim/statistics.h"
@@ -15,11 +14,11 @@ struct WaitStatistics {
   sim::Ticks max = 0;
   sim::LogHistogram histogram;
 
-  void add(sim::Ticks wait) {
+  [[gnu::always_inline]] void add(sim::Ticks wait) {
     ++count;
     sum = sim::add_ticks(sum, wait);
-    max = std::max(max, wait);
     histogram.add(wait);
+    max = histogram.maximum();
   }
   /// Adds `tenures` that did not wait.
   void add_unwaited(std::int64_t tenures) {

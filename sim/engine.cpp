@@ -4,6 +4,8 @@
 
 namespace marti::sim {
 
+void Engine::fail_in_past() { throw InternalError("an event was posted in the past"); }
+
 void Engine::handle(const Event& event, std::uint64_t& at_this_tick, std::uint64_t limit_per_tick) {
   at_this_tick = event.time == now_ ? at_this_tick + 1 : 1;
   if (at_this_tick > limit_per_tick) [[unlikely]] {

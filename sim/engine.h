@@ -33,14 +33,18 @@ class Engine {
   void attach(std::uint8_t event_class, EventHandler& handler) { handlers_.at(event_class) = &handler; }
 
   /// `event` must not lie in the past; that is a fault of the simulator, never of its input.
-  [[gnu::always_inline]] void post(const Event& event) {
-    ensure(event.time >= now_, "an event was posted in the past");
+  [[gnu::always_inline]] void post(Event event) {
+    if (event.time < now_) [[unlikely]] {
+      fail_in_past();
+    }
     queue_.push(event);
   }
   /// post() for an event that is likely to be later than those that were posted in this way before. It is
   /// handled when a posted one would be, and cheaper if that is so.
-  [[gnu::always_inline]] void post_in_order(const Event& event) {
-    ensure(event.time >= now_, "an event was posted in the past");
+  [[gnu::always_inline]] void post_in_order(Event event) {
+    if (event.time < now_) [[unlikely]] {
+      fail_in_past();
+    }
     queue_.push_in_order(event);
   }
 
@@ -57,8 +61,11 @@ class Engine {
   [[nodiscard]] Ticks now() const { return now_; }
   [[nodiscard]] std::uint64_t events() const { return events_; }
   void reserve(std::size_t events) { queue_.reserve(events); }
+  /// reserve() for events of components below `components` that seldom have more than one each.
+  void reserve_for(std::size_t components) { queue_.reserve_for(components); }
 
  private:
+  [[noreturn]] static void fail_in_past();
   // Has handlers prepare for the events that are likely to be next, if many are pending.
   template <class Prepare>
   void look_ahead(const Prepare& prepare) const {
@@ -78,9 +85,15 @@ class Engine {
 template <class Handler>
 void Engine::run_all(Handler& handler) {
   std::uint64_t events = 0;
-  while (!queue_.empty()) {
-    const auto prepare = [&handler](const Event& next) { handler.prepare(next); };
-    ++events;
+  if (queue_.has_tree()) {
+    for (; !queue_.empty(); ++events) {
+      const Event event = queue_.pop();
+      now_ = event.time;
+      handler.handle(event);
+    }
+  }
+  const auto prepare = [&handler](const Event& next) { handler.prepare(next); };
+  for (; !queue_.empty(); ++events) {
     // The two kinds are handled apart, because which comes next is not predictable and costs a branch here.
     if (queue_.next_is_in_order()) {
       const Event event = queue_.pop_in_order();

@@ -13,7 +13,9 @@ inline constexpr unsigned component_bits = 32;
 
 /// One event. Events are ordered by (time, class, component, sequence), packed so that two integer
 /// comparisons decide; the order at equal times never depends on the order of insertion. A component that may
-/// have several events of one class pending gives each a sequence number of its own.
+/// have several events of one class pending gives each a sequence number of its own. Events are passed by
+/// value: in registers, and not in memory, where compilers load both halves at once just after each was
+/// stored.
 struct Event {
   Ticks time = 0;
   std::uint64_t order = 0;

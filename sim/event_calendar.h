@@ -28,7 +28,7 @@ class EventCalendar {
 
   [[nodiscard]] std::size_t size() const { return size_; }
   /// The earliest event, or Event::never() while the calendar is empty.
-  [[nodiscard]] const Event& front() const { return days_[first_].event; }
+  [[nodiscard]] Event front() const { return days_[first_].event; }
   [[nodiscard]] unsigned shift() const { return shift_; }
   [[nodiscard]] std::uint32_t days() const { return static_cast<std::uint32_t>(days_.size()); }
 
@@ -37,7 +37,7 @@ class EventCalendar {
 
   /// Inserts `event`, which is not earlier than `now`, the time of the event that the simulation handles.
   /// False, and nothing is done, when its day is not open or has many events.
-  [[gnu::always_inline]] bool push(const Event& event, Ticks now) {
+  [[gnu::always_inline]] bool push(Event event, Ticks now) {
     const std::uint64_t ahead =
         (static_cast<std::uint64_t>(event.time) >> shift_) - (static_cast<std::uint64_t>(now) >> shift_);
     if (ahead >= days_.size()) [[unlikely]] {
@@ -98,9 +98,9 @@ class EventCalendar {
     return static_cast<std::uint32_t>(static_cast<std::uint64_t>(time) >> shift_) & (days() - 1U);
   }
 
-  bool push_into_list(Entry& day, const Event& event) {
+  bool push_into_list(Entry& day, Event event) {
     if (event < day.event) {
-      const std::uint32_t number = new_entry(day);
+      const std::uint32_t number = new_entry(day.event, day.next);
       day = {event, number};
       return true;
     }
@@ -113,19 +113,19 @@ class EventCalendar {
       before = after;
       after = entries_[after].next;
     }
-    const std::uint32_t number = new_entry({event, after});
+    const std::uint32_t number = new_entry(event, after);
     (before == none ? day.next : entries_[before].next) = number;
     return true;
   }
 
-  std::uint32_t new_entry(const Entry& entry) {
+  std::uint32_t new_entry(Event event, std::uint32_t next) {
     if (free_ == none) {
-      entries_.push_back(entry);
+      entries_.push_back({event, next});
       return static_cast<std::uint32_t>(entries_.size() - 1);
     }
     const std::uint32_t number = free_;
     free_ = entries_[number].next;
-    entries_[number] = entry;
+    entries_[number] = {event, next};
     return number;
   }
 

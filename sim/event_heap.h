@@ -15,7 +15,7 @@ class EventHeap {
   [[nodiscard]] bool empty() const { return heap_.empty(); }
   [[nodiscard]] std::size_t size() const { return heap_.size(); }
 
-  void push(const Event& event) {
+  void push(Event event) {
     heap_.push_back(event);
     std::size_t at = heap_.size() - 1;
     while (at > 0) {
@@ -53,7 +53,7 @@ class EventHeap {
   static constexpr std::size_t arity = 4;
 
   // Puts `event` in the root's place and moves it down to its own.
-  void sift_down(const Event& event) {
+  void sift_down(Event event) {
     const std::size_t size = heap_.size();
     std::size_t at = 0;
     for (;;) {

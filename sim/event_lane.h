@@ -29,7 +29,7 @@ class EventLane {
   }
 
   /// Inserts `event`. False, and nothing is done, when more than a few events are later.
-  bool push(const Event& event) {
+  bool push(Event event) {
     if (size_ == events_.size()) [[unlikely]] {
       grow();
     }

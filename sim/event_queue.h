@@ -11,18 +11,20 @@
 #include "sim/event_calendar.h"
 #include "sim/event_heap.h"
 #include "sim/event_lane.h"
+#include "sim/event_tree.h"
 
 namespace marti::sim {
 
 /// A priority queue of events: a calendar for the near future, a lane for events that are pushed nearly in
 /// order, and a heap for what fits into neither. The length of the calendar's days follows from how far ahead
-/// events are pushed, so that pushing and popping take constant time. What is popped does not depend on where
-/// events are kept: it is the earliest of all three.
+/// events are pushed, so that pushing and popping take constant time. Where there are few components, a tree
+/// has one event of each, and the other three only what the tree has no place for. What is popped does not
+/// depend on where events are kept: it is the earliest of all four.
 ///
 /// An event that is pushed must not be earlier than the one popped last.
 class EventQueue {
  public:
-  EventQueue() : calendar_(fewest_days) {}
+  EventQueue() : tree_(0), calendar_(fewest_days) {}
 
   /// Bytes of host memory for each pending event, and beside them for a queue of so many.
   static constexpr std::size_t bytes_an_event = EventCalendar::bytes_an_event;
@@ -31,32 +33,40 @@ class EventQueue {
   }
 
   [[nodiscard]] bool empty() const { return size() == 0; }
-  [[nodiscard]] std::size_t size() const { return lane_.size() + calendar_.size() + heap_.size(); }
+  [[nodiscard]] std::size_t size() const {
+    return tree_.size() + lane_.size() + calendar_.size() + heap_.size();
+  }
   /// Chooses the number of days for so many pending events. The queue must be empty.
   void reserve(std::size_t events) { calendar_ = EventCalendar(days_for(events)); }
+  /// reserve() for events of components below `components` that seldom have more than one each.
+  void reserve_for(std::size_t components) {
+    tree_ = EventTree(components <= EventTree::most ? static_cast<std::uint32_t>(components) : 0);
+    reserve(components);
+  }
 
-  [[gnu::always_inline]] void push(const Event& event) {
-    ahead_ += static_cast<double>(event.time - last_);
-    if (!calendar_.push(event, last_)) [[unlikely]] {
-      push_into_heap(event);
-    }
-    if (event < first_) {
-      first_ = event;
-    }
-    if (++pushed_ == tuned_at_) [[unlikely]] {
-      tune();
+  [[gnu::always_inline]] void push(Event event) {
+    if (tree_.takes(event.component())) {
+      tree_.push(event);
+    } else {
+      push_outside(event);
     }
   }
 
   /// push() for an event that is likely to be later than those that were pushed in this way before.
-  [[gnu::always_inline]] void push_in_order(const Event& event) {
-    if (!lane_.push(event)) [[unlikely]] {
-      push(event);
+  [[gnu::always_inline]] void push_in_order(Event event) {
+    if (tree_.takes(event.component())) {
+      tree_.push(event);
+    } else if (!lane_.push(event)) [[unlikely]] {
+      push_outside(event);
     }
   }
 
-  /// Whether the earliest event lies in the lane. All events there are of push_in_order(); some of those,
-  /// which came too far out of order, are elsewhere.
+  /// Whether events are kept in the tree.
+  [[nodiscard]] bool has_tree() const { return tree_.components() != 0; }
+  /// Whether the earliest event lies in the tree.
+  [[nodiscard]] bool next_is_in_tree() { return tree_.front() < std::min(lane_.front(), first_); }
+  /// Whether the earliest event lies in the lane, if not in the tree. All events there are of
+  /// push_in_order(); some of those, which came too far out of order, are elsewhere.
   [[nodiscard]] bool next_is_in_order() const { return lane_.front() < first_; }
 
   /// Calls visit(event) for a few events that may be next unless an earlier one is pushed.
@@ -68,14 +78,23 @@ class EventQueue {
   }
 
   /// Removes and returns the earliest event. The queue must not be empty.
-  Event pop() { return next_is_in_order() ? pop_in_order() : pop_other(); }
-  /// pop() where next_is_in_order().
+  Event pop() {
+    return next_is_in_tree() ? pop_in_tree() : next_is_in_order() ? pop_in_order() : pop_other();
+  }
+  /// pop() where next_is_in_tree().
+  [[gnu::always_inline]] Event pop_in_tree() {
+    const Event event = tree_.front();
+    tree_.pop();
+    last_ = event.time;
+    return event;
+  }
+  /// pop() where not next_is_in_tree(), but next_is_in_order().
   [[gnu::always_inline]] Event pop_in_order() {
     const Event event = lane_.pop();
     last_ = event.time;
     return event;
   }
-  /// pop() where not next_is_in_order().
+  /// pop() where neither.
   [[gnu::always_inline]] Event pop_other() {
     const Event event = first_;
     last_ = event.time;
@@ -93,7 +112,20 @@ class EventQueue {
   static constexpr std::uint32_t fewest_days = 256;
   static constexpr std::uint64_t tuned_after = 1024;  // pushed events
 
-  void push_into_heap(const Event& event) {
+  [[gnu::always_inline]] void push_outside(Event event) {
+    ahead_ += static_cast<std::uint64_t>(event.time - last_);
+    if (!calendar_.push(event, last_)) [[unlikely]] {
+      push_into_heap(event);
+    }
+    if (event < first_) {
+      first_ = event;
+    }
+    if (++pushed_ == tuned_at_) [[unlikely]] {
+      tune();
+    }
+  }
+
+  void push_into_heap(Event event) {
     heap_.push(event);
     heap_first_ = heap_.front();
   }
@@ -108,8 +140,8 @@ class EventQueue {
   // Chooses the length of a day so that the open days are four to sixteen times as long as events are pushed
   // ahead on average.
   void tune() {
-    const double wanted =
-        4.0 * ahead_ / static_cast<double>(tuned_after_last_) / static_cast<double>(calendar_.days());
+    const double wanted = 4.0 * static_cast<double>(ahead_) / static_cast<double>(tuned_after_last_) /
+                          static_cast<double>(calendar_.days());
     const auto shift =
         wanted < 1.0 ? 0U : static_cast<unsigned>(std::bit_width(static_cast<std::uint64_t>(wanted)));
     if (shift > calendar_.shift() || shift + 1 < calendar_.shift()) {
@@ -126,18 +158,20 @@ class EventQueue {
         }
       }
     }
-    ahead_ = 0.0;
+    ahead_ = 0;
     tuned_after_last_ = std::max<std::uint64_t>(tuned_after, 8 * size());
     tuned_at_ = pushed_ + tuned_after_last_;
   }
 
+  EventTree tree_;
   EventLane lane_;
   EventCalendar calendar_;
   EventHeap heap_;
   Event heap_first_ = Event::never();  // the earliest of the heap
   Event first_ = Event::never();       // the earliest of calendar and heap
   Ticks last_ = 0;                     // time of the event popped last
-  double ahead_ = 0.0;  // sum over the events pushed since the last tuning: ticks from the event popped last
+  __extension__ using Sum = unsigned __int128;
+  Sum ahead_ = 0;  // sum over the events pushed since the last tuning: ticks from the event popped last
   std::uint64_t pushed_ = 0;
   std::uint64_t tuned_at_ = tuned_after;
   std::uint64_t tuned_after_last_ = tuned_after;

@@ -101,6 +101,8 @@ void LogHistogram::merge(const LogHistogram& other) {
   maximum_ = std::max(maximum_, other.maximum_);
 }
 
+void LogHistogram::fail_negative() { throw InternalError("a histogram takes no negative sample"); }
+
 std::int64_t LogHistogram::lowest_of(std::size_t bucket) {
   if (bucket < 16) {
     return static_cast<std::int64_t>(bucket);

@@ -167,10 +167,10 @@ class Moments {
 class LogHistogram {
  public:
   /// An InternalError when `sample` is negative.
-  void add(std::int64_t sample) {
+  [[gnu::always_inline]] void add(std::int64_t sample) {
     const std::size_t bucket = bucket_of(sample);
     if (bucket >= buckets_.size()) [[unlikely]] {
-      buckets_.resize(bucket + 1);
+      add_buckets(bucket + 1);
     }
     ++buckets_[bucket];
     ++count_;
@@ -203,7 +203,9 @@ class LogHistogram {
   [[nodiscard]] std::vector<Bucket> buckets() const;
 
   static std::size_t bucket_of(std::int64_t sample) {
-    ensure(sample >= 0, "a histogram takes no negative sample");
+    if (sample < 0) [[unlikely]] {
+      fail_negative();
+    }
     const auto value = static_cast<std::uint64_t>(sample);
     // The bits below the leading four. Without a branch: whether a sample is small is often not predictable.
     const auto dropped = static_cast<unsigned>(std::bit_width(value | 8U)) - 4;
@@ -215,6 +217,9 @@ class LogHistogram {
   friend bool operator==(const LogHistogram&, const LogHistogram&) = default;
 
  private:
+  [[noreturn]] static void fail_negative();
+  [[gnu::noinline]] void add_buckets(std::size_t size) { buckets_.resize(size); }
+
   std::vector<std::int64_t> buckets_;  // up to the last non-empty one
   std::int64_t count_ = 0;
   std::int64_t maximum_ = 0;

@@ -47,7 +47,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
     }
   }
 
-  void handle(const sim::Event& event) override {
+  [[gnu::always_inline]] void handle(const sim::Event& event) override {
     const std::uint32_t node = event.component();
     switch (static_cast<EventClass>(event.event_class())) {
       case EventClass::step:
@@ -75,8 +75,9 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
 
   // Only the events of data that are ready are posted in order.
   void handle_in_order(const sim::Event& event) {
-    sim::ensure(event.event_class() == static_cast<std::uint8_t>(EventClass::reply),
-                "an event that is no reply was posted in order");
+    if (event.event_class() != static_cast<std::uint8_t>(EventClass::reply)) [[unlikely]] {
+      throw sim::InternalError("an event that is no reply was posted in order");
+    }
     Base::reply(event.component(), port_of(event.component()));
   }
 
@@ -168,7 +169,8 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
     Base::read_memory(node, {port_of(node), walker_.missed_address(cursor), walker_.missed_bytes(cursor)});
   }
 
-  void read_done(std::uint32_t node, const memory::Service& service) {
+  // Joined with the interconnect's code where that is known: see Bus::send_data.
+  [[gnu::always_inline]] void read_done(std::uint32_t node, const memory::Service& service) {
     spend(node, service);
     watch_read(node, service);
     Cursor& cursor = cursors_[node];

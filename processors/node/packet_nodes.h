@@ -73,7 +73,7 @@ class PacketNodes : public NodeArray {
     const std::uint32_t cluster = cluster_of(node);
     interconnects_.reply(cluster, clients_[cluster], port);
   }
-  void post(EventClass event_class, sim::Ticks time, std::uint32_t node) {
+  [[gnu::always_inline]] void post(EventClass event_class, sim::Ticks time, std::uint32_t node) {
     engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(event_class), node));
   }
   void spend(std::uint32_t node, Activity activity, sim::Ticks time) {
@@ -252,7 +252,7 @@ class PacketNodes : public NodeArray {
    public:
     Client(Derived& nodes, std::uint32_t first, std::uint32_t ports)
         : nodes_(nodes), first_(first), ports_(ports) {}
-    void read_done(std::uint32_t port, const memory::Service& service) override {
+    [[gnu::always_inline]] void read_done(std::uint32_t port, const memory::Service& service) override {
       nodes_.read_done(first_ + port, service);
     }
     void write_done(std::uint32_t port, sim::Ticks done) override {

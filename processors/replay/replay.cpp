@@ -114,7 +114,7 @@ MachineResult replay_image(const WorkLog& log, const MachineConfig& config, cons
       options.sample == nullptr ? all_packets : all_packets.only(options.sample->chosen());
   const std::vector<std::uint32_t> rank = node_ranks(log, config);
   sim::Engine engine;
-  engine.reserve(std::size_t{config.all_nodes()} * config.contexts + 1);
+  engine.reserve_for(std::size_t{config.all_nodes()} * config.contexts);
   Host host(config.host, packets.size(), config.all_nodes(), options.meter);
   ReplayInput input = {log,
                        config,

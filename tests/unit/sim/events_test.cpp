@@ -79,6 +79,35 @@ RC_GTEST_PROP(EventQueue, AgreesWithASetWhileDistancesChange, (std::uint64_t see
   }
 }
 
+// A few components, as in a small machine, most of which have one event at a time.
+RC_GTEST_PROP(EventQueue, AgreesWithASetWhereComponentsAreFew, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const auto components = static_cast<std::uint32_t>(1 + random() % (EventTree::most + 1));
+  EventQueue queue;
+  queue.reserve_for(components);
+  RC_ASSERT(queue.has_tree() == (components <= EventTree::most));
+  std::set<std::pair<Ticks, std::uint64_t>> set;
+  Ticks now = 0;
+  std::uint32_t number = 0;
+  for (int step = 0; step < 3000; ++step) {
+    // At most five events together, some of them of one component, or of one that has no place of its own.
+    while (set.empty() || (set.size() < 5 && random() % 2 == 0)) {
+      const Event event =
+          Event::make(now + static_cast<Ticks>(random() % 50), static_cast<std::uint8_t>(random() % 4),
+                      static_cast<std::uint32_t>(random() % (components + 1)), number++);
+      random() % 2 == 0 ? queue.push_in_order(event) : queue.push(event);
+      set.emplace(event.time, event.order);
+    }
+    RC_ASSERT(queue.size() == set.size());
+    const Event popped = queue.pop();
+    RC_ASSERT(popped.time == set.begin()->first);
+    RC_ASSERT(popped.order == set.begin()->second);
+    now = popped.time;
+    set.erase(set.begin());
+    RC_ASSERT(queue.empty() == set.empty());
+  }
+}
+
 TEST(EventQueue, KeepsEventsOfTheLastTick) {
   constexpr Ticks last = std::numeric_limits<Ticks>::max();
   EventQueue queue;
