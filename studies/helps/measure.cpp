@@ -88,9 +88,9 @@ class Measurement {
   struct Replay {
     const processors::MachineConfig* machine;
     MeasuredChange* into;
-    double share = 0.0;          // how busy the resource is
-    std::pair<Part, bool> part;  // whether it is one of packets
-    std::size_t turn = 0;        // so many resources of its part come before it
+    double share = 0.0;            // how busy the resource is
+    std::pair<Part, bool> part{};  // whether it is one of packets
+    std::size_t turn = 0;          // so many resources of its part come before it
   };
 
   // What is known of a change without a replay.
@@ -157,9 +157,9 @@ class Measurement {
 
   // The steps, and the resources that have none at their best, in the order in which they are replayed: those
   // first that can save most, by the nodes' own work; of equals those that are busiest. Where only few can be
-  // replayed, those first that are busiest. With a budget each part of the machine has its turn: what is
-  // busiest need not be what helps, as where nodes of a pipeline are busy with waiting for a bus. Packets,
-  // which count as a part of the nodes, have turns of their own.
+  // replayed, those first that are busiest, and each part of the machine has its turn: what is busiest need
+  // not be what helps, as where nodes of a pipeline are busy with waiting for a bus. Packets, which count as
+  // a part of the nodes, have turns of their own.
   std::vector<Replay> in_order() {
     std::vector<Replay> wanted;
     for (Case& one : cases_) {
@@ -167,7 +167,7 @@ class Measurement {
       MeasuredChange& into = one.help.step ? *one.help.step : *one.help.best;
       if (into.outcome != Outcome::measured) {
         const double share =
-            limited_ ? busy_share(one.help, machine_, result_, counts_) : share_of(one.help.part, counts_);
+            few_ ? busy_share(one.help, machine_, result_, counts_) : share_of(one.help.part, counts_);
         wanted.push_back(
             {&change->machine, &into, share, {one.help.part, one.help.name.starts_with("packets.")}});
       }
@@ -176,7 +176,7 @@ class Measurement {
       return few_ ? std::pair(a.share, a.into->most_saved) > std::pair(b.share, b.into->most_saved)
                   : std::pair(a.into->most_saved, a.share) > std::pair(b.into->most_saved, b.share);
     });
-    if (limited_) {
+    if (few_) {
       std::map<std::pair<Part, bool>, std::size_t> turns;
       for (Replay& one : wanted) {
         one.turn = turns[one.part]++;
