@@ -50,6 +50,7 @@ class Measurement {
     what_.end = result.end;
     const Work one = replay_work(result_, stripped_for(shared_, machine_));
     few_ = limited_ && budget_ / few_replays < one;
+    in_turns_ = limited_ && (few_ || stripped_for(shared_, machine_) == nullptr);
     what_.measured = !limited_ || budget_ >= one;
     for (Resource& resource : resources_of(changer, machine, facts_of(result))) {
       Case& made = cases_.emplace_back();
@@ -157,9 +158,9 @@ class Measurement {
 
   // The steps, and the resources that have none at their best, in the order in which they are replayed: those
   // first that can save most, by the nodes' own work; of equals those that are busiest. Where only few can be
-  // replayed, those first that are busiest, and each part of the machine has its turn: what is busiest need
-  // not be what helps, as where nodes of a pipeline are busy with waiting for a bus. Packets, which count as
-  // a part of the nodes, have turns of their own.
+  // replayed, as of all machines without a stripped log, those first that are busiest, and each part of the
+  // machine has its turn: what is busiest need not be what helps, as where nodes of a pipeline are busy with
+  // waiting for a bus. Packets, which count as a part of the nodes, have turns of their own.
   std::vector<Replay> in_order() {
     std::vector<Replay> wanted;
     for (Case& one : cases_) {
@@ -167,16 +168,16 @@ class Measurement {
       MeasuredChange& into = one.help.step ? *one.help.step : *one.help.best;
       if (into.outcome != Outcome::measured) {
         const double share =
-            few_ ? busy_share(one.help, machine_, result_, counts_) : share_of(one.help.part, counts_);
+            in_turns_ ? busy_share(one.help, machine_, result_, counts_) : share_of(one.help.part, counts_);
         wanted.push_back(
             {&change->machine, &into, share, {one.help.part, one.help.name.starts_with("packets.")}});
       }
     }
     std::stable_sort(wanted.begin(), wanted.end(), [&](const Replay& a, const Replay& b) {
-      return few_ ? std::pair(a.share, a.into->most_saved) > std::pair(b.share, b.into->most_saved)
-                  : std::pair(a.into->most_saved, a.share) > std::pair(b.into->most_saved, b.share);
+      return in_turns_ ? std::pair(a.share, a.into->most_saved) > std::pair(b.share, b.into->most_saved)
+                       : std::pair(a.into->most_saved, a.share) > std::pair(b.into->most_saved, b.share);
     });
-    if (few_) {
+    if (in_turns_) {
       std::map<std::pair<Part, bool>, std::size_t> turns;
       for (Replay& one : wanted) {
         one.turn = turns[one.part]++;
@@ -309,8 +310,9 @@ class Measurement {
   const Counts& counts_;
   const SharedLog& shared_;
   bool limited_;
-  bool few_ = false;  // the budget has room for few replays
-  Work budget_;       // what is left of it
+  bool few_ = false;       // the budget has room for few replays
+  bool in_turns_ = false;  // as in_order() says
+  Work budget_;            // what is left of it
   std::vector<Case> cases_;
   WhatHelps what_;
 };
