@@ -1,8 +1,9 @@
 // What `marti run --within` costs and how far off it is, beside an exact run, from the configuration to the
 // figures: on scenes and machines on which its errors were not measured. What would help is not measured, and
 // both replay the log as it was recorded.
-//   bench_within [SIZE [TOLERANCE [MACHINES [SEED]]]]     default: 1024 0.05 16 1
+//   bench_within [SIZE [TOLERANCE [MACHINES [SEED [SCENE]...]]]]     default: 1024 0.05 16 1, six scenes
 // SIZE: of the square image; MACHINES: random ones for each scene, beside two that are always the same.
+// SCENE: as for scene.source, a file, too.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -106,6 +107,7 @@ void compare(const studies::FrameConfig& frame, const processors::MachineConfig&
               100.0 * truth.value[Figure::use], exact, within / exact);
   if (!answer.estimate) {
     std::printf("exact: %s\n", answer.reason.c_str());
+    std::fflush(stdout);
     return;
   }
   const studies::Estimate& found = answer.estimate->sampled.machine;
@@ -132,7 +134,11 @@ int main(int argc, char** argv) {
   Score score;
   Costs all;
   std::uint64_t seed = 0;
-  for (const char* scene : {"teapot:12", "gears:4", "tree:8", "mount:6", "rings:5", "balls:4"}) {
+  std::vector<const char*> scenes(argv + std::min(argc, 5), argv + argc);
+  if (scenes.empty()) {
+    scenes = {"teapot:12", "gears:4", "tree:8", "mount:6", "rings:5", "balls:4"};
+  }
+  for (const char* scene : scenes) {
     studies::FrameConfig frame;
     frame.scene = scene;
     frame.structure = "octree";

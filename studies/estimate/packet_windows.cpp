@@ -12,9 +12,6 @@ namespace marti::studies {
 
 namespace {
 
-// Pixels between two of the lattice: one pixel of 64 is traced, and a packet of the usual 8 x 8 has one.
-constexpr std::uint32_t lattice_step = 8;
-
 std::uint64_t strata_of(std::uint64_t windows, std::uint64_t wanted) {
   while (wanted > 1 && wanted > windows / 2) {
     wanted /= 2;
@@ -83,11 +80,11 @@ void PacketWindows::add_to(processors::PixelSet& pixels) const {
 }
 
 PixelLattice::Axis::Axis(std::uint32_t size) {
-  for (std::uint32_t place = std::min(lattice_step / 2, size - 1); place < size; place += lattice_step) {
+  for (std::uint32_t place = std::min(step / 2, size - 1); place < size; place += step) {
     places.push_back(place);
   }
   for (std::uint32_t place = 0; place < size; ++place) {
-    next_to.push_back(std::min(place / lattice_step, static_cast<std::uint32_t>(places.size()) - 1));
+    next_to.push_back(std::min(place / step, static_cast<std::uint32_t>(places.size()) - 1));
   }
 }
 
@@ -110,32 +107,29 @@ void PixelLattice::add_to(processors::PixelSet& pixels) const {
   }
 }
 
-std::vector<sim::Ticks> PixelLattice::expected_times(std::span<const sim::Ticks> times,
-                                                     const processors::PacketList& packets) const {
-  sim::ensure(times.size() == size(), "times of another lattice");
-  std::vector<sim::Ticks> expected(packets.size());
+std::vector<double> PixelLattice::expected_of_packets(std::span<const double> values,
+                                                      const processors::PacketList& packets) const {
+  sim::ensure(values.size() == size(), "values of another lattice");
+  std::vector<double> expected(packets.size());
   for (std::uint64_t packet = 0; packet < packets.size(); ++packet) {
     for_each_pixel(packets[packet], [&](std::uint32_t x, std::uint32_t y) {
-      const sim::Ticks time = times[columns_.places.size() * rows_.next_to[y] + columns_.next_to[x]];
-      expected[packet] = sim::add_ticks(expected[packet], time);
+      expected[packet] += values[columns_.places.size() * rows_.next_to[y] + columns_.next_to[x]];
     });
   }
   return expected;
 }
 
-double PixelLattice::half_width(std::span<const sim::Ticks> times) const {
-  sim::ensure(times.size() == size(), "times of another lattice");
+double PixelLattice::half_width(std::span<const double> values) const {
+  sim::ensure(values.size() == size(), "values of another lattice");
   const std::size_t columns = columns_.places.size();
-  double sum = 0.0;
   double squares = 0.0;
   double pairs = 0.0;
   const auto compare = [&](std::size_t a, std::size_t b) {
-    const auto difference = static_cast<double>(times[a] - times[b]);
+    const double difference = values[a] - values[b];
     squares += difference * difference;
     pairs += 1.0;
   };
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    sum += static_cast<double>(times[i]);
+  for (std::size_t i = 0; i < values.size(); ++i) {
     if (i % columns != 0) {
       compare(i, i - 1);
     }
@@ -143,14 +137,14 @@ double PixelLattice::half_width(std::span<const sim::Ticks> times) const {
       compare(i, i - columns);
     }
   }
-  if (pairs == 0.0 || sum == 0.0) {
+  if (pairs == 0.0) {
     return std::numeric_limits<double>::infinity();
   }
-  const auto n = static_cast<double>(times.size());
-  const double in_sample =
-      n / (static_cast<double>(columns_.next_to.size()) * static_cast<double>(rows_.next_to.size()));
+  const auto n = static_cast<double>(values.size());
+  const double pixels =
+      static_cast<double>(columns_.next_to.size()) * static_cast<double>(rows_.next_to.size());
   constexpr double normal_95 = 1.959963984540054;
-  return normal_95 * std::sqrt(n * (1.0 - in_sample) * 0.5 * squares / pairs) / sum;
+  return normal_95 * pixels * std::sqrt((1.0 - n / pixels) * 0.5 * squares / pairs / n);
 }
 
 PixelLattice::ImageWork PixelLattice::expected_of_image(const processors::WorkLog& log) const {

@@ -15,7 +15,6 @@
 #include "processors/program/pixel_set.h"
 #include "processors/program/work_log.h"
 #include "processors/walk/observer.h"
-#include "sim/time.h"
 
 namespace marti::studies {
 
@@ -76,20 +75,22 @@ class PacketWindows {
 /// Pixels at equal distances in both directions.
 class PixelLattice {
  public:
+  /// From a pixel to the next: one pixel of 64 is traced, and a packet of the usual 8 x 8 has one.
+  static constexpr std::uint32_t step = 8;
+
   PixelLattice(std::uint32_t width, std::uint32_t height);
 
   void add_to(processors::PixelSet& pixels) const;
   /// Row by row.
   [[nodiscard]] std::vector<processors::PixelPlace> pixels() const;
-  /// The time that each packet would take if each of its pixels took as long as the lattice's pixel next to
-  /// it. `times` are those of pixels(), in their order.
-  [[nodiscard]] std::vector<sim::Ticks> expected_times(std::span<const sim::Ticks> times,
-                                                       const processors::PacketList& packets) const;
-  /// Half of the 95 % interval of the mean of all the image's pixels, relative to that of `times`, which are
-  /// those of pixels(). The variance of a systematic sample is estimated by the differences of neighbours
-  /// (K. M. Wolter, "Introduction to variance estimation", 2nd ed. 2007, section 8.2). Infinite for a single
-  /// pixel, and where nothing takes time.
-  [[nodiscard]] double half_width(std::span<const sim::Ticks> times) const;
+  /// What each packet would have if each of its pixels had what the lattice's pixel next to it has. `values`
+  /// are those of pixels(), in their order.
+  [[nodiscard]] std::vector<double> expected_of_packets(std::span<const double> values,
+                                                        const processors::PacketList& packets) const;
+  /// Half of the 95 % interval of the sum over all the image's pixels, by `values`, which are those of
+  /// pixels(). The variance of a systematic sample is estimated by the differences of neighbours (K. M.
+  /// Wolter, "Introduction to variance estimation", 2nd ed. 2007, section 8.2). Infinite for a single pixel.
+  [[nodiscard]] double half_width(std::span<const double> values) const;
   /// Rays and words of the whole image, by those of the lattice's pixels.
   struct ImageWork {
     double rays = 0.0;

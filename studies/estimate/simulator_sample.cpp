@@ -4,12 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
-#include "processors/passes/hit_times.h"
+#include "processors/passes/pixel_figures.h"
 #include "processors/replay/replay.h"
+#include "sim/error.h"
 #include "sim/key_error.h"
-#include "studies/estimate/error_metrics.h"
 #include "studies/estimate/packet_schedule.h"
 
 namespace marti::studies {
@@ -17,66 +16,42 @@ namespace marti::studies {
 namespace {
 
 constexpr std::uint64_t shortest_window = 16;
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double not_bounded = std::numeric_limits<double>::infinity();
 
-// The sum over all units that a sum over each stratum's chosen ones stands for.
-double expand(std::span<const Stratum> strata, std::span<const double> values) {
-  double sum = 0.0;
-  std::size_t at = 0;
-  for (const Stratum& stratum : strata) {
-    const double weight = static_cast<double>(stratum.size()) / static_cast<double>(stratum.chosen.size());
-    for (std::size_t i = 0; i < stratum.chosen.size(); ++i) {
-      sum += weight * values[at++];
-    }
-  }
-  return sum;
-}
-
-// The variance of the estimated total of values - ratio * known.
-double variance_of(std::span<const Stratum> strata, std::span<const double> known,
-                   std::span<const double> measured, double ratio) {
-  double variance = 0.0;
-  std::size_t at = 0;
-  for (const Stratum& stratum : strata) {
-    const auto n = static_cast<double>(stratum.chosen.size());
-    const auto size = static_cast<double>(stratum.size());
-    double sum = 0.0;
-    double squares = 0.0;
-    for (std::size_t i = 0; i < stratum.chosen.size(); ++i, ++at) {
-      const double residue = measured[at] - ratio * known[at];
-      sum += residue;
-      squares += residue * residue;
-    }
-    if (stratum.chosen.size() > 1) {
-      const double spread = std::max(0.0, (squares - sum * sum / n) / (n - 1.0));
-      variance += size * size * (1.0 - n / size) * spread / n;
-    }
-  }
-  return variance;
+// The misses of a pixel whose neighbour the node has just walked. Those that it has after itself do not fit
+// the cache together; and one pixel's step brings in a fraction of the lines that the lattice's step brings
+// in.
+double expected_misses(const processors::PixelFigures& pixel) {
+  const auto brought_in = static_cast<double>(std::max<std::int64_t>(0, pixel.misses - pixel.misses_again));
+  return static_cast<double>(pixel.misses_again) + brought_in / PixelLattice::step;
 }
 
 // What the windows drawn took.
 struct WindowTotals {
-  std::vector<double> hit_times;  // what they would have taken had every reference hit
+  std::vector<KnownWork>
+      known;  // what they would have taken had every reference hit, and the misses expected
   std::vector<double> times;
   std::vector<double> misses;
   std::vector<double> references;
 };
 
 WindowTotals totals_of_windows(const PacketWindows& windows, const processors::MachineConfig& machine,
-                               std::span<const processors::PacketFigures> packets) {
+                               std::span<const processors::PacketFigures> packets, const LatticeWork& work) {
   const auto hit = static_cast<double>(machine.clock.cycles(machine.cache.hit_cycles));
   WindowTotals totals;
   std::size_t at = 0;
   windows.for_each_drawn([&](std::uint64_t window) {
     processors::PacketFigures sum;
+    KnownWork known;
     for (std::uint64_t packet = windows.first(window); packet < windows.end(window); ++packet, ++at) {
       sum.time = sim::add_ticks(sum.time, packets[at].time);
       sum.busy = sim::add_ticks(sum.busy, packets[at].busy);
       sum.misses += packets[at].misses;
       sum.references += packets[at].references;
+      known.misses += work.of_packets()[packet].misses;
     }
-    totals.hit_times.push_back(static_cast<double>(sum.busy) + hit * static_cast<double>(sum.misses));
+    known.hit_time = static_cast<double>(sum.busy) + hit * static_cast<double>(sum.misses);
+    totals.known.push_back(known);
     totals.times.push_back(static_cast<double>(sum.time));
     totals.misses.push_back(static_cast<double>(sum.misses));
     totals.references.push_back(static_cast<double>(sum.references));
@@ -84,98 +59,41 @@ WindowTotals totals_of_windows(const PacketWindows& windows, const processors::M
   return totals;
 }
 
-// What the packets would take if every reference hit, by the pixels of the lattice.
-struct KnownWork {
-  std::vector<sim::Ticks> of_packets;
-  double all = 0.0;
-  double half_width = 0.0;  // of `all`, relative
-};
-
-KnownWork known_work(const processors::WorkLog& log, const processors::MachineConfig& machine,
-                     const PacketWindows& windows, const PixelLattice& lattice) {
-  const std::vector<sim::Ticks> times = processors::hit_times(log, machine, lattice.pixels());
-  KnownWork known{lattice.expected_times(times, windows.packets()), 0.0, lattice.half_width(times)};
-  for (const sim::Ticks time : known.of_packets) {
-    known.all += static_cast<double>(time);
+// The times of all packets by what is known of each, with the sum `total`.
+std::vector<sim::Ticks> packet_times(const LatticeWork& work, const RegressionEstimate& time) {
+  std::vector<double> times;
+  double sum = 0.0;
+  for (const KnownWork& packet : work.of_packets()) {
+    times.push_back(
+        std::max(0.0, time.counts_for.hit_time * packet.hit_time + time.counts_for.misses * packet.misses));
+    sum += times.back();
   }
-  return known;
+  std::vector<sim::Ticks> ticks;
+  for (const double one : times) {
+    ticks.push_back(std::llround(sum > 0.0 ? one * time.total / sum : 0.0));
+  }
+  return ticks;
 }
 
-struct SampledMachine {
-  Estimate estimate;
-  std::vector<double> window_times;
-  bool full = false;  // the frame ends when the interconnect has carried all transfers
-};
-
-SampledMachine sample_machine(const processors::WorkLog& log, const processors::MachineConfig& machine,
-                              const PacketWindows& windows, const KnownWork& known) {
-  const std::vector<std::uint64_t> chosen = windows.chosen();
-  const processors::PacketSample sample(chosen, windows.packets().size(),
-                                        processors::PacketSample::all_before);
-  const processors::MachineResult result = processors::replay(log, machine, {.sample = &sample});
-  SampledMachine sampled;
-  Estimate& estimate = sampled.estimate;
-  WindowTotals totals = totals_of_windows(windows, machine, result.packet_figures);
-  estimate.value = figures_of(machine, result);
-  estimate.events = result.events;
-  const auto total_of = [&](const std::vector<double>& measured) {
-    return ratio_estimate(windows.strata(), totals.hit_times, measured, known.all);
-  };
-  estimate.references = total_of(totals.references).total;
-  if (windows.has_all()) {
-    sampled.window_times = std::move(totals.times);
-    return sampled;
+// Makes the windows' part of a total of which `other` is known what is not known of the frame time.
+void describe_end(const RegressionEstimate& part, double other, const LatticeWork& work,
+                  SampledMachine& sampled) {
+  const double all = part.total + other;
+  if (part.total <= 0.0) {
+    sampled.estimate.half_width[Figure::end] = not_bounded;
+    return;
   }
-  const RatioEstimate time = total_of(totals.times);
-  const RatioEstimate missed = total_of(totals.misses);
-
-  const double stretch = known.all > 0.0 ? time.total / known.all : 0.0;
-  std::vector<sim::Ticks> packet_times(known.of_packets.size());
-  for (std::size_t packet = 0; packet < packet_times.size(); ++packet) {
-    packet_times[packet] = std::llround(stretch * static_cast<double>(known.of_packets[packet]));
+  sampled.residues = part.residues;
+  for (double& residue : sampled.residues) {
+    residue /= all;
   }
-  auto end = static_cast<double>(schedule_packets(machine.host, machine.all_nodes(), packet_times));
-  // The frame cannot end before the links have carried all of its transfers: misses and pixels.
-  const auto part =
-      static_cast<double>(result.references().all_misses()) + static_cast<double>(result.pixels);
-  const double whole = missed.total + static_cast<double>(log.width) * static_cast<double>(log.height);
-  const double busy = estimate.value[Figure::use] * static_cast<double>(result.end) * whole / part;
-  sampled.full = busy > end;
-  estimate.half_width[Figure::end] = std::hypot(
-      known.half_width, sampled.full ? std::max(time.half_width, missed.half_width) : time.half_width);
-  end = std::max(end, busy);
-  estimate.value[Figure::use] = end > 0.0 ? busy / end : 0.0;
-  estimate.value[Figure::end] = end;
-  estimate.value[Figure::misses] = missed.total;
-  estimate.half_width[Figure::misses] = std::hypot(known.half_width, missed.half_width);
-  if (busy > 0.0) {
-    estimate.half_width[Figure::use] =
-        estimate.value[Figure::use] * std::max(time.half_width, missed.half_width);
-  }
-  sampled.window_times = std::move(totals.times);
-  return sampled;
+  sampled.degrees = part.degrees;
+  sampled.counts_for = {part.counts_for.hit_time / all, part.counts_for.misses / all};
+  sampled.lattice = work.half_width(sampled.counts_for);
+  sampled.estimate.half_width[Figure::end] = std::hypot(part.half_width * part.total / all, sampled.lattice);
 }
 
 }  // namespace
-
-RatioEstimate ratio_estimate(std::span<const Stratum> strata, std::span<const double> known,
-                             std::span<const double> measured, double all_known) {
-  const double sum_known = expand(strata, known);
-  const double sum_measured = expand(strata, measured);
-  if (all_chosen(strata)) {
-    return {sum_measured, 0.0};
-  }
-  if (sum_known <= 0.0) {
-    return {sum_measured, infinite};
-  }
-  const double ratio = sum_measured / sum_known;
-  RatioEstimate estimate{ratio * all_known, infinite};
-  if (measured.size() > strata.size() && sum_measured > 0.0) {
-    estimate.half_width = student_95(measured.size() - strata.size()) *
-                          std::sqrt(variance_of(strata, known, measured, ratio)) / sum_measured;
-  }
-  return estimate;
-}
 
 std::uint64_t window_length(std::uint32_t nodes) { return std::max<std::uint64_t>(nodes, shortest_window); }
 
@@ -189,30 +107,117 @@ void check_sample(const processors::MachineConfig& machine) {
   }
 }
 
-SampledRun estimate_by_sample(const processors::WorkLog& log, const processors::MachineConfig& machine,
-                              const PacketWindows& windows, const PixelLattice& lattice) {
-  check_sample(machine);
-  const KnownWork known = known_work(log, machine, windows, lattice);
-  SampledMachine sampled = sample_machine(log, machine, windows, known);
-  SampledRun run{sampled.estimate, sampled.estimate, windows.has_all() ? 0.0 : known.half_width};
-  if (machine.all_nodes() > 1) {
-    SampledMachine one = sample_machine(log, processors::one_node_of(machine), windows, known);
-    run.one_node = one.estimate;
-    add_speed_up(run.machine, run.one_node);
-    // The same packets were timed on both, so that most of what is chance in one is in the other, too. That
-    // holds for the packets' times only, not for a frame time that follows from the misses.
-    if (!sampled.full && !one.full) {
-      const double all_times = expand(windows.strata(), sampled.window_times);
-      run.machine.half_width[Figure::speed_up] =
-          ratio_estimate(windows.strata(), sampled.window_times, one.window_times, all_times).half_width;
-    }
+LatticeWork::LatticeWork(const processors::WorkLog& log, const processors::MachineConfig& machine,
+                         const PixelLattice& lattice, const processors::PacketList& packets)
+    : lattice_(lattice) {
+  std::vector<double> times;
+  std::vector<double> misses;
+  for (const processors::PixelFigures& pixel : processors::pixel_figures(log, machine, lattice.pixels())) {
+    of_pixels_.push_back({static_cast<double>(pixel.hit_time), expected_misses(pixel)});
+    times.push_back(of_pixels_.back().hit_time);
+    misses.push_back(of_pixels_.back().misses);
+  }
+  times = lattice.expected_of_packets(times, packets);
+  misses = lattice.expected_of_packets(misses, packets);
+  for (std::size_t packet = 0; packet < times.size(); ++packet) {
+    of_packets_.push_back({times[packet], misses[packet]});
+    all_.hit_time += times[packet];
+    all_.misses += misses[packet];
+  }
+}
+
+double LatticeWork::half_width(const KnownWork& counts_for) const {
+  std::vector<double> values;
+  values.reserve(of_pixels_.size());
+  for (const KnownWork& pixel : of_pixels_) {
+    values.push_back(counts_for.hit_time * pixel.hit_time + counts_for.misses * pixel.misses);
+  }
+  return lattice_.half_width(values);
+}
+
+SampledMachine sample_machine(const processors::WorkLog& log, const processors::MachineConfig& machine,
+                              const PacketWindows& windows, const LatticeWork& work) {
+  const std::vector<std::uint64_t> chosen = windows.chosen();
+  const processors::PacketSample sample(chosen, windows.packets().size(),
+                                        processors::PacketSample::all_before);
+  const processors::MachineResult result = processors::replay(log, machine, {.sample = &sample});
+  SampledMachine sampled;
+  Estimate& estimate = sampled.estimate;
+  const WindowTotals totals = totals_of_windows(windows, machine, result.packet_figures, work);
+  estimate.value = figures_of(machine, result);
+  estimate.events = result.events;
+  const auto total_of = [&](const std::vector<double>& measured) {
+    return regression_estimate(windows.strata(), totals.known, measured, work.all());
+  };
+  estimate.references = total_of(totals.references).total;
+  if (windows.has_all()) {
+    sampled.residues.assign(totals.times.size(), 0.0);
+    return sampled;
+  }
+  const RegressionEstimate time = total_of(totals.times);
+  const RegressionEstimate missed = total_of(totals.misses);
+  auto end =
+      static_cast<double>(schedule_packets(machine.host, machine.all_nodes(), packet_times(work, time)));
+  // The frame cannot end before the links have carried all of its transfers: misses and pixels.
+  const auto part =
+      static_cast<double>(result.references().all_misses()) + static_cast<double>(result.pixels);
+  const double pixels = static_cast<double>(log.width) * static_cast<double>(log.height);
+  const double busy =
+      estimate.value[Figure::use] * static_cast<double>(result.end) * (missed.total + pixels) / part;
+  const double of_misses =
+      std::hypot(missed.half_width,
+                 missed.total > 0.0 ? work.half_width(missed.counts_for) / missed.total : not_bounded);
+  if (busy > end) {
+    describe_end(missed, pixels, work, sampled);
+    end = busy;
   } else {
-    add_speed_up(run.machine, run.one_node);
-    run.machine.half_width[Figure::speed_up] = 0.0;
+    describe_end(time, 0.0, work, sampled);
+  }
+  estimate.value[Figure::use] = end > 0.0 ? busy / end : 0.0;
+  estimate.value[Figure::end] = end;
+  estimate.value[Figure::misses] = missed.total;
+  estimate.half_width[Figure::misses] = of_misses;
+  if (busy > 0.0) {
+    estimate.half_width[Figure::use] =
+        estimate.value[Figure::use] * std::max(estimate.half_width[Figure::end], of_misses);
+  }
+  return sampled;
+}
+
+SampledRun add_one_node(const SampledMachine& machine, const SampledMachine& one_node,
+                        const PacketWindows& windows, const LatticeWork& work) {
+  SampledRun run{machine.estimate, one_node.estimate, {}};
+  add_speed_up(run.machine, run.one_node);
+  run.lattice[Figure::end] = machine.lattice;
+  if (!windows.has_all()) {
+    sim::ensure(machine.residues.size() == one_node.residues.size(), "machines of different samples");
+    std::vector<double> residues = machine.residues;
+    for (std::size_t i = 0; i < residues.size(); ++i) {
+      residues[i] -= one_node.residues[i];
+    }
+    const std::uint64_t degrees = std::min(machine.degrees, one_node.degrees);
+    run.lattice[Figure::speed_up] =
+        work.half_width({machine.counts_for.hit_time - one_node.counts_for.hit_time,
+                         machine.counts_for.misses - one_node.counts_for.misses});
+    run.machine.half_width[Figure::speed_up] =
+        degrees == 0
+            ? not_bounded
+            : std::hypot(half_width_of(windows.strata(), residues, degrees), run.lattice[Figure::speed_up]);
   }
   run.one_node.value[Figure::speed_up] = 1.0;
   run.one_node.half_width[Figure::speed_up] = 0.0;
   return run;
+}
+
+SampledRun estimate_by_sample(const processors::WorkLog& log, const processors::MachineConfig& machine,
+                              const PacketWindows& windows, const PixelLattice& lattice) {
+  check_sample(machine);
+  const LatticeWork work(log, machine, lattice, windows.packets());
+  const SampledMachine sampled = sample_machine(log, machine, windows, work);
+  return machine.all_nodes() == 1
+             ? add_one_node(sampled, sampled, windows, work)
+             : add_one_node(sampled, sample_machine(log, processors::one_node_of(machine), windows, work),
+                            windows, work);
 }
 
 }  // namespace marti::studies

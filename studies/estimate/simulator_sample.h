@@ -2,55 +2,83 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <vector>
 
 #include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
 #include "studies/estimate/packet_windows.h"
+#include "studies/estimate/regression_estimate.h"
 #include "studies/estimate/simulator_figures.h"
 
 namespace marti::studies {
-
-/// A total over all units, estimated with the help of what is known of every unit.
-struct RatioEstimate {
-  double total = 0.0;
-  double half_width = 0.0;  ///< of the 95 % interval, relative to the total
-};
-
-/// The combined ratio estimator (W. G. Cochran, "Sampling techniques", 3rd ed. 1977, section 6.11): `known`
-/// and `measured` of the strata's chosen units, in order, `all_known` the sum of what is known of all units.
-/// Its variance is 6.51 there; the interval takes Student's distribution, with chosen units less strata as
-/// its degrees of freedom. If all units are chosen, the result is the total, with half-width 0; without a
-/// degree of freedom, or where nothing is known or measured, the half-width is infinite.
-[[nodiscard]] RatioEstimate ratio_estimate(std::span<const Stratum> strata, std::span<const double> known,
-                                           std::span<const double> measured, double all_known);
 
 /// Packets of a window, for a machine of so many nodes: one for each node, and enough for a window's work to
 /// be more than chance.
 [[nodiscard]] std::uint64_t window_length(std::uint32_t nodes);
 
+/// Throws UserError with the reason when a machine cannot be estimated from a sample.
+void check_sample(const processors::MachineConfig& machine);
+
+/// What the pixels of the lattice say of a frame on machines whose nodes and caches are those of one, however
+/// many nodes they have.
+class LatticeWork {
+ public:
+  /// `log` must hold the pixels of the lattice; its others are not looked at.
+  LatticeWork(const processors::WorkLog& log, const processors::MachineConfig& machine,
+              const PixelLattice& lattice, const processors::PacketList& packets);
+
+  [[nodiscard]] const std::vector<KnownWork>& of_packets() const { return of_packets_; }
+  [[nodiscard]] const KnownWork& all() const { return all_; }
+  /// Half of the 95 % interval of all(), with what its time and its misses count for.
+  [[nodiscard]] double half_width(const KnownWork& counts_for) const;
+
+ private:
+  const PixelLattice& lattice_;
+  std::vector<KnownWork> of_pixels_;
+  std::vector<KnownWork> of_packets_;
+  KnownWork all_;
+};
+
+/// One machine's figures by the windows drawn.
+struct SampledMachine {
+  Estimate estimate;  ///< without the speed-up
+  std::vector<double>
+      residues;               ///< what of each window's share in the frame time is not known, relative to it
+  KnownWork counts_for;       ///< what a tick of all hit times, and an expected miss, are of the frame time
+  std::uint64_t degrees = 0;  ///< of freedom
+  double lattice = 0.0;       ///< what the lattice has of the half-width of the frame time
+};
+
+/// A sample in two phases (Cochran 1977, sections 12.6 and 12.8). The lattice's pixels, which are many, say
+/// what the frame would take if every reference hit, and how many misses to expect. The packets of the
+/// windows drawn are replayed, and say how long they take, and how many misses they have, for such a time and
+/// so many expected misses. `log` must hold the pixels of the windows and of the lattice; its other pixels
+/// are not looked at, or have no words. Before a node begins a packet it takes its caches through what the
+/// log has of the packets left out since its last one (processors/walk/packet_sample.h). The frame time is
+/// that of a host that hands out packets of the estimated times, or the time that the interconnect needs for
+/// all transfers, if that is longer. If all windows are drawn and the log is whole, the result is exact.
+/// check_sample() must not refuse the machine.
+[[nodiscard]] SampledMachine sample_machine(const processors::WorkLog& log,
+                                            const processors::MachineConfig& machine,
+                                            const PacketWindows& windows, const LatticeWork& work);
+
 /// A machine, and the same machine with one node.
 struct SampledRun {
   Estimate machine;
   Estimate one_node;
-  double lattice =
-      0.0;  ///< what the lattice has of the half-width of the time: more windows do not lessen it
+  /// What the lattice has of the machine's half-widths of frame time and speed-up: more windows do not lessen
+  /// it.
+  MachineFigures lattice;
 };
 
-/// A sample in two phases (Cochran 1977, section 12.8). The lattice's pixels, which are many, say what the
-/// frame would take if every reference hit. The packets of the windows drawn are replayed on the machine and
-/// on one node, and say how much longer they take, and how many misses they have, for such a time. `log` must
-/// hold the pixels of the windows and of the lattice; its other pixels are not looked at, or have no words.
-/// Before a node begins a packet it takes its caches through what the log has of the packets left out since
-/// its last one (processors/walk/packet_sample.h). The frame time is that of a host that hands out packets of
-/// the estimated times, or the time that the interconnect needs for all transfers, if that is longer. If all
-/// windows are drawn and the log is whole, the result is exact. Throws UserError for a machine that
-/// check_sample() refuses.
+/// The speed-up of a machine over the same machine with one node, both by the same windows. Most of what is
+/// chance in the time of one is in that of the other, too.
+[[nodiscard]] SampledRun add_one_node(const SampledMachine& machine, const SampledMachine& one_node,
+                                      const PacketWindows& windows, const LatticeWork& work);
+
+/// All of the above. Throws UserError for a machine that check_sample() refuses.
 [[nodiscard]] SampledRun estimate_by_sample(const processors::WorkLog& log,
                                             const processors::MachineConfig& machine,
                                             const PacketWindows& windows, const PixelLattice& lattice);
-
-/// Throws UserError with the reason when a machine cannot be estimated from a sample.
-void check_sample(const processors::MachineConfig& machine);
 
 }  // namespace marti::studies

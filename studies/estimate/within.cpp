@@ -11,6 +11,7 @@
 #include "sim/error.h"
 #include "sim/key_error.h"
 #include "sim/units.h"
+#include "studies/estimate/error_metrics.h"
 #include "studies/estimate/measured_errors.h"
 #include "studies/estimate/within_output.h"
 #include "studies/keys/machine_keys.h"
@@ -21,18 +22,21 @@ namespace marti::studies {
 
 namespace {
 
-// The first sample: with fewer strata its interval says little.
-constexpr std::uint64_t first_strata = 8;
+// A sample of as many windows as the measured errors are known of is taken at once where it traces so little
+// that it costs next to nothing.
+constexpr double cheap_share = 0.05;
+// Else a first, small sample says what the next must be.
+constexpr std::uint64_t first_strata = 4;
 // The largest share of the pixels that the first sample may trace. If an exact run turns out to be cheaper,
 // what was traced is not lost, but its packets were replayed in vain.
-constexpr double most_at_first = 0.10;
+constexpr double most_at_first = 0.07;
 // The largest share of the pixels that a later sample may trace. Each sample replays the packets of those
 // before it again, so that what it traces costs up to twice as much as in an exact run.
 constexpr double most_share = 0.5;
-// A sample that traces less than this share may turn out too small without costing much.
-constexpr double cheap_share = 0.10;
 // Half-widths of small samples say only roughly what a larger one must be.
 constexpr double margin = 1.3;
+// Degrees of freedom from which on more of them make an interval hardly narrower.
+constexpr std::uint64_t many_degrees = 25;
 
 // The wider of the half-widths that are asked for: those of frame time and speed-up. One node has a speed-up
 // of exactly 1.
@@ -57,10 +61,37 @@ std::string exact_output(const RunResult& result, const std::string& reason, boo
               : summary_of(result) + fmt::format("\nmethod        exact replay, no error: {}\n", reason);
 }
 
-// The share of all windows that will do where a share `drawn` has the half-width `own`: its square goes with
-// 1 / drawn - 1.
-double share_for(double drawn, double own, double wanted) {
-  return 1.0 / (1.0 + wanted / own * (wanted / own) * (1.0 / drawn - 1.0));
+// The share of all windows whose half-width will be `wanted`, where the windows drawn have `half_width` with
+// so many degrees of freedom, and the lattice its part of both. The square of the windows' part goes with 1 /
+// share - 1.
+double share_for(const PacketWindows& windows, std::uint64_t degrees, double lattice, double half_width,
+                 double wanted) {
+  if (degrees == 0) {
+    return 1.0;
+  }
+  const double drawn =
+      2.0 * static_cast<double>(windows.strata().size()) / static_cast<double>(windows.windows());
+  const double student = student_95(std::max(degrees, many_degrees)) / student_95(degrees);
+  const double own = margin * student * std::sqrt(std::max(0.0, half_width * half_width - lattice * lattice));
+  const double of_windows = std::sqrt(wanted * wanted - lattice * lattice);
+  return 1.0 / (1.0 + of_windows / own * (of_windows / own) * (1.0 / drawn - 1.0));
+}
+
+// The answer of a sample whose frame time is known well enough.
+EstimatedRun with_one_node(const SampledMachine& sampled, const processors::WorkLog& log,
+                           const processors::MachineConfig& machine, const PacketWindows& windows,
+                           const LatticeWork& work) {
+  EstimatedRun run;
+  run.sampled =
+      machine.all_nodes() == 1
+          ? add_one_node(sampled, sampled, windows, work)
+          : add_one_node(sampled, sample_machine(log, processors::one_node_of(machine), windows, work),
+                         windows, work);
+  run.windows = windows.strata().size() * 2;
+  run.of_windows = windows.windows();
+  run.packets = windows.chosen().size();
+  run.of_packets = windows.packets().size();
+  return run;
 }
 
 }  // namespace
@@ -120,57 +151,65 @@ WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& 
   if (width_of(least->allowance, nodes) >= tolerance) {
     return {std::nullopt, not_known(width_of(least->allowance, nodes))};
   }
+  std::optional<LatticeWork> work;  // of the lattice, which is traced with the first sample
   const std::uint64_t length = window_length(nodes);
+  const std::uint64_t least_strata = *std::min_element(least_windows.begin(), least_windows.end()) / 2;
+  const bool cheap = frame.share_with({packets, length, least_strata, seed}) <= cheap_share;
+  const std::uint64_t begun = cheap ? least_strata : first_strata;
   double most = most_at_first;
-  for (std::uint64_t strata = first_strata;;) {
+  for (std::uint64_t strata = begun;;) {
     const PacketWindows windows(packets, length, strata, seed);
     if (const double share = frame.share_with(windows); windows.has_all() || share > most) {
-      return {std::nullopt, fmt::format("{} would trace {:.0f} % of the pixels and replay its packets {}",
-                                        strata == first_strata ? "the smallest sample" : "a larger sample",
-                                        100.0 * (windows.has_all() ? 1.0 : share),
-                                        strata == first_strata ? "first" : "again")};
+      return {std::nullopt,
+              fmt::format("{} would trace {:.0f} % of the pixels and replay its packets {}",
+                          strata == begun ? "the smallest sample" : "a larger sample",
+                          100.0 * (windows.has_all() ? 1.0 : share), strata == begun ? "first" : "again")};
     }
     most = most_share;
-    EstimatedRun run;
-    run.sampled = estimate_by_sample(frame.with(windows), machine, windows, frame.lattice());
-    run.windows = windows.strata().size() * 2;
-    run.of_windows = windows.windows();
-    run.packets = windows.chosen().size();
-    run.of_packets = packets.size();
-    const std::size_t load = load_class_of(run.sampled.machine.value[Figure::use]);
-    const MeasuredError& measured = errors[load];
-    run.use_to = measured.use_to;
-    const MachineFigures own = run.sampled.machine.half_width;
-    const std::size_t load_of_one = load_class_of(run.sampled.one_node.value[Figure::use]);
-    widen(run.sampled.machine, measured.allowance, nodes);
-    widen(run.sampled.one_node, errors[load_of_one].allowance, 1);
-    if (run.windows >= least_windows[load] && width_of(run.sampled.machine.half_width, nodes) <= tolerance) {
-      return {run, ""};
+    const processors::WorkLog& log = frame.with(windows);
+    if (!work) {
+      work.emplace(log, machine, frame.lattice(), packets);
     }
-    const double drawn = static_cast<double>(run.windows) / static_cast<double>(run.of_windows);
-    double wanted_share =
-        std::max(2.0 * drawn, static_cast<double>(least_windows[load]) / static_cast<double>(run.of_windows));
-    for (const Figure figure : {Figure::end, Figure::speed_up}) {
-      if (nodes == 1 && figure == Figure::speed_up) {
-        continue;
+    const SampledMachine sampled = sample_machine(log, machine, windows, *work);
+    const std::size_t load = load_class_of(sampled.estimate.value[Figure::use]);
+    const MachineFigures& allowance = errors[load].allowance;
+    const std::uint64_t drawn = windows.strata().size() * 2;
+    const auto of_windows = static_cast<double>(windows.windows());
+    double share = 2.0 * static_cast<double>(drawn) / of_windows;
+    share = std::max(share, static_cast<double>(least_windows[load]) / of_windows);
+    // Gives the reason when no sample is large enough.
+    const auto enlarge = [&](Figure figure, const Estimate& estimate, double lattice) {
+      const double wanted = tolerance - allowance[figure];
+      share = std::max(share, wanted > lattice ? share_for(windows, sampled.degrees, lattice,
+                                                           estimate.half_width[figure], wanted)
+                                               : 1.0);
+      return wanted > lattice ? "" : not_known(allowance[figure] + lattice);
+    };
+    std::string reason;
+    if (sampled.estimate.half_width[Figure::end] + allowance[Figure::end] > tolerance) {
+      reason = enlarge(Figure::end, sampled.estimate, sampled.lattice);
+    } else if (drawn >= least_windows[load]) {
+      // One node is timed only now: most samples that are too small are found out before.
+      EstimatedRun run = with_one_node(sampled, log, machine, windows, *work);
+      const Estimate own = run.sampled.machine;
+      widen(run.sampled.machine, allowance, nodes);
+      widen(run.sampled.one_node, errors[load_class_of(run.sampled.one_node.value[Figure::use])].allowance,
+            1);
+      if (nodes == 1 || run.sampled.machine.half_width[Figure::speed_up] <= tolerance) {
+        run.use_to = errors[load].use_to;
+        return {run, ""};
       }
-      // More windows do not lessen what is measured, nor what comes from the lattice.
-      const double left = tolerance - measured.allowance[figure];
-      const double fixed = figure == Figure::end ? run.sampled.lattice : 0.0;
-      if (left <= fixed) {
-        return {std::nullopt, not_known(measured.allowance[figure] + fixed)};
-      }
-      const double of_windows = std::sqrt(std::max(0.0, own[figure] * own[figure] - fixed * fixed));
-      wanted_share = std::max(wanted_share,
-                              share_for(drawn, margin * of_windows, std::sqrt(left * left - fixed * fixed)));
+      reason = enlarge(Figure::speed_up, own, run.sampled.lattice[Figure::speed_up]);
     }
-    if (wanted_share > most_share) {
-      return {std::nullopt, fmt::format("a sample that is large enough would trace {:.0f} % of the pixels",
-                                        100.0 * wanted_share)};
+    if (!reason.empty()) {
+      return {std::nullopt, reason};
+    }
+    if (share > most_share) {
+      return {std::nullopt,
+              fmt::format("a sample that is large enough would trace {:.0f} % of the pixels", 100.0 * share)};
     }
     // The number of strata doubles, so that all that was drawn is drawn again.
-    const double next = 4.0 * drawn <= cheap_share ? std::min(wanted_share, 4.0 * drawn) : wanted_share;
-    for (double share = drawn; share < 0.99 * next; share *= 2.0) {
+    for (double next = static_cast<double>(drawn) / of_windows; next < 0.99 * share; next *= 2.0) {
       strata *= 2;
     }
   }

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "plain_machine.h"
-#include "processors/passes/hit_times.h"
+#include "processors/passes/pixel_figures.h"
 #include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "sim/mix.h"
@@ -80,60 +80,6 @@ TEST(Strata, DrawEachUnitEquallyOften) {
   for (const int count : drawn) {
     EXPECT_NEAR(count, trials * 2 / 10, 100);  // some four standard deviations
   }
-}
-
-double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
-
-std::vector<double> chosen_of(const std::vector<Stratum>& strata, const std::vector<double>& values) {
-  std::vector<double> chosen;
-  for (const Stratum& stratum : strata) {
-    for (const std::uint64_t unit : stratum.chosen) {
-      chosen.push_back(values[unit]);
-    }
-  }
-  return chosen;
-}
-
-// The interval of the estimator itself, on units whose times nearly follow what is known of them.
-TEST(RatioEstimate, ItsIntervalCoversTheTotal) {
-  std::mt19937_64 random(11);
-  constexpr std::uint64_t units = 600;
-  std::vector<double> known(units);
-  std::vector<double> times(units);
-  std::normal_distribution<double> noise(0.0, 0.2);
-  for (std::uint64_t i = 0; i < units; ++i) {
-    known[i] = static_cast<double>(50 + i + random() % 400);
-    times[i] = 7.0 * known[i] * std::exp(noise(random));
-  }
-  for (const std::uint64_t count : {8, 30, 100}) {
-    int covered = 0;
-    constexpr int trials = 400;
-    for (int trial = 0; trial < trials; ++trial) {
-      const std::vector<Stratum> strata = draw_strata(units, count, static_cast<std::uint64_t>(trial));
-      const RatioEstimate estimate =
-          ratio_estimate(strata, chosen_of(strata, known), chosen_of(strata, times), sum(known));
-      covered += std::abs(estimate.total / sum(times) - 1.0) <= estimate.half_width ? 1 : 0;
-    }
-    EXPECT_GE(covered, trials * 9 / 10) << count;
-  }
-}
-
-TEST(RatioEstimate, AllUnitsAreTheTotal) {
-  const std::vector<double> known = {1.0, 2.0, 3.0, 4.0};
-  const std::vector<double> times = {9.0, 7.0, 1.0, 2.0};
-  const RatioEstimate estimate = ratio_estimate(draw_strata(4, 2, 1), known, times, 10.0);
-  EXPECT_EQ(estimate.total, 19.0);
-  EXPECT_EQ(estimate.half_width, 0.0);
-}
-
-TEST(RatioEstimate, WithoutAnythingKnownOrMeasuredNothingIsSure) {
-  const std::vector<Stratum> strata = draw_strata(10, 2, 1);
-  const std::vector<double> nothing(4, 0.0);
-  const std::vector<double> some(4, 1.0);
-  EXPECT_TRUE(std::isinf(ratio_estimate(strata, nothing, some, 10.0).half_width));
-  EXPECT_TRUE(std::isinf(ratio_estimate(strata, some, nothing, 10.0).half_width));
-  const std::vector<Stratum> one = draw_strata(1, 1, 1);
-  EXPECT_EQ(ratio_estimate(one, std::vector{2.0}, std::vector{3.0}, 2.0).total, 3.0);
 }
 
 // What a renderer would give of a log: the words of some pixels.
@@ -202,22 +148,22 @@ RC_GTEST_PROP(Lattice, ExpectsTheTimeOfThePixelNextToEach, (std::uint64_t seed))
   lattice.add_to(set);
   std::vector<bool> columns(log.width);
   std::vector<bool> rows(log.height);
-  std::vector<sim::Ticks> of_image(std::size_t{log.width} * log.height);
-  std::vector<sim::Ticks> times;
+  std::vector<double> of_image(std::size_t{log.width} * log.height);
+  std::vector<double> times;
   double words_of_lattice = 0.0;
   for (const processors::PixelPlace& pixel : lattice.pixels()) {
     RC_ASSERT(set.has(pixel.x, pixel.y));
     columns[pixel.x] = true;
     rows[pixel.y] = true;
     words_of_lattice += static_cast<double>(log.pixel(pixel.x, pixel.y).size());
-    times.push_back(test::pick(random, 0, 1000));
+    times.push_back(static_cast<double>(test::pick(random, 0, 1000)));
     of_image[std::size_t{pixel.y} * log.width + pixel.x] = times.back();
   }
   RC_ASSERT(set.count() == times.size());
   RC_ASSERT(set.count() == static_cast<std::uint64_t>(std::count(columns.begin(), columns.end(), true) *
                                                       std::count(rows.begin(), rows.end(), true)));
   const PacketList packets(log.width, log.height, {1, 1});
-  const std::vector<sim::Ticks> expected = lattice.expected_times(times, packets);
+  const std::vector<double> expected = lattice.expected_of_packets(times, packets);
   for (std::uint64_t packet = 0; packet < packets.size(); ++packet) {
     const processors::Packet at = packets[packet];
     // A cell's first column, and row, is as far from the pixel of the cell before.
@@ -252,46 +198,64 @@ TEST(Lattice, ItsIntervalCoversTheMeanOfTheImage) {
         sum += static_cast<double>(time);
       }
     }
-    std::vector<sim::Ticks> times;
+    std::vector<double> times;
     double of_lattice = 0.0;
     for (const processors::PixelPlace& pixel : lattice.pixels()) {
-      times.push_back(image[pixel.y * side + pixel.x]);
-      of_lattice += static_cast<double>(times.back());
+      times.push_back(static_cast<double>(image[pixel.y * side + pixel.x]));
+      of_lattice += times.back();
     }
     const double estimate = of_lattice / static_cast<double>(times.size()) * side * side;
-    const double half_width = lattice.half_width(times);
+    const double half_width = lattice.half_width(times) / estimate;
     covered += std::abs(estimate / sum - 1.0) <= half_width ? 1 : 0;
     widest = std::max(widest, half_width);
   }
   EXPECT_GE(covered, trials * 93 / 100);
   EXPECT_LT(widest, 0.06);  // without patches the spread of 400 pixels would give some 0.045
-  EXPECT_TRUE(std::isinf(PixelLattice(3, 3).half_width(std::vector<sim::Ticks>{5})));
+  EXPECT_TRUE(std::isinf(PixelLattice(3, 3).half_width(std::vector<double>{5.0})));
 }
 
-// What each packet of a machine with caches takes without its waits and misses is what a walk without caches
-// says of its pixels.
-RC_GTEST_PROP(HitTimes, AreThePacketsTimesWithoutMisses, (std::uint64_t seed)) {
+// The log with each pixel twice, side by side.
+WorkLog doubled(const WorkLog& log) {
+  WorkLog twice = log;
+  twice.width = 2 * log.width;
+  for (std::uint32_t y = 0; y < log.height; ++y) {
+    processors::LogRow& row = twice.rows[y];
+    row = {};
+    for (std::uint32_t x = 0; x < twice.width; ++x) {
+      row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+      const auto words = log.pixel(x / 2, y);
+      row.words.insert(row.words.end(), words.begin(), words.end());
+    }
+    row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+  }
+  return twice;
+}
+
+// A machine of one node that traces a frame in which each pixel comes twice, pixel by pixel, has the same
+// misses; and its packets' times, without their waits and misses, are those of hits alone.
+RC_GTEST_PROP(PixelFigures, AreThoseOfPacketsOfOnePixel, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_log(random, 14, 11);
-  const MachineConfig machine = test::plain_machine(random);
-  const PacketList packets(log.width, log.height, machine.packets);
-  std::vector<std::uint64_t> all(packets.size());
+  MachineConfig machine = processors::one_node_of(test::plain_machine(random));
+  machine.packets = {1, 1, processors::PacketOrder::scanline};
+  const WorkLog twice = doubled(log);
+  std::vector<std::uint64_t> all(PacketList(twice.width, twice.height, machine.packets).size());
   std::iota(all.begin(), all.end(), std::uint64_t{0});
   const processors::PacketSample sample(all, all.size(), 0);
-  const processors::MachineResult result = processors::replay(log, machine, {.sample = &sample});
-  for (const std::uint64_t number : all) {
-    const processors::Packet packet = packets[number];
-    std::vector<processors::PixelPlace> pixels;
-    for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
-      for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
-        pixels.push_back({x, y});
-      }
+  const std::vector<processors::PacketFigures> packets =
+      processors::replay(twice, machine, {.sample = &sample}).packet_figures;
+  std::vector<processors::PixelPlace> pixels;
+  for (std::uint32_t y = 0; y < log.height; ++y) {
+    for (std::uint32_t x = 0; x < log.width; ++x) {
+      pixels.push_back({x, y});
     }
-    const std::vector<sim::Ticks> times = processors::hit_times(log, machine, pixels);
-    const processors::PacketFigures& figures = result.packet_figures[number];
-    RC_ASSERT(std::accumulate(times.begin(), times.end(), sim::Ticks{0}) ==
-              figures.busy + figures.misses * machine.clock.cycles(machine.cache.hit_cycles));
-    RC_ASSERT(figures.busy <= figures.time);
+  }
+  const std::vector<processors::PixelFigures> figures = processors::pixel_figures(log, machine, pixels);
+  const sim::Ticks hit = machine.clock.cycles(machine.cache.hit_cycles);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    RC_ASSERT(figures[i].misses == packets[2 * i].misses);
+    RC_ASSERT(figures[i].misses_again == packets[2 * i + 1].misses);
+    RC_ASSERT(figures[i].hit_time == packets[2 * i].busy + packets[2 * i].misses * hit);
   }
 }
 
